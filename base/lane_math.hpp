@@ -1,0 +1,130 @@
+#pragma once
+
+// The arithmetic of one tick, written once for every lane type: `double` now, packs of doubles later. Nothing here
+// calls the C library, whose sin and cos differ between processors: the same input gives the same bytes everywhere.
+// That needs a build without contraction (-ffp-contract=off). sqrt is exact by IEEE 754 and may be used.
+
+#include <cmath>
+
+namespace downwash::lane {
+
+inline double select(bool condition, double yes, double no) {
+    return condition ? yes : no;
+}
+inline double sqrt(double x) {
+    return std::sqrt(x);
+}
+template <class T>
+T abs(T x) {
+    return select(x < T(0), -x, x);
+}
+template <class T>
+T min(T a, T b) {
+    return select(b < a, b, a);
+}
+template <class T>
+T max(T a, T b) {
+    return select(a < b, b, a);
+}
+/// @pre low <= high
+template <class T>
+T clamp(T x, T low, T high) {
+    return max(low, min(x, high));
+}
+
+/// The integer nearest to x as a floating point number, ties to even. @pre |x| < 2^51
+template <class T>
+T round_to_integer(T x) {
+    const T magic(6755399441055744.0);  // 1.5 * 2^52: adding it leaves no room for a fraction
+    return (x + magic) - magic;
+}
+
+/// Sine and cosine to 2 ulp. @pre |x| <= 1e5 rad (the quotient must leave 33-bit products exact)
+template <class T>
+void sin_cos(T x, T& sine, T& cosine) {
+    // pi/2 in three parts of 33 bits and a rest (Cody and Waite 1980), so that quotient * part is exact.
+    const T part1(0x1.921fb544p+0);
+    const T part2(0x1.0b4611a6p-34);
+    const T part3(0x1.3198a2ep-69);
+    const T rest(0x1.b839a252049c1p-104);
+    const T quotient = round_to_integer(x * T(0.63661977236758134308));
+    const T a = x - quotient * part1;
+    const T b = a - quotient * part2;
+    const T b_lost = (a - b) - quotient * part2;
+    const T small = quotient * part3 - b_lost;
+    const T r = b - small;
+    const T r_low = ((b - r) - small) - quotient * rest;
+
+    // Taylor series on [-pi/4, pi/4]; the first terms left out are below 3e-19 of the result.
+    const T w = r * r;
+    T s(1.0 / 355687428096000.0);
+    s = s * w - T(1.0 / 1307674368000.0);
+    s = s * w + T(1.0 / 6227020800.0);
+    s = s * w - T(1.0 / 39916800.0);
+    s = s * w + T(1.0 / 362880.0);
+    s = s * w - T(1.0 / 5040.0);
+    s = s * w + T(1.0 / 120.0);
+    s = s * w - T(1.0 / 6.0);
+    const T sin_r = r + (r * w * s + r_low * (T(1) - T(0.5) * w));
+    T c(1.0 / 6402373705728000.0);
+    c = T(1.0 / 20922789888000.0) - c * w;
+    c = T(1.0 / 87178291200.0) - c * w;
+    c = T(1.0 / 479001600.0) - c * w;
+    c = T(1.0 / 3628800.0) - c * w;
+    c = T(1.0 / 40320.0) - c * w;
+    c = T(1.0 / 720.0) - c * w;
+    c = T(1.0 / 24.0) - c * w;
+    const T half_w = T(0.5) * w;
+    const T one_less = T(1) - half_w;
+    const T cos_r = one_less + (((T(1) - one_less) - half_w) + (w * w * c - r * r_low));
+
+    // The quadrant, quotient mod 4, found without integers as one of -2, -1, 0, 1, 2 (-2 and 2 are the same).
+    const T quadrant = quotient - T(4) * round_to_integer(quotient * T(0.25));
+    const auto is_odd = abs(abs(quadrant) - T(1)) < T(0.5);
+    const T sin_base = select(is_odd, cos_r, sin_r);
+    const T cos_base = select(is_odd, sin_r, cos_r);
+    sine = select(abs(quadrant - T(0.5)) > T(1.25), -sin_base, sin_base);
+    cosine = select(abs(quadrant + T(0.5)) > T(1.25), -cos_base, cos_base);
+}
+
+/// Angle of the vector (x, y) in (-pi, pi] to 2 ulp; 0 for the zero vector.
+template <class T>
+T atan2(T y, T x) {
+    const T ax = abs(x);
+    const T ay = abs(y);
+    const T larger = max(ax, ay);
+    const T smaller = min(ax, ay);
+    const T ratio = smaller / select(larger > T(0), larger, T(1));  // in [0, 1]
+    // atan(t) = pi/4 + atan((t - 1) / (t + 1)) brings the argument into [-1/3, 1/2].
+    const auto is_large = ratio > T(0.5);
+    const T t = select(is_large, (smaller - larger) / (smaller + select(larger > T(0), larger, T(1))), ratio);
+    const T w = t * t;
+    T p(0);
+    for (int k = 26; k >= 1; --k) {  // Taylor series of atan; the first term left out is below 3e-18 of the result
+        p = T(1.0 / (2 * k + 1)) - p * w;
+    }
+    // p = 1/3 - w/5 + w^2/7 - ...; atan t = t - t w p
+    const T small_angle = t - t * w * p;
+    const T pi_low(1.2246467991473532e-16);
+    const T quarter = T(0.78539816339744830962) + (small_angle + T(0.25) * pi_low);
+    const T first = select(is_large, quarter, small_angle);
+    const T second = select(ay > ax, T(1.57079632679489661923) - (first - T(0.5) * pi_low), first);
+    const T third = select(x < T(0), T(3.14159265358979323846) - (second - pi_low), second);
+    return select(y < T(0), -third, third);
+}
+
+/// x^1.5 to 2 ulp. @pre x >= 0
+template <class T>
+T power_three_halves(T x) {
+    return x * sqrt(x);
+}
+
+/// The angle in (-pi, pi] that differs from x by whole turns. @pre |x| <= 1e5 rad
+template <class T>
+T wrap_angle(T x) {
+    const T turn(6.28318530717958647692);
+    const T r = x - turn * round_to_integer(x / turn);
+    return select(r > T(-3.14159265358979323846), r, r + turn);
+}
+
+}  // namespace downwash::lane

@@ -1,0 +1,57 @@
+# What every room of the house is built with.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+
+include(GNUInstallDirs)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "$ORIGIN")
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 REQUIRED)
+find_package(fcl REQUIRED)
+find_package(ompl REQUIRED)
+find_package(Boost REQUIRED COMPONENTS serialization filesystem system)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+# OMPL 1.5.2 exports no target of its own.
+add_library(downwash_ompl INTERFACE)
+target_include_directories(downwash_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
+target_link_libraries(downwash_ompl INTERFACE ${OMPL_LIBRARIES} Boost::serialization Boost::filesystem Boost::system)
+
+# Headers stand beside their sources and are included as <downwash/room/header.hpp>, here as after installation.
+set(DOWNWASH_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${DOWNWASH_INCLUDE_DIR}/downwash)
+
+add_library(downwash_options INTERFACE)
+target_compile_options(downwash_options INTERFACE
+  -ffp-contract=off # the same bytes on every processor
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<BOOL:${DOWNWASH_WERROR}>:-Werror>)
+
+# downwash_room(NAME SOURCES ... USES rooms... PRIVATE libraries...)
+# Adds the library downwash_NAME, alias downwash::NAME.
+function(downwash_room NAME)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${DOWNWASH_INCLUDE_DIR}/downwash/${NAME} SYMBOLIC)
+  list(TRANSFORM ROOM_USES PREPEND downwash_)
+  add_library(downwash_${NAME} ${ROOM_SOURCES})
+  add_library(downwash::${NAME} ALIAS downwash_${NAME})
+  target_include_directories(downwash_${NAME} PUBLIC
+    $<BUILD_INTERFACE:${DOWNWASH_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(downwash_${NAME} PUBLIC cxx_std_20)
+  target_link_libraries(downwash_${NAME} PUBLIC ${ROOM_USES} PRIVATE $<BUILD_INTERFACE:downwash_options> ${ROOM_PRIVATE})
+  set_target_properties(downwash_${NAME} PROPERTIES
+    EXPORT_NAME ${NAME} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  set_property(GLOBAL APPEND PROPERTY DOWNWASH_ROOMS downwash_${NAME})
+endfunction()

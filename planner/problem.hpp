@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/aeromap/aero_settings.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+#include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/robot.hpp"
+
+namespace downwash {
+
+/// What the planner knows of the physics while it plans (thesis C.2).
+enum class Variant {
+    mp_arm,      ///< geometry only: straight lines of (x, z, arm), the vehicle level
+    mp_arm_da,   ///< dynamics-aware: closed-loop flights without surface effects
+    mp_arm_ada,  ///< aerodynamics-aware: closed-loop flights through the aero map
+};
+
+/// What a plan should keep small; hold included.
+enum class Objective {
+    energy,     ///< rotor and arm power over time [J]
+    time,       ///< duration [s]
+    length,     ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2) [m], w = half the arm's length
+    clearance,  ///< integral of dt / (clearance + 0.1 m) [s/m]
+};
+
+/// Limits of the multirotor's centre of mass, plane coordinates [m].
+struct Bounds {
+    double x_low_m = 0, x_high_m = 0;
+    double z_low_m = 0, z_high_m = 0;
+};
+
+/// Where the flight begins.
+struct Start {
+    double x_m = 0, z_m = 0, arm_rad = 0;
+    double pitch_rad = 0;
+    double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
+};
+
+/// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
+struct EndEffectorGoal {
+    double x_m = 0, z_m = 0;
+    double tolerance_m = 0.1;                 ///< Euclidean distance, > 0
+    std::optional<double> direction_rad;      ///< of the arm in the world, a = pitch + arm
+    double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
+};
+
+/// A configuration of vehicle and arm; an empty coordinate is free.
+struct ConfigurationGoal {
+    std::optional<double> x_m, z_m, arm_rad;
+    double tolerance_m = 0.1;                              ///< Euclidean distance over the given coordinates, > 0
+    double tolerance_rad = 0.08726646259971647;            ///< of the arm, modulo a turn; 5 degrees
+};
+
+/// Where the flight must end and stay. Exactly one of the two kinds is set.
+struct Goal {
+    std::optional<EndEffectorGoal> end_effector;
+    std::optional<ConfigurationGoal> configuration;
+    double hold_s = 5;                        ///< the last reference point is held for so long, >= 1
+};
+
+/// Limits of the reference motion.
+struct MotionLimits {
+    double max_speed_m_s = 1.0;
+    double max_acceleration_m_s2 = 0.5;
+    double max_arm_rate_rad_s = 0.7853981633974483;          ///< 45 degrees per second
+    double max_arm_acceleration_rad_s2 = 1.5707963267948966; ///< 90 degrees per second squared
+};
+
+/// How to search.
+struct PlannerSettings {
+    Variant variant = Variant::mp_arm_ada;
+    std::string algorithm = "rrt-star";            ///< one of the names that algorithms() lists
+    Objective objective = Objective::energy;
+    double time_limit_s = 10;                      ///< wall time of the search, > 0
+    std::optional<std::uint64_t> max_iterations;   ///< set it for a run that is repeatable bit for bit
+    std::uint32_t seed = 1;
+    double safety_margin_m = 0.05;                 ///< least clearance while planning, >= 0
+};
+
+/// A motion planning problem for an aerial manipulator, complete in itself.
+struct Problem {
+    std::string name = "problem";     ///< [A-Za-z0-9_-]{1,64}
+    std::string description;
+    Robot robot;
+    PlaneOfMotion plane;
+    Bounds bounds;
+    std::vector<Obstacle> obstacles;
+    AeroSettings aero;
+    Start start;
+    Goal goal;
+    MotionLimits motion;
+    PlannerSettings planner;
+};
+
+/// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision
+/// or outside the flyable area, a goal out of reach. Keys are key paths of a problem file. Empty when it is sound.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Fault> problem_faults(const Problem& problem);
+
+}  // namespace downwash

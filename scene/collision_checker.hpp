@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+
+#include "downwash/base/export.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+#include "downwash/scene/scene.hpp"
+
+namespace downwash {
+
+/// Where the robot's bodies are: planar position of the multirotor's centre of mass [m], pitch and arm angle relative
+/// to the multirotor [rad] (model: pitch positive nose down, arm direction (cos a, -sin a) with a = pitch + arm).
+struct PlanarPose {
+    double x_m = 0;
+    double z_m = 0;
+    double pitch_rad = 0;
+    double arm_rad = 0;
+};
+
+/// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
+/// FCL decides; an AABB pre-test spares it what is plainly apart. No query allocates while nothing touches.
+class DOWNWASH_EXPORT CollisionChecker {
+   public:
+    CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot);
+    ~CollisionChecker();
+    CollisionChecker(CollisionChecker&&) noexcept;
+    CollisionChecker& operator=(CollisionChecker&&) noexcept;
+
+    /// True when some body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it.
+    [[nodiscard]] bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
+
+    /// Smallest distance from the robot to any obstacle [m]; <= 0 on contact, infinity without obstacles.
+    [[nodiscard]] double clearance_m(const PlanarPose& pose) const;
+
+   private:
+    struct Impl;
+    std::unique_ptr<const Impl> impl_;
+};
+
+/// Euclidean distance from a level disc to the nearest obstacle [m]; 0 on contact, infinity without obstacles.
+/// This decides the flyable area (thesis figure 5.4).
+[[nodiscard]] DOWNWASH_EXPORT double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radius_m);
+
+/// True when the level disc keeps at least `distance_m` from every obstacle; the answer of disc_clearance_m, sooner.
+[[nodiscard]] DOWNWASH_EXPORT bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
+                                                 double distance_m);
+
+}  // namespace downwash

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/scene/shapes.hpp"
+
+namespace downwash {
+
+/// An interval along a line, in metres from the line's point. Empty when low > high.
+struct Interval {
+    double low = 1;
+    double high = -1;
+    [[nodiscard]] bool empty() const noexcept { return low > high; }
+};
+
+/// The obstacles of the world, placed once and never changed; safe to share between threads.
+class DOWNWASH_EXPORT Scene {
+   public:
+    /// @throws InputError when a shape has a size that is not finite and positive, or an axis of no length
+    explicit Scene(std::vector<Obstacle> obstacles);
+    ~Scene();
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+
+    [[nodiscard]] const std::vector<Obstacle>& obstacles() const noexcept;
+
+    /// World-aligned bounding box of one obstacle [m].
+    struct Bounds {
+        Vector3 low_m, high_m;
+    };
+    [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;
+
+    /// The stretch of the vertical line through world (x, y) that lies inside one obstacle, as heights z [m].
+    [[nodiscard]] Interval vertical_extent(std::size_t obstacle, double x_m, double y_m) const noexcept;
+
+    /// The stretch of the horizontal line p + s (dx, dy), |(dx, dy)| = 1, that lies in one obstacle's vertical
+    /// shadow (its projection onto the ground), in metres s.
+    [[nodiscard]] Interval shadow_on_line(std::size_t obstacle, double px_m, double py_m, double dx,
+                                          double dy) const noexcept;
+
+    /// Whether one obstacle's upper and lower faces are level planes over its whole shadow (a box without roll or
+    /// pitch, an upright cylinder), so that its vertical extent is the same wherever it is above or below.
+    [[nodiscard]] bool is_level(std::size_t obstacle) const noexcept;
+
+    /// The placed obstacles for the collision library; only scene/ looks inside.
+    struct Solids;
+    [[nodiscard]] const Solids& solids() const noexcept;
+
+   private:
+    std::unique_ptr<const Solids> solids_;
+};
+
+}  // namespace downwash

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "downwash/base/vector3.hpp"
+
+namespace downwash {
+
+/// A solid box, centred on its own frame. Sizes are full edge lengths along the local x, y, z [m], > 0.
+struct Box {
+    Vector3 size_m{};
+};
+
+/// A solid cylinder with flat ends, centred on its own frame.
+struct Cylinder {
+    double radius_m = 0;  ///< > 0
+    double length_m = 0;  ///< end to end along `axis`, > 0
+    Vector3 axis{0, 0, 1};  ///< direction in the local frame; any length but zero
+};
+
+/// A solid sphere, centred on its own frame.
+struct Sphere {
+    double radius_m = 0;  ///< > 0
+};
+
+/// The solids a scene is made of. Meshes and octrees will join this list.
+using Shape = std::variant<Box, Cylinder, Sphere>;
+
+/// A solid placed in the world frame N (x forward, y left, z up).
+struct Obstacle {
+    std::string name;
+    Shape shape;
+    Vector3 center_m{};  ///< position of the local frame's origin in N
+    Vector3 rpy_rad{};   ///< orientation of the local frame in N: R = Rz(yaw) Ry(pitch) Rx(roll)
+};
+
+/// A solid that belongs to the multirotor, aligned with its body frame (b1 forward, y left, b3 up).
+struct BodyShape {
+    Shape shape;
+    Vector3 center_m{};  ///< in the body frame, from the multirotor's centre of mass
+};
+
+/// What of the robot can touch something: the multirotor's bodies and the arm as a capsule.
+struct RobotShape {
+    std::vector<BodyShape> bodies;
+    double joint_x_m = 0;       ///< arm joint in the body frame
+    double joint_z_m = 0;       ///< arm joint in the body frame
+    double arm_length_m = 0;    ///< joint to end effector
+    double arm_radius_m = 0;    ///< radius of the capsule around the arm
+};
+
+}  // namespace downwash

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/controllers/gains.hpp"
+#include "downwash/dynamics/plant.hpp"
+#include "downwash/scene/shapes.hpp"
+
+namespace downwash {
+
+/// An aerial manipulator: bodies, rotors, arm and the controller that flies it.
+struct Robot {
+    std::string name;
+    MultirotorParameters multirotor;
+    std::vector<BodyShape> body;
+    RotorParameters rotors;
+    ArmParameters arm;
+    ControllerGains controller;
+
+    /// Total mass [kg].
+    [[nodiscard]] double mass_kg() const noexcept { return multirotor.mass_kg + arm.mass_kg; }
+    /// What of it can touch an obstacle.
+    [[nodiscard]] RobotShape shape() const {
+        return {body, arm.joint_x_m, arm.joint_z_m, arm.length_m, arm.radius_m};
+    }
+};
+
+/// What makes a robot impossible to fly: numbers out of range, a rotor layout of lower rank, rotors that cannot lift
+/// the weight. Keys are relative to the robot ("rotors.positions_m"). Empty when the robot is sound.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Fault> robot_faults(const Robot& robot);
+
+}  // namespace downwash
