@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+
+namespace downwash {
+
+/// The rectangle of plane coordinates that a map covers [m].
+struct MapExtent {
+    double x_low_m = 0, x_high_m = 0;
+    double z_low_m = 0, z_high_m = 0;
+};
+
+/// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
+enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
+
+/// K stored over rotor positions in the plane of motion, one layer per distinct lateral offset of a rotor.
+///
+/// A layer is a regular grid of square cells of `grid_m`; every cell holds a small regular grid of its own, refined by
+/// powers of two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere
+/// in the flyable area (model 4.5). Immutable after construction.
+class DOWNWASH_EXPORT AeroMap {
+   public:
+    /// Builds every layer. The bytes do not depend on the number of threads.
+    /// @param lateral_offsets_m distinct distances of rotors to the left of the plane
+    /// @param threads at least 1
+    AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
+            std::vector<double> lateral_offsets_m, int threads = 1);
+
+    [[nodiscard]] const MapExtent& extent() const noexcept { return extent_; }
+    [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
+    [[nodiscard]] const std::vector<double>& lateral_offsets_m() const noexcept { return lateral_offsets_m_; }
+    [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
+    [[nodiscard]] std::size_t memory_bytes() const noexcept;
+
+    /// K at a rotor hub in the plane coordinates (x, z) of a layer: interpolated inside the extent, evaluated directly
+    /// outside it or when x or z is not finite (then 1).
+    [[nodiscard]] double factor(std::size_t layer, double x_m, double z_m) const noexcept {
+        const double u = (x_m - extent_.x_low_m) * cells_per_m_;
+        const double w = (z_m - extent_.z_low_m) * cells_per_m_;
+        if (!(u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_))) {
+            return factor_outside(layer, x_m, z_m);
+        }
+        const auto i = static_cast<std::size_t>(u);
+        const auto k = static_cast<std::size_t>(w);
+        const Cell& cell = layers_[layer].cells[k * columns_ + i];
+        const double a = (u - static_cast<double>(i)) * cell.steps_x;
+        const double b = (w - static_cast<double>(k)) * cell.steps_z;
+        const auto ia = static_cast<std::uint32_t>(a);
+        const auto ib = static_cast<std::uint32_t>(b);
+        const float* node = layers_[layer].nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
+        const double s = a - ia;
+        const double t = b - ib;
+        const double low = node[0] + s * (static_cast<double>(node[1]) - node[0]);
+        const float* upper = node + cell.steps_x + 1U;
+        const double high = upper[0] + s * (static_cast<double>(upper[1]) - upper[0]);
+        return low + t * (high - low);
+    }
+
+    /// Whether a rotor hub there is inside the flyable area; exact (decided by the cell where the whole cell agrees).
+    [[nodiscard]] bool is_flyable(std::size_t layer, double x_m, double z_m) const;
+
+   private:
+    struct Cell {
+        std::uint32_t first_node;
+        std::uint8_t steps_x;  ///< intervals along x, a power of two
+        std::uint8_t steps_z;  ///< intervals along z, a power of two
+        CellFlyability flyability;
+    };
+    struct Layer {
+        std::vector<Cell> cells;
+        std::vector<float> nodes;
+    };
+
+    [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
+
+    std::shared_ptr<const DirectEffect> effect_;
+    PlaneOfMotion plane_;
+    MapExtent extent_;
+    std::vector<double> lateral_offsets_m_;
+    double cells_per_m_;
+    std::size_t columns_;
+    std::size_t rows_;
+    std::vector<Layer> layers_;
+};
+
+}  // namespace downwash
