@@ -1,0 +1,145 @@
+#pragma once
+
+#include "downwash/dynamics/rigid_body.hpp"
+
+// The plant over one control tick: rigid bodies, rotors and the surface effect between command and force.
+
+namespace downwash::dynamics {
+
+/// What the plant remembers.
+template <class T>
+struct PlantState {
+    T q[4];                 ///< x, z [m], pitch, arm [rad]
+    T u[4];                 ///< their time derivatives
+    T thrust_n[max_rotors]; ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
+    T energy_j;             ///< rotor and arm energy spent so far
+};
+
+/// What is commanded and held over one tick.
+template <class T>
+struct PlantCommand {
+    T thrust_n[max_rotors];  ///< free-air thrust of each rotor, within its limits
+    T joint_torque_nm;
+};
+
+/// Shares total thrust F3 [N] and pitch torque T2 [N m] among the rotors: the least-squares commands, not yet clipped.
+template <class T>
+void allocate(const PlantModel& model, T total_thrust_n, T pitch_torque_nm, T thrust_n[max_rotors]) {
+    for (int i = 0; i < model.rotor_count; ++i) {
+        thrust_n[i] = T(model.force_share[i]) * total_thrust_n + T(model.torque_share_1_m[i]) * pitch_torque_nm;
+    }
+}
+
+/// Total thrust along b3 [N] and pitch torque [N m] of rotors in aerodynamic effect (thesis figure C.3).
+template <class T>
+struct RotorWrench {
+    T thrust_n;
+    T pitch_torque_nm;
+};
+
+/// The wrench at a configuration.
+/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane
+template <class T, class Factor>
+RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m,
+                            const T thrust_n[max_rotors], const Factor& factor) {
+    RotorWrench<T> wrench{T(0), T(0)};
+    for (int i = 0; i < model.rotor_count; ++i) {
+        const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
+        const T acting_n = factor(i, hub.x, hub.z) * thrust_n[i];
+        wrench.thrust_n = wrench.thrust_n + acting_n;
+        wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
+    }
+    return wrench;
+}
+
+/// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (thesis 4.2, 4.4 at constant PWM).
+template <class T>
+T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
+    T sum(0);
+    for (int i = 0; i < model.rotor_count; ++i) {
+        sum = sum + lane::power_three_halves(thrust_n[i]);
+    }
+    return T(model.power_coefficient_w_n1p5) * sum;
+}
+
+/// Time derivative of a plant state.
+template <class T>
+struct PlantRate {
+    T q[4], u[4], thrust_n[max_rotors], energy_j;
+};
+
+template <class T, class Factor>
+PlantRate<T> plant_rate(const PlantModel& model, const PlantState<T>& s, const PlantCommand<T>& command,
+                        const Factor& factor) {
+    PlantRate<T> rate;
+    const Attitude<T> a = attitude(model, s.q[2], s.q[3]);
+    const EquationsOfMotion<T> e = equations_of_motion(model, a, s.u);
+    const RotorWrench<T> wrench = rotor_wrench(model, a, s.q[0], s.q[1], s.thrust_n, factor);
+    const T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
+                        command.joint_torque_nm};
+    forward_dynamics(model, e, force, rate.u);
+    for (int i = 0; i < 4; ++i) {
+        rate.q[i] = s.u[i];
+    }
+    rate.energy_j = lane::abs(command.joint_torque_nm * s.u[3]);
+    if (model.rotor_time_constant_s > 0) {
+        rate.energy_j = rate.energy_j + rotor_power(model, s.thrust_n);
+        for (int i = 0; i < model.rotor_count; ++i) {
+            rate.thrust_n[i] = (command.thrust_n[i] - s.thrust_n[i]) / T(model.rotor_time_constant_s);
+        }
+    }
+    return rate;
+}
+
+template <class T>
+PlantState<T> advanced(const PlantModel& model, const PlantState<T>& s, const PlantRate<T>& rate, T dt_s) {
+    PlantState<T> next = s;
+    for (int i = 0; i < 4; ++i) {
+        next.q[i] = s.q[i] + dt_s * rate.q[i];
+        next.u[i] = s.u[i] + dt_s * rate.u[i];
+    }
+    if (model.rotor_time_constant_s > 0) {
+        for (int i = 0; i < model.rotor_count; ++i) {
+            next.thrust_n[i] = s.thrust_n[i] + dt_s * rate.thrust_n[i];
+        }
+    }
+    next.energy_j = s.energy_j + dt_s * rate.energy_j;
+    return next;
+}
+
+/// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surface effect
+/// is evaluated at the rotor positions of every stage.
+template <class T, class Factor>
+PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
+                          const Factor& factor) {
+    PlantState<T> start = state;
+    const bool has_lag = model.rotor_time_constant_s > 0;
+    if (!has_lag) {
+        for (int i = 0; i < model.rotor_count; ++i) {
+            start.thrust_n[i] = command.thrust_n[i];
+        }
+    }
+    const T half = T(0.5) * dt_s;
+    const PlantRate<T> k1 = plant_rate(model, start, command, factor);
+    const PlantRate<T> k2 = plant_rate(model, advanced(model, start, k1, half), command, factor);
+    const PlantRate<T> k3 = plant_rate(model, advanced(model, start, k2, half), command, factor);
+    const PlantRate<T> k4 = plant_rate(model, advanced(model, start, k3, dt_s), command, factor);
+    const auto mean = [](T a, T b, T c, T d) { return (a + T(2) * (b + c) + d) * T(1.0 / 6.0); };
+    PlantState<T> next = start;
+    for (int i = 0; i < 4; ++i) {
+        next.q[i] = start.q[i] + dt_s * mean(k1.q[i], k2.q[i], k3.q[i], k4.q[i]);
+        next.u[i] = start.u[i] + dt_s * mean(k1.u[i], k2.u[i], k3.u[i], k4.u[i]);
+    }
+    next.energy_j = start.energy_j + dt_s * mean(k1.energy_j, k2.energy_j, k3.energy_j, k4.energy_j);
+    if (has_lag) {
+        for (int i = 0; i < model.rotor_count; ++i) {
+            next.thrust_n[i] =
+                start.thrust_n[i] + dt_s * mean(k1.thrust_n[i], k2.thrust_n[i], k3.thrust_n[i], k4.thrust_n[i]);
+        }
+    } else {
+        next.energy_j = next.energy_j + dt_s * rotor_power(model, command.thrust_n);
+    }
+    return next;
+}
+
+}  // namespace downwash::dynamics

@@ -1,0 +1,66 @@
+#include "downwash/dynamics/plant_model.hpp"
+
+#include <cassert>
+#include <cstddef>
+
+namespace downwash {
+namespace {
+
+struct LayoutSums {
+    double count = 0, x = 0, xx = 0;
+    [[nodiscard]] double determinant() const { return count * xx - x * x; }
+};
+
+LayoutSums sums(const RotorParameters& rotors) {
+    LayoutSums s;
+    for (const Vector3& position_m : rotors.positions_m) {
+        s.count += 1;
+        s.x += position_m[0];
+        s.xx += position_m[0] * position_m[0];
+    }
+    return s;
+}
+
+}  // namespace
+
+bool allocation_has_full_rank(const RotorParameters& rotors) {
+    const LayoutSums s = sums(rotors);
+    return s.determinant() > 1e-9 * s.count * s.xx;
+}
+
+PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmParameters& arm,
+                            const RotorParameters& rotors) {
+    assert(rotors.positions_m.size() <= static_cast<std::size_t>(max_rotors));
+    PlantModel model{};
+    model.multirotor_mass_kg = multirotor.mass_kg;
+    model.arm_mass_kg = arm.mass_kg;
+    model.total_mass_kg = multirotor.mass_kg + arm.mass_kg;
+    model.reduced_mass_kg = multirotor.mass_kg * arm.mass_kg / model.total_mass_kg;
+    model.arm_mass_ratio = arm.mass_kg / model.total_mass_kg;
+    model.pitch_inertia_kg_m2 = multirotor.pitch_inertia_kg_m2;
+    model.arm_inertia_kg_m2 = arm.inertia_kg_m2;
+    model.joint_x_m = arm.joint_x_m;
+    model.joint_z_m = arm.joint_z_m;
+    model.arm_center_of_mass_m = arm.center_of_mass_m;
+    model.arm_length_m = arm.length_m;
+    model.max_joint_torque_nm = arm.max_torque_nm;
+
+    // The pseudo-inverse of the rows (1, ..., 1) and (-x_1, ..., -x_N).
+    const LayoutSums s = sums(rotors);
+    const double determinant = s.determinant();
+    model.rotor_count = static_cast<int>(rotors.positions_m.size());
+    for (int i = 0; i < model.rotor_count; ++i) {
+        const Vector3& position_m = rotors.positions_m[static_cast<std::size_t>(i)];
+        model.rotor_x_m[i] = position_m[0];
+        model.rotor_z_m[i] = position_m[2];
+        model.force_share[i] = (s.xx - position_m[0] * s.x) / determinant;
+        model.torque_share_1_m[i] = (s.x - position_m[0] * s.count) / determinant;
+    }
+    model.min_thrust_n = rotors.min_thrust_n;
+    model.max_thrust_n = rotors.max_thrust_n;
+    model.rotor_time_constant_s = rotors.time_constant_s;
+    model.power_coefficient_w_n1p5 = rotors.power_coefficient_w_n1p5;
+    return model;
+}
+
+}  // namespace downwash

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "downwash/base/export.hpp"
+#include "downwash/dynamics/plant.hpp"
+
+namespace downwash {
+
+/// Standard gravity [m/s2].
+inline constexpr double standard_gravity_m_s2 = 9.80665;
+
+/// The plant as plain numbers, ready for the tick. Immutable once made.
+struct PlantModel {
+    double multirotor_mass_kg, arm_mass_kg, total_mass_kg;
+    double reduced_mass_kg;      ///< mA mB / (mA + mB)
+    double arm_mass_ratio;       ///< mB / (mA + mB)
+    double pitch_inertia_kg_m2;  ///< IA
+    double arm_inertia_kg_m2;    ///< IB
+    double joint_x_m, joint_z_m;
+    double arm_center_of_mass_m; ///< lB
+    double arm_length_m;         ///< L
+    double max_joint_torque_nm;
+
+    int rotor_count;
+    double rotor_x_m[max_rotors], rotor_z_m[max_rotors];
+    double force_share[max_rotors];          ///< thrust of rotor i per newton of F3
+    double torque_share_1_m[max_rotors];     ///< thrust of rotor i per newton metre of T2
+    double min_thrust_n, max_thrust_n;
+    double rotor_time_constant_s;            ///< 0: thrust follows the command at once
+    double power_coefficient_w_n1p5;
+};
+
+/// Prepares a plant.
+/// @pre the parameters are sound (robot_faults() finds nothing) and no more than max_rotors rotors are given
+[[nodiscard]] DOWNWASH_EXPORT PlantModel make_plant_model(const MultirotorParameters& multirotor,
+                                                          const ArmParameters& arm, const RotorParameters& rotors);
+
+/// Whether the rotor positions let total thrust and pitch torque be commanded apart (rank 2 of model 3's allocation).
+[[nodiscard]] DOWNWASH_EXPORT bool allocation_has_full_rank(const RotorParameters& rotors);
+
+}  // namespace downwash

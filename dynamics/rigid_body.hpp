@@ -1,0 +1,150 @@
+#pragma once
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/plant_model.hpp"
+
+// The two rigid bodies of the manipulator in closed form (model 2; thesis C.1, A.6), one template over the lane type.
+// Coordinates q = (x, z, pitch, arm) [m, m, rad, rad], speeds u = dq/dt; M du/dt + c = Q.
+
+namespace downwash::dynamics {
+
+/// Sines and cosines of one configuration and what follows from them, shared by all functions below.
+template <class T>
+struct Attitude {
+    T sin_pitch, cos_pitch;
+    T arm_x, arm_z;      ///< e: unit vector from the joint towards the end effector, world
+    T joint_x, joint_z;  ///< r: centre of mass of the multirotor -> joint, world [m]
+};
+
+template <class T>
+Attitude<T> attitude(const PlantModel& model, T pitch_rad, T arm_rad) {
+    Attitude<T> a;
+    lane::sin_cos(pitch_rad, a.sin_pitch, a.cos_pitch);
+    T sin_arm, cos_arm;
+    lane::sin_cos(pitch_rad + arm_rad, sin_arm, cos_arm);
+    a.arm_x = cos_arm;
+    a.arm_z = -sin_arm;
+    a.joint_x = a.cos_pitch * T(model.joint_x_m) + a.sin_pitch * T(model.joint_z_m);
+    a.joint_z = a.cos_pitch * T(model.joint_z_m) - a.sin_pitch * T(model.joint_x_m);
+    return a;
+}
+
+/// The entries of the symmetric mass matrix that are not zero or m, and the bias c (velocity products and gravity).
+template <class T>
+struct EquationsOfMotion {
+    T pitch_x, pitch_z;  ///< J5 + Ea: how the arm's centre of mass moves with pitch [m]
+    T arm_x, arm_z;      ///< Ea: how it moves with the arm angle [m]
+    T m55, m57, m77;     ///< [kg m2]
+    T bias[4];           ///< c [N, N, N m, N m]
+};
+
+template <class T>
+EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude<T>& a, const T u[4]) {
+    EquationsOfMotion<T> e;
+    const T arm_mass(model.arm_mass_kg);
+    const T reach(model.arm_center_of_mass_m);
+    e.arm_x = reach * a.arm_z;
+    e.arm_z = -(reach * a.arm_x);
+    e.pitch_x = a.joint_z + e.arm_x;
+    e.pitch_z = e.arm_z - a.joint_x;
+    const T inertia_b(model.arm_inertia_kg_m2);
+    e.m55 = T(model.pitch_inertia_kg_m2) + inertia_b + arm_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
+    e.m57 = inertia_b + arm_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
+    e.m77 = inertia_b + arm_mass * reach * reach;
+
+    const T pitch_rate_squared = u[2] * u[2];
+    const T arm_rate = u[2] + u[3];
+    const T centripetal = reach * arm_rate * arm_rate;
+    const T acceleration_x = -(a.joint_x * pitch_rate_squared + a.arm_x * centripetal);
+    const T acceleration_z = -(a.joint_z * pitch_rate_squared + a.arm_z * centripetal);
+    const T force_x = arm_mass * acceleration_x;
+    const T force_z = arm_mass * (acceleration_z + T(standard_gravity_m_s2));
+    e.bias[0] = force_x;
+    e.bias[1] = arm_mass * acceleration_z + T(model.total_mass_kg * standard_gravity_m_s2);
+    e.bias[2] = e.pitch_x * force_x + e.pitch_z * force_z;
+    e.bias[3] = e.arm_x * force_x + e.arm_z * force_z;
+    return e;
+}
+
+/// du/dt under the generalised forces Q [N, N, N m, N m]: translation eliminated, then a 2 x 2 system. Its determinant
+/// is positive for any positive masses and inertias.
+template <class T>
+void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
+    const T reduced_mass(model.reduced_mass_kg);
+    const T ratio(model.arm_mass_ratio);
+    const T inertia_b(model.arm_inertia_kg_m2);
+    const T reach(model.arm_center_of_mass_m);
+    const T fx = force[0] - e.bias[0];
+    const T fz = force[1] - e.bias[1];
+    const T s55 =
+        T(model.pitch_inertia_kg_m2) + inertia_b + reduced_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
+    const T s57 = inertia_b + reduced_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
+    const T s77 = inertia_b + reduced_mass * reach * reach;
+    const T g5 = force[2] - e.bias[2] - ratio * (e.pitch_x * fx + e.pitch_z * fz);
+    const T g7 = force[3] - e.bias[3] - ratio * (e.arm_x * fx + e.arm_z * fz);
+    const T inverse_determinant = T(1) / (s55 * s77 - s57 * s57);
+    acceleration[2] = (s77 * g5 - s57 * g7) * inverse_determinant;
+    acceleration[3] = (s55 * g7 - s57 * g5) * inverse_determinant;
+    const T inverse_mass(1 / model.total_mass_kg);
+    acceleration[0] = fx * inverse_mass - ratio * (e.pitch_x * acceleration[2] + e.arm_x * acceleration[3]);
+    acceleration[1] = fz * inverse_mass - ratio * (e.pitch_z * acceleration[2] + e.arm_z * acceleration[3]);
+}
+
+/// The generalised forces Q [N, N, N m, N m] that produce du/dt.
+template <class T>
+void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T acceleration[4], T force[4]) {
+    const T mass(model.total_mass_kg);
+    const T arm_mass(model.arm_mass_kg);
+    const T* du = acceleration;
+    force[0] = mass * du[0] + arm_mass * (e.pitch_x * du[2] + e.arm_x * du[3]) + e.bias[0];
+    force[1] = mass * du[1] + arm_mass * (e.pitch_z * du[2] + e.arm_z * du[3]) + e.bias[1];
+    force[2] = arm_mass * (e.pitch_x * du[0] + e.pitch_z * du[1]) + e.m55 * du[2] + e.m57 * du[3] + e.bias[2];
+    force[3] = arm_mass * (e.arm_x * du[0] + e.arm_z * du[1]) + e.m57 * du[2] + e.m77 * du[3] + e.bias[3];
+}
+
+/// Kinetic energy of both bodies [J].
+template <class T>
+T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T u[4]) {
+    const T translation = T(model.total_mass_kg) * (u[0] * u[0] + u[1] * u[1]);
+    const T coupling = T(model.arm_mass_kg) * (u[0] * (e.pitch_x * u[2] + e.arm_x * u[3]) +
+                                               u[1] * (e.pitch_z * u[2] + e.arm_z * u[3]));
+    const T rotation = e.m55 * u[2] * u[2] + T(2) * e.m57 * u[2] * u[3] + e.m77 * u[3] * u[3];
+    return T(0.5) * (translation + rotation) + coupling;
+}
+
+/// Potential energy of both bodies over z = 0 [J].
+template <class T>
+T potential_energy(const PlantModel& model, const Attitude<T>& a, T z_m) {
+    const T arm_height = z_m + a.joint_z + T(model.arm_center_of_mass_m) * a.arm_z;
+    return T(standard_gravity_m_s2) *
+           (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
+}
+
+/// A point of the plane [m].
+template <class T>
+struct PlanePoint {
+    T x, z;
+};
+
+/// The arm's joint in the plane [m].
+template <class T>
+PlanePoint<T> joint_position(const Attitude<T>& a, T x_m, T z_m) {
+    return {x_m + a.joint_x, z_m + a.joint_z};
+}
+
+/// The end effector in the plane [m].
+template <class T>
+PlanePoint<T> end_effector_position(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m) {
+    const T length(model.arm_length_m);
+    return {x_m + a.joint_x + length * a.arm_x, z_m + a.joint_z + length * a.arm_z};
+}
+
+/// The hub of rotor i in the plane [m]; its lateral offset does not change.
+template <class T>
+PlanePoint<T> rotor_position(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, int rotor) {
+    const T bx(model.rotor_x_m[rotor]);
+    const T bz(model.rotor_z_m[rotor]);
+    return {x_m + a.cos_pitch * bx + a.sin_pitch * bz, z_m - a.sin_pitch * bx + a.cos_pitch * bz};
+}
+
+}  // namespace downwash::dynamics
