@@ -1,0 +1,120 @@
+#include "downwash/controllers/reference_segment.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace downwash {
+namespace {
+
+bool is_at_rest(const ReferencePoint& point) {
+    return std::all_of(std::begin(point.velocity), std::end(point.velocity), [](double v) { return v == 0; }) &&
+           std::all_of(std::begin(point.acceleration), std::end(point.acceleration), [](double a) { return a == 0; });
+}
+
+double translation(const double axis[3]) {
+    return std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
+}
+
+/// Largest ratio of a sampled speed or acceleration to its limit over the segment.
+double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
+    constexpr std::int64_t samples = 64;
+    double worst = 0;
+    for (std::int64_t i = 1; i < samples; ++i) {
+        const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
+        worst = std::max({worst, translation(p.velocity) / limits.max_speed_m_s,
+                          translation(p.acceleration) / limits.max_acceleration_m_s2,
+                          std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
+                          std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
+    }
+    return worst;
+}
+
+}  // namespace
+
+ReferenceSegment::ReferenceSegment(const ReferencePoint& from, const ReferencePoint& to, std::int64_t ticks,
+                                   double tick_s)
+    : from_(from),
+      to_(to),
+      ticks_(ticks),
+      tick_s_(tick_s),
+      duration_s_(static_cast<double>(ticks) * tick_s),
+      inverse_duration_1_s_(1 / duration_s_) {
+    assert(ticks >= 1 && tick_s > 0);
+    const double t = duration_s_;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Hermite conditions at both ends, in the powers of the normalised time (Taylor terms p, v T, a T^2 / 2).
+        const double p = from.position[axis];
+        const double v0 = from.velocity[axis] * t;
+        const double a0 = from.acceleration[axis] * t * t;
+        const double v1 = to.velocity[axis] * t;
+        const double a1 = to.acceleration[axis] * t * t;
+        const double d = to.position[axis] - p;
+        double* c = coefficient_[axis];
+        c[0] = p;
+        c[1] = v0;
+        c[2] = 0.5 * a0;
+        c[3] = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
+        c[4] = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
+        c[5] = 6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1);
+    }
+}
+
+ReferencePoint ReferenceSegment::at_tick(std::int64_t tick) const noexcept {
+    if (tick <= 0) {
+        return from_;
+    }
+    if (tick >= ticks_) {
+        return to_;
+    }
+    const double s = static_cast<double>(tick) * tick_s_ * inverse_duration_1_s_;
+    ReferencePoint point;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double* c = coefficient_[axis];
+        point.position[axis] = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
+        point.velocity[axis] =
+            (c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * (5 * c[5]))))) * inverse_duration_1_s_;
+        point.acceleration[axis] = (2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * (20 * c[5])))) *
+                                   inverse_duration_1_s_ * inverse_duration_1_s_;
+    }
+    return point;
+}
+
+double rest_to_rest_duration_s(double distance_m, double arm_rad, const ReferenceLimits& limits) {
+    constexpr double peak_speed = 15.0 / 8.0;
+    constexpr double peak_acceleration = 5.7735026918962576;  // 10 / sqrt(3)
+    return std::max({peak_speed * distance_m / limits.max_speed_m_s,
+                     std::sqrt(peak_acceleration * distance_m / limits.max_acceleration_m_s2),
+                     peak_speed * arm_rad / limits.max_arm_rate_rad_s,
+                     std::sqrt(peak_acceleration * arm_rad / limits.max_arm_acceleration_rad_s2)});
+}
+
+std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to, const ReferenceLimits& limits,
+                            double tick_s) {
+    const double dx = to.position[0] - from.position[0];
+    const double dz = to.position[1] - from.position[1];
+    const double distance_m = std::sqrt(dx * dx + dz * dz);
+    const double arm_rad = std::abs(to.position[2] - from.position[2]);
+    // A hair less than the exact duration must not cost a whole tick.
+    const auto ticks_of = [tick_s](double duration_s) {
+        return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(duration_s / tick_s - 1e-9)));
+    };
+    std::int64_t ticks = ticks_of(rest_to_rest_duration_s(distance_m, arm_rad, limits));
+    if (is_at_rest(from)) {
+        return ticks;
+    }
+    // From a moving start the shortest time has no closed form: start from what braking alone needs and stretch.
+    const double braking_s = std::max(translation(from.velocity) / limits.max_acceleration_m_s2,
+                                      std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2);
+    ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
+    constexpr int most_stretches = 60;
+    for (int i = 0; i < most_stretches; ++i) {
+        if (worst_ratio(ReferenceSegment(from, to, ticks, tick_s), limits) <= 1) {
+            return ticks;
+        }
+        ticks += std::max<std::int64_t>(1, ticks / 16);
+    }
+    return ticks;
+}
+
+}  // namespace downwash

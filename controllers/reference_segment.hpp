@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/reference_point.hpp"
+
+namespace downwash {
+
+/// Limits of a reference: Euclidean in (x, z), apart for the arm; all > 0.
+struct ReferenceLimits {
+    double max_speed_m_s;
+    double max_acceleration_m_s2;
+    double max_arm_rate_rad_s;
+    double max_arm_acceleration_rad_s2;
+};
+
+/// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
+/// Between two points at rest it is the straight line of (x, z, arm), synchronised, s(t) = 10 t^3 - 15 t^4 + 6 t^5.
+class DOWNWASH_EXPORT ReferenceSegment {
+   public:
+    /// @param ticks length in control ticks, >= 1   @param tick_s length of a tick [s], > 0
+    ReferenceSegment(const ReferencePoint& from, const ReferencePoint& to, std::int64_t ticks, double tick_s);
+
+    [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+    [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
+    [[nodiscard]] const ReferencePoint& from() const noexcept { return from_; }
+    [[nodiscard]] const ReferencePoint& to() const noexcept { return to_; }
+
+    /// The reference at the beginning of tick `tick`, 0 <= tick <= ticks(); exactly `from` and `to` at the ends.
+    [[nodiscard]] ReferencePoint at_tick(std::int64_t tick) const noexcept;
+
+   private:
+    ReferencePoint from_;
+    ReferencePoint to_;
+    std::int64_t ticks_;
+    double tick_s_;
+    double duration_s_;
+    double inverse_duration_1_s_;
+    double coefficient_[3][6];  // of the powers of t / duration, per axis
+};
+
+/// The fewest ticks in which the quintic from `from` to rest at `to` keeps the limits; 1 when nothing moves.
+/// A start that already breaks the limits is given the time that its motion needs, but cannot be mended.
+[[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
+                                                          const ReferenceLimits& limits, double tick_s);
+
+/// Duration [s] of the rest-to-rest quintic over a distance [m] and an arm angle [rad] (peak speed 15/8 of the mean,
+/// peak acceleration 10 / sqrt(3) of distance / duration^2), before it is rounded up to ticks.
+[[nodiscard]] DOWNWASH_EXPORT double rest_to_rest_duration_s(double distance_m, double arm_rad,
+                                                             const ReferenceLimits& limits);
+
+}  // namespace downwash
