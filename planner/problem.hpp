@@ -10,6 +10,7 @@
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/robot.hpp"
 
 namespace downwash {
@@ -29,39 +30,11 @@ enum class Objective {
     clearance,  ///< integral of dt / (clearance + 0.1 m) [s/m]
 };
 
-/// Limits of the multirotor's centre of mass, plane coordinates [m].
-struct Bounds {
-    double x_low_m = 0, x_high_m = 0;
-    double z_low_m = 0, z_high_m = 0;
-};
-
 /// Where the flight begins.
 struct Start {
     double x_m = 0, z_m = 0, arm_rad = 0;
     double pitch_rad = 0;
     double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
-};
-
-/// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
-struct EndEffectorGoal {
-    double x_m = 0, z_m = 0;
-    double tolerance_m = 0.1;                 ///< Euclidean distance, > 0
-    std::optional<double> direction_rad;      ///< of the arm in the world, a = pitch + arm
-    double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
-};
-
-/// A configuration of vehicle and arm; an empty coordinate is free.
-struct ConfigurationGoal {
-    std::optional<double> x_m, z_m, arm_rad;
-    double tolerance_m = 0.1;                              ///< Euclidean distance over the given coordinates, > 0
-    double tolerance_rad = 0.08726646259971647;            ///< of the arm, modulo a turn; 5 degrees
-};
-
-/// Where the flight must end and stay. Exactly one of the two kinds is set.
-struct Goal {
-    std::optional<EndEffectorGoal> end_effector;
-    std::optional<ConfigurationGoal> configuration;
-    double hold_s = 5;                        ///< the last reference point is held for so long, >= 1
 };
 
 /// Limits of the reference motion.

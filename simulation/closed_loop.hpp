@@ -1,0 +1,77 @@
+#pragma once
+
+#include "downwash/controllers/model_inversion.hpp"
+#include "downwash/dynamics/flight_step.hpp"
+
+// One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
+
+namespace downwash::simulation {
+
+/// Everything about the vehicle that does not change in flight.
+struct TickModel {
+    PlantModel plant;
+    ControllerGains gains;
+    double tick_s;  ///< control period, 1 / rate_hz
+};
+
+/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, and every integrator.
+template <class T>
+struct State {
+    dynamics::PlantState<T> plant;
+    controllers::ControllerState<T> controller;
+};
+
+/// What happened in a tick.
+template <class T>
+struct TickRecord {
+    dynamics::PlantCommand<T> command;  ///< held over the tick, after clipping
+    T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped
+};
+
+/// How far a demanded rotor thrust reaches towards its limits: 1 at either limit, more beyond.
+template <class T>
+T thrust_saturation(const PlantModel& plant, T demand_n) {
+    const T span(plant.max_thrust_n - plant.min_thrust_n);
+    return lane::max(demand_n / T(plant.max_thrust_n), T(1) + (T(plant.min_thrust_n) - demand_n) / span);
+}
+
+/// The commands that the controller holds from this state on, and its memory at the end of the tick.
+template <class T>
+controllers::ControllerState<T> control(const TickModel& model, const State<T>& state,
+                                        const controllers::Setpoint<T>& reference, TickRecord<T>& record) {
+    const PlantModel& plant = model.plant;
+    const auto step = controllers::model_inversion_control(plant, model.gains, state.plant.q, state.plant.u,
+                                                           state.controller, reference, T(model.tick_s));
+    T demand_n[max_rotors];
+    dynamics::allocate(plant, step.demand.thrust_n, step.demand.pitch_torque_nm, demand_n);
+    const T most_torque(plant.max_joint_torque_nm);
+    record.saturation = lane::abs(step.demand.joint_torque_nm) / most_torque;
+    record.command.joint_torque_nm = lane::clamp(step.demand.joint_torque_nm, -most_torque, most_torque);
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        record.saturation = lane::max(record.saturation, thrust_saturation(plant, demand_n[i]));
+        record.command.thrust_n[i] = lane::clamp(demand_n[i], T(plant.min_thrust_n), T(plant.max_thrust_n));
+    }
+    const auto is_clipped = record.saturation > T(1);
+    controllers::ControllerState<T> next = step.integrated;
+    for (int i = 0; i < 2; ++i) {
+        next.position_integral[i] =
+            lane::select(is_clipped, step.frozen.position_integral[i], step.integrated.position_integral[i]);
+    }
+    next.pitch_rate_integral =
+        lane::select(is_clipped, step.frozen.pitch_rate_integral, step.integrated.pitch_rate_integral);
+    next.arm_integral = lane::select(is_clipped, step.frozen.arm_integral, step.integrated.arm_integral);
+    return next;
+}
+
+/// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
+/// @param factor callable (rotor, x_m, z_m) -> K, the surface effect at a rotor hub in the plane
+template <class T, class Factor>
+State<T> tick(const TickModel& model, const State<T>& state, const controllers::Setpoint<T>& reference,
+              const Factor& factor, TickRecord<T>& record) {
+    State<T> next;
+    next.controller = control(model, state, reference, record);
+    next.plant = dynamics::flight_step(model.plant, state.plant, record.command, T(model.tick_s), factor);
+    return next;
+}
+
+}  // namespace downwash::simulation
