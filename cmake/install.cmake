@@ -1,0 +1,45 @@
+# cmake --install: the program, its problems, and the package that other projects find with find_package(downwash).
+
+include(CMakePackageConfigHelpers)
+
+if(TARGET downwash)
+  install(TARGETS downwash RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
+install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
+  FILES_MATCHING PATTERN "*.yaml" PATTERN "*.stl" PATTERN "*.bt")
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# What stands behind the rooms (Eigen, OMPL, FCL, yaml-cpp) is hidden in shared libraries and so no business of those who
+# link them. Static libraries would pass it all on: they serve this build only.
+if(NOT BUILD_SHARED_LIBS)
+  message(STATUS "Static rooms: only the program and its problems will be installed, no libraries and headers")
+  return()
+endif()
+
+get_property(rooms GLOBAL PROPERTY DOWNWASH_ROOMS)
+set(DOWNWASH_PKGCONFIG_LIBS "")
+foreach(room IN LISTS rooms)
+  install(TARGETS downwash_${room} EXPORT downwash_targets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${room})
+  string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${room} ")
+endforeach()
+string(STRIP "${DOWNWASH_PKGCONFIG_LIBS}" DOWNWASH_PKGCONFIG_LIBS)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/downwash)
+install(EXPORT downwash_targets NAMESPACE downwash:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/downwash-config.cmake.in ${PROJECT_BINARY_DIR}/cmake/downwash-config.cmake
+  INSTALL_DESTINATION ${package_dir}
+  PATH_VARS DOWNWASH_INSTALL_DATADIR)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/downwash-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/cmake/downwash-config.cmake
+  ${PROJECT_BINARY_DIR}/cmake/downwash-config-version.cmake
+  DESTINATION ${package_dir})
+
+set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH DOWNWASH_PKGCONFIG_PREFIX /prefix/${pkgconfig_dir} /prefix)
+configure_file(cmake/downwash.pc.in ${PROJECT_BINARY_DIR}/cmake/downwash.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/cmake/downwash.pc DESTINATION ${pkgconfig_dir})

@@ -39,10 +39,14 @@ target_compile_options(downwash_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   $<$<BOOL:${DOWNWASH_WERROR}>:-Werror>)
 
-# downwash_room(NAME SOURCES ... USES rooms... PRIVATE libraries...)
-# Adds the library downwash_NAME, alias downwash::NAME.
+# downwash_room(NAME SOURCES ... USES rooms... PRIVATE libraries... PRIVATE_HEADERS files...)
+# Adds the library downwash_NAME, alias downwash::NAME. Every header of the folder is installed but those after
+# PRIVATE_HEADERS, which only this room and the tests include.
 function(downwash_room NAME)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE;PRIVATE_HEADERS" ${ARGN})
+  if(ROOM_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "downwash_room(${NAME}): what is ${ROOM_UNPARSED_ARGUMENTS}?")
+  endif()
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${DOWNWASH_INCLUDE_DIR}/downwash/${NAME} SYMBOLIC)
   list(TRANSFORM ROOM_USES PREPEND downwash_)
   add_library(downwash_${NAME} ${ROOM_SOURCES})
@@ -51,7 +55,15 @@ function(downwash_room NAME)
     $<BUILD_INTERFACE:${DOWNWASH_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(downwash_${NAME} PUBLIC cxx_std_20)
   target_link_libraries(downwash_${NAME} PUBLIC ${ROOM_USES} PRIVATE $<BUILD_INTERFACE:downwash_options> ${ROOM_PRIVATE})
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+  foreach(header IN LISTS ROOM_PRIVATE_HEADERS)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+      message(FATAL_ERROR "downwash_room(${NAME}): there is no private header ${header}")
+    endif()
+    list(REMOVE_ITEM headers ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+  endforeach()
   set_target_properties(downwash_${NAME} PROPERTIES
+    PUBLIC_HEADER "${headers}"
     EXPORT_NAME ${NAME} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  set_property(GLOBAL APPEND PROPERTY DOWNWASH_ROOMS downwash_${NAME})
+  set_property(GLOBAL APPEND PROPERTY DOWNWASH_ROOMS ${NAME})
 endfunction()
