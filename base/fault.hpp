@@ -18,11 +18,11 @@ struct Fault {
 
 /// Thrown at the edge of a module when input cannot be used; carries every fault that was found in one reading.
 class DOWNWASH_EXPORT InputError : public std::runtime_error {
-   public:
+ public:
     explicit InputError(std::vector<Fault> faults);
     [[nodiscard]] const std::vector<Fault>& faults() const noexcept { return faults_; }
 
-   private:
+ private:
     std::vector<Fault> faults_;
 };
 

@@ -104,8 +104,7 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     const T blend = tick_s / (T(gains.pitch_rate_filter_s) + tick_s);
     step.frozen.pitch_reference_rad = pitch_reference;
     step.frozen.pitch_reference_rate = memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
-    const T rate_reference =
-        step.frozen.pitch_reference_rate + T(gains.attitude_k5) * (pitch_reference - q[2]);
+    const T rate_reference = step.frozen.pitch_reference_rate + T(gains.attitude_k5) * (pitch_reference - q[2]);
     step.frozen.rate_reference = rate_reference;
 
     // D5^-1: the pitch torque for the pitch acceleration, with the accelerations that this thrust will really give.
@@ -116,9 +115,9 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
         v5 = v5 + (rate_reference - memory.rate_reference) / tick_s;
     }
     const T thrust = step.demand.thrust_n;
-    const T acceleration[4] = {
-        (thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) / mass,
-        (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) / mass, v5, v7};
+    const T acceleration[4] = {(thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) / mass,
+                               (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) / mass,
+                               v5, v7};
     T force[4];
     dynamics::inverse_dynamics(model, e, acceleration, force);
     step.demand.pitch_torque_nm = force[2];

@@ -7,9 +7,12 @@
 namespace downwash {
 namespace {
 
+bool is_zero(const double axis[3]) {
+    return axis[0] == 0 && axis[1] == 0 && axis[2] == 0;
+}
+
 bool is_at_rest(const ReferencePoint& point) {
-    return std::all_of(std::begin(point.velocity), std::end(point.velocity), [](double v) { return v == 0; }) &&
-           std::all_of(std::begin(point.acceleration), std::end(point.acceleration), [](double a) { return a == 0; });
+    return is_zero(point.velocity) && is_zero(point.acceleration);
 }
 
 double translation(const double axis[3]) {

@@ -18,7 +18,7 @@ struct ReferenceLimits {
 /// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
 /// Between two points at rest it is the straight line of (x, z, arm), synchronised, s(t) = 10 t^3 - 15 t^4 + 6 t^5.
 class DOWNWASH_EXPORT ReferenceSegment {
-   public:
+ public:
     /// @param ticks length in control ticks, >= 1   @param tick_s length of a tick [s], > 0
     ReferenceSegment(const ReferencePoint& from, const ReferencePoint& to, std::int64_t ticks, double tick_s);
 
@@ -30,7 +30,7 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// The reference at the beginning of tick `tick`, 0 <= tick <= ticks(); exactly `from` and `to` at the ends.
     [[nodiscard]] ReferencePoint at_tick(std::int64_t tick) const noexcept;
 
-   private:
+ private:
     ReferencePoint from_;
     ReferencePoint to_;
     std::int64_t ticks_;
@@ -38,6 +38,13 @@ class DOWNWASH_EXPORT ReferenceSegment {
     double duration_s_;
     double inverse_duration_1_s_;
     double coefficient_[3][6];  // of the powers of t / duration, per axis
+};
+
+/// A point that a reference passes at a control tick, counted from the start of the flight. Neighbouring knots span a
+/// ReferenceSegment.
+struct ReferenceKnot {
+    std::int64_t tick = 0;
+    ReferencePoint point;
 };
 
 /// The fewest ticks in which the quintic from `from` to rest at `to` keeps the limits; 1 when nothing moves.

@@ -9,10 +9,10 @@ namespace downwash::dynamics {
 /// What the plant remembers.
 template <class T>
 struct PlantState {
-    T q[4];                 ///< x, z [m], pitch, arm [rad]
-    T u[4];                 ///< their time derivatives
-    T thrust_n[max_rotors]; ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
-    T energy_j;             ///< rotor and arm energy spent so far
+    T q[4];                  ///< x, z [m], pitch, arm [rad]
+    T u[4];                  ///< their time derivatives
+    T thrust_n[max_rotors];  ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
+    T energy_j;              ///< rotor and arm energy spent so far
 };
 
 /// What is commanded and held over one tick.
@@ -40,8 +40,8 @@ struct RotorWrench {
 /// The wrench at a configuration.
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane
 template <class T, class Factor>
-RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m,
-                            const T thrust_n[max_rotors], const Factor& factor) {
+RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
+                            const Factor& factor) {
     RotorWrench<T> wrench{T(0), T(0)};
     for (int i = 0; i < model.rotor_count; ++i) {
         const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);

@@ -11,33 +11,33 @@ inline constexpr int max_rotors = 8;
 
 /// The multirotor's rigid body A (thesis C.1).
 struct MultirotorParameters {
-    double mass_kg = 0;               ///< > 0, rotors and battery included, arm excluded
-    double pitch_inertia_kg_m2 = 0;   ///< about +y through its centre of mass, > 0
+    double mass_kg = 0;              ///< > 0, rotors and battery included, arm excluded
+    double pitch_inertia_kg_m2 = 0;  ///< about +y through its centre of mass, > 0
 };
 
 /// The arm B with its end effector, one rigid body that turns about a joint fixed to the multirotor (thesis C.1).
 struct ArmParameters {
-    double joint_x_m = 0;             ///< joint in the body frame, from the multirotor's centre of mass
+    double joint_x_m = 0;  ///< joint in the body frame, from the multirotor's centre of mass
     double joint_z_m = 0;
-    double length_m = 0;              ///< joint to end effector, > 0
-    double mass_kg = 0;               ///< > 0
-    double center_of_mass_m = 0;      ///< distance of its centre of mass from the joint, in [0, length]
-    double inertia_kg_m2 = 0;         ///< about its own centre of mass, > 0
-    double radius_m = 0;              ///< of the capsule that encloses it, > 0
-    bool is_limited = false;          ///< without limits the arm turns through 360 degrees
-    double lower_limit_rad = 0;       ///< of the angle relative to the multirotor, when limited
+    double length_m = 0;          ///< joint to end effector, > 0
+    double mass_kg = 0;           ///< > 0
+    double center_of_mass_m = 0;  ///< distance of its centre of mass from the joint, in [0, length]
+    double inertia_kg_m2 = 0;     ///< about its own centre of mass, > 0
+    double radius_m = 0;          ///< of the capsule that encloses it, > 0
+    bool is_limited = false;      ///< without limits the arm turns through 360 degrees
+    double lower_limit_rad = 0;   ///< of the angle relative to the multirotor, when limited
     double upper_limit_rad = 0;
-    double max_torque_nm = 0;         ///< of the joint, > 0
+    double max_torque_nm = 0;  ///< of the joint, > 0
 };
 
 /// Rotors that spin in the body's b1-b2 plane. A command is the free-air thrust of one rotor (a PWM level).
 struct RotorParameters {
-    double radius_m = 0;                     ///< > 0
-    std::vector<Vector3> positions_m;        ///< hub positions in the body frame, 2 to max_rotors of them
-    double min_thrust_n = 0;                 ///< least command, >= 0
-    double max_thrust_n = 0;                 ///< greatest command, > min
-    double time_constant_s = 0;              ///< of the first-order thrust lag; 0 switches the lag off
-    double power_coefficient_w_n1p5 = 0;     ///< P = coefficient * thrust^1.5 (thesis 4.2, 4.4), > 0
+    double radius_m = 0;                  ///< > 0
+    std::vector<Vector3> positions_m;     ///< hub positions in the body frame, 2 to max_rotors of them
+    double min_thrust_n = 0;              ///< least command, >= 0
+    double max_thrust_n = 0;              ///< greatest command, > min
+    double time_constant_s = 0;           ///< of the first-order thrust lag; 0 switches the lag off
+    double power_coefficient_w_n1p5 = 0;  ///< P = coefficient * thrust^1.5 (thesis 4.2, 4.4), > 0
 };
 
 }  // namespace downwash

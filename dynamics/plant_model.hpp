@@ -16,16 +16,16 @@ struct PlantModel {
     double pitch_inertia_kg_m2;  ///< IA
     double arm_inertia_kg_m2;    ///< IB
     double joint_x_m, joint_z_m;
-    double arm_center_of_mass_m; ///< lB
-    double arm_length_m;         ///< L
+    double arm_center_of_mass_m;  ///< lB
+    double arm_length_m;          ///< L
     double max_joint_torque_nm;
 
     int rotor_count;
     double rotor_x_m[max_rotors], rotor_z_m[max_rotors];
-    double force_share[max_rotors];          ///< thrust of rotor i per newton of F3
-    double torque_share_1_m[max_rotors];     ///< thrust of rotor i per newton metre of T2
+    double force_share[max_rotors];       ///< thrust of rotor i per newton of F3
+    double torque_share_1_m[max_rotors];  ///< thrust of rotor i per newton metre of T2
     double min_thrust_n, max_thrust_n;
-    double rotor_time_constant_s;            ///< 0: thrust follows the command at once
+    double rotor_time_constant_s;  ///< 0: thrust follows the command at once
     double power_coefficient_w_n1p5;
 };
 

@@ -106,8 +106,8 @@ void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
 template <class T>
 T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T u[4]) {
     const T translation = T(model.total_mass_kg) * (u[0] * u[0] + u[1] * u[1]);
-    const T coupling = T(model.arm_mass_kg) * (u[0] * (e.pitch_x * u[2] + e.arm_x * u[3]) +
-                                               u[1] * (e.pitch_z * u[2] + e.arm_z * u[3]));
+    const T coupling = T(model.arm_mass_kg) *
+                       (u[0] * (e.pitch_x * u[2] + e.arm_x * u[3]) + u[1] * (e.pitch_z * u[2] + e.arm_z * u[3]));
     const T rotation = e.m55 * u[2] * u[2] + T(2) * e.m57 * u[2] * u[3] + e.m77 * u[3] * u[3];
     return T(0.5) * (translation + rotation) + coupling;
 }
@@ -116,8 +116,7 @@ T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T
 template <class T>
 T potential_energy(const PlantModel& model, const Attitude<T>& a, T z_m) {
     const T arm_height = z_m + a.joint_z + T(model.arm_center_of_mass_m) * a.arm_z;
-    return T(standard_gravity_m_s2) *
-           (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
+    return T(standard_gravity_m_s2) * (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
 }
 
 /// A point of the plane [m].

@@ -41,24 +41,24 @@ struct Start {
 struct MotionLimits {
     double max_speed_m_s = 1.0;
     double max_acceleration_m_s2 = 0.5;
-    double max_arm_rate_rad_s = 0.7853981633974483;          ///< 45 degrees per second
-    double max_arm_acceleration_rad_s2 = 1.5707963267948966; ///< 90 degrees per second squared
+    double max_arm_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second
+    double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
 };
 
 /// How to search.
 struct PlannerSettings {
     Variant variant = Variant::mp_arm_ada;
-    std::string algorithm = "rrt-star";            ///< one of the names that algorithms() lists
+    std::string algorithm = "rrt-star";  ///< one of the names that algorithms() lists
     Objective objective = Objective::energy;
-    double time_limit_s = 10;                      ///< wall time of the search, > 0
-    std::optional<std::uint64_t> max_iterations;   ///< set it for a run that is repeatable bit for bit
+    double time_limit_s = 10;                     ///< wall time of the search, > 0
+    std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
     std::uint32_t seed = 1;
-    double safety_margin_m = 0.05;                 ///< least clearance while planning, >= 0
+    double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.
 struct Problem {
-    std::string name = "problem";     ///< [A-Za-z0-9_-]{1,64}
+    std::string name = "problem";  ///< [A-Za-z0-9_-]{1,64}
     std::string description;
     Robot robot;
     PlaneOfMotion plane;

@@ -17,7 +17,7 @@ using FlightState = simulation::State<double>;
 
 /// A robot in its world: everything that a flight needs and never changes. Safe to share between threads.
 class DOWNWASH_EXPORT FlightModel {
-   public:
+ public:
     /// @pre robot_faults(robot) is empty
     FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::shared_ptr<const Scene> scene,
                 const AeroSettings& aero);
@@ -38,7 +38,7 @@ class DOWNWASH_EXPORT FlightModel {
     /// The vehicle at q = (x, z, pitch, arm) [m, m, rad, rad] with speeds u, controller rested, no energy spent.
     [[nodiscard]] FlightState state_at(const double q[4], const double u[4]) const noexcept;
 
-   private:
+ private:
     Robot robot_;
     PlaneOfMotion plane_;
     simulation::TickModel tick_;

@@ -16,23 +16,23 @@ struct Bounds {
 /// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
 struct EndEffectorGoal {
     double x_m = 0, z_m = 0;
-    double tolerance_m = 0.1;                 ///< Euclidean distance, > 0
-    std::optional<double> direction_rad;      ///< of the arm in the world, a = pitch + arm
+    double tolerance_m = 0.1;                              ///< Euclidean distance, > 0
+    std::optional<double> direction_rad;                   ///< of the arm in the world, a = pitch + arm
     double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
 };
 
 /// A configuration of vehicle and arm; an empty coordinate is free.
 struct ConfigurationGoal {
     std::optional<double> x_m, z_m, arm_rad;
-    double tolerance_m = 0.1;                              ///< Euclidean distance over the given coordinates, > 0
-    double tolerance_rad = 0.08726646259971647;            ///< of the arm, modulo a turn; 5 degrees
+    double tolerance_m = 0.1;                    ///< Euclidean distance over the given coordinates, > 0
+    double tolerance_rad = 0.08726646259971647;  ///< of the arm, modulo a turn; 5 degrees
 };
 
 /// Where the flight must end and stay. Exactly one of the two kinds is set.
 struct Goal {
     std::optional<EndEffectorGoal> end_effector;
     std::optional<ConfigurationGoal> configuration;
-    double hold_s = 5;                        ///< the last reference point is held for so long, >= 1
+    double hold_s = 5;  ///< the last reference point is held for so long, >= 1
 };
 
 /// How far a vehicle is from a goal.

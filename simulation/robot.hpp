@@ -23,9 +23,7 @@ struct Robot {
     /// Total mass [kg].
     [[nodiscard]] double mass_kg() const noexcept { return multirotor.mass_kg + arm.mass_kg; }
     /// What of it can touch an obstacle.
-    [[nodiscard]] RobotShape shape() const {
-        return {body, arm.joint_x_m, arm.joint_z_m, arm.length_m, arm.radius_m};
-    }
+    [[nodiscard]] RobotShape shape() const { return {body, arm.joint_x_m, arm.joint_z_m, arm.length_m, arm.radius_m}; }
 };
 
 /// What makes a robot impossible to fly: numbers out of range, a rotor layout of lower rank, rotors that cannot lift

@@ -1,0 +1,196 @@
+#include "downwash/simulation/execution.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "downwash/simulation/flight_loop.hpp"
+
+namespace downwash {
+namespace {
+
+using simulation::TickRecord;
+
+constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
+
+Outcome outcome_of(FlightFault fault) {
+    switch (fault) {
+        case FlightFault::collision:
+            return Outcome::collision;
+        case FlightFault::flyable_area:
+            return Outcome::left_flyable_area;
+        case FlightFault::none:
+            return Outcome::ok;
+        default:
+            return Outcome::unstable;
+    }
+}
+
+/// Writes the log of one flight while it is flown.
+template <class Factor>
+class Recorder {
+ public:
+    Recorder(const FlightModel& model, const Factor& factor, Execution& execution)
+        : model_(model), plant_(model.tick().plant), factor_(factor), execution_(execution) {}
+
+    void add_row(const FlightState& state, const ReferencePoint& reference, const TickRecord<double>& record) {
+        FlightRow row;
+        row.t_s = static_cast<double>(tick_++) * model_.tick().tick_s;
+        row.reference = reference;
+        std::copy(std::begin(state.plant.q), std::end(state.plant.q), row.q);
+        std::copy(std::begin(state.plant.u), std::end(state.plant.u), row.u);
+        const auto attitude = dynamics::attitude(plant_, row.q[2], row.q[3]);
+        const bool has_lag = plant_.rotor_time_constant_s > 0;
+        const double* thrust_n = has_lag ? state.plant.thrust_n : record.command.thrust_n;
+        for (int i = 0; i < plant_.rotor_count; ++i) {
+            const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
+            row.rotor_command_n[i] = record.command.thrust_n[i];
+            row.rotor_lag_n[i] = state.plant.thrust_n[i];
+            row.rotor_factor[i] = factor_(i, hub.x, hub.z);
+            row.thrust_command_n += row.rotor_command_n[i];
+            row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
+            row.thrust_n += row.rotor_factor[i] * thrust_n[i];
+            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * thrust_n[i];
+        }
+        row.arm_torque_nm = record.command.joint_torque_nm;
+        row.clearance_m = clearance_m_;
+        const auto tip = dynamics::end_effector_position(plant_, attitude, row.q[0], row.q[1]);
+        row.end_effector_x_m = tip.x;
+        row.end_effector_z_m = tip.z;
+        row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
+        row.energy_j = state.plant.energy_j;
+        execution_.rows.push_back(row);
+        execution_.max_saturation = std::max(execution_.max_saturation, record.saturation);
+    }
+
+    /// Looks at a new state: what it means for the flight, and for the figures of the whole.
+    FlightFault judge(const FlightState& state, const ReferencePoint& reference) {
+        clearance_m_ = model_.collisions().clearance_m(pose_of(state));
+        execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
+        execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
+        if (!is_stable(state, reference)) {
+            return FlightFault::unstable;
+        }
+        if (clearance_m_ <= 0) {
+            return FlightFault::collision;
+        }
+        if (execution_.aero && !is_flyable(state)) {
+            return FlightFault::flyable_area;
+        }
+        return FlightFault::none;
+    }
+
+    FlightFault after_tick(const FlightState& before, const ReferencePoint& reference, const TickRecord<double>& record,
+                           const FlightState& next, const ReferencePoint& next_reference) {
+        add_row(before, reference, record);
+        execution_.length_m += simulation::step_length_m(model_, before, next);
+        const FlightFault fault = judge(next, next_reference);
+        execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
+        return fault;
+    }
+
+ private:
+    [[nodiscard]] bool is_flyable(const FlightState& state) const {
+        return simulation::all_rotors(model_, state, [&](int rotor, double x_m, double z_m) {
+            return model_.direct().is_flyable(model_.plane().to_world(x_m, model_.rotor_lateral_m(rotor), z_m));
+        });
+    }
+
+    const FlightModel& model_;
+    const PlantModel& plant_;
+    const Factor& factor_;
+    Execution& execution_;
+    std::int64_t tick_ = 0;
+    double clearance_m_ = std::numeric_limits<double>::infinity();
+};
+
+std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot>& knots, std::int64_t hold,
+                                                 double tick_s) {
+    std::vector<ReferenceSegment> segments;
+    for (std::size_t i = 1; i < knots.size(); ++i) {
+        segments.emplace_back(knots[i - 1].point, knots[i].point, knots[i].tick - knots[i - 1].tick, tick_s);
+    }
+    segments.emplace_back(knots.back().point, knots.back().point, hold, tick_s);
+    return segments;
+}
+
+/// Worst goal error over the rows of the settling time, and whether the goal was met in each.
+void judge_goal(const FlightModel& model, const Goal& goal, Execution& execution) {
+    const PlantModel& plant = model.tick().plant;
+    const auto settling = static_cast<std::size_t>(std::llround(goal_settling_s / model.tick().tick_s));
+    const std::size_t count = execution.outcome == Outcome::ok ? std::min(settling + 1, execution.rows.size()) : 1;
+    for (std::size_t i = execution.rows.size() - count; i < execution.rows.size(); ++i) {
+        const FlightRow& row = execution.rows[i];
+        const GoalError error = goal_error(goal, plant, row.q);
+        execution.goal_error_m = std::max(execution.goal_error_m, error.distance_m);
+        const bool is_slow = std::sqrt(row.u[0] * row.u[0] + row.u[1] * row.u[1]) < goal_max_speed_m_s;
+        if (execution.outcome == Outcome::ok && !(is_met(goal, error) && is_slow)) {
+            execution.outcome = Outcome::goal_missed;
+        }
+    }
+}
+
+template <class Factor>
+Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
+                       const Goal& goal, bool aero, const Factor& factor) {
+    Execution execution;
+    execution.aero = aero;
+    execution.rotor_count = model.tick().plant.rotor_count;
+    execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
+    execution.min_clearance_m = std::numeric_limits<double>::infinity();
+
+    Recorder<Factor> recorder(model, factor, execution);
+    FlightState state = start;
+    ReferencePoint reference = knots.front().point;
+    FlightFault fault = recorder.judge(state, reference);
+    for (const ReferenceSegment& segment :
+         segments_with_hold(knots, hold_ticks(goal, model.tick().tick_s), model.tick().tick_s)) {
+        if (fault != FlightFault::none) {
+            break;
+        }
+        fault = simulation::fly_ticks(
+            model.tick(), segment, factor, state,
+            [&](const FlightState& before, const ReferencePoint& at, const TickRecord<double>& record,
+                const FlightState& next, const ReferencePoint& next_reference) {
+                reference = next_reference;
+                return recorder.after_tick(before, at, record, next, next_reference);
+            });
+    }
+    TickRecord<double> record{};
+    static_cast<void>(simulation::control(model.tick(), state, simulation::setpoint(reference), record));
+    recorder.add_row(state, reference, record);
+
+    execution.outcome = outcome_of(fault);
+    execution.energy_j = execution.rows.back().energy_j;
+    execution.duration_s = execution.rows.back().t_s;
+    judge_goal(model, goal, execution);
+    return execution;
+}
+
+}  // namespace
+
+std::string_view name_of(Outcome outcome) {
+    return outcome_names[static_cast<std::size_t>(outcome)];
+}
+
+std::int64_t hold_ticks(const Goal& goal, double tick_s) {
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(goal.hold_s / tick_s - 1e-9)));
+}
+
+bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state) {
+    const double* u = state.plant.u;
+    return is_met(goal, goal_error(goal, plant, state.plant.q)) &&
+           std::sqrt(u[0] * u[0] + u[1] * u[1]) < goal_max_speed_m_s;
+}
+
+Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
+                  const Goal& goal, bool aero) {
+    assert(!knots.empty() && knots.front().tick == 0);
+    if (aero && model.direct().settings().enabled) {
+        return execute_with(model, start, knots, goal, true, simulation::DirectFactor{model});
+    }
+    return execute_with(model, start, knots, goal, false, simulation::NoEffect{});
+}
+
+}  // namespace downwash

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/reference_segment.hpp"
+#include "downwash/simulation/flight.hpp"
+#include "downwash/simulation/goal.hpp"
+
+namespace downwash {
+
+/// How an executed plan ended.
+enum class Outcome : std::uint8_t { ok, collision, unstable, left_flyable_area, goal_missed };
+
+/// The outcome's name in files, for example "left_flyable_area".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome);
+
+/// The vehicle at one control tick and the commands it holds until the next; SI units, plane coordinates.
+struct FlightRow {
+    double t_s = 0;
+    ReferencePoint reference;
+    double q[4] = {};                         ///< x, z, pitch, arm
+    double u[4] = {};                         ///< their rates
+    double rotor_command_n[max_rotors] = {};  ///< free-air thrust, after clipping
+    double rotor_factor[max_rotors] = {};     ///< surface effect K at t_s
+    double rotor_lag_n[max_rotors] = {};      ///< thrust that the lag has reached; meaningful with rotor lag only
+    double thrust_command_n = 0;              ///< sum of the rotor commands
+    double pitch_torque_command_nm = 0;       ///< -sum x_i T_i of the rotor commands
+    double arm_torque_nm = 0;
+    double thrust_n = 0;  ///< in aerodynamic effect, at t_s
+    double pitch_torque_nm = 0;
+    double clearance_m = 0;  ///< infinity without obstacles
+    double end_effector_x_m = 0;
+    double end_effector_z_m = 0;
+    double power_w = 0;
+    double energy_j = 0;  ///< spent since the start
+};
+
+/// A plan flown from start to the end of the hold.
+struct Execution {
+    bool aero = true;  ///< whether surfaces acted on the rotors
+    Outcome outcome = Outcome::ok;
+    double min_clearance_m = 0;  ///< infinity without obstacles
+    double energy_j = 0;
+    double duration_s = 0;
+    double length_m = 0;            ///< see SegmentFlight
+    double clearance_integral = 0;  ///< see SegmentFlight
+    double max_tracking_error_m = 0;
+    double max_saturation = 0;  ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;    ///< worst over the last second of the hold; where the flight ended, if earlier
+    int rotor_count = 0;
+    bool has_rotor_lag = false;
+    std::vector<FlightRow> rows;  ///< one per control tick, the last one at the end of the flight
+};
+
+/// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.
+/// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
+/// @param aero false flies as if there were no surface effects (and no flyable area)
+[[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
+                                                const std::vector<ReferenceKnot>& knots, const Goal& goal, bool aero);
+
+/// Control ticks of a hold.
+[[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const Goal& goal, double tick_s);
+
+/// Whether a vehicle meets the goal at this instant: within tolerance and slow enough.
+[[nodiscard]] DOWNWASH_EXPORT bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state);
+
+}  // namespace downwash

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/reference_segment.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash {
+
+/// Why a flight was refused or ended early.
+enum class FlightFault : std::uint8_t {
+    none,
+    collision,     ///< nearer to an obstacle than allowed
+    flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (model 4.4)
+    saturation,    ///< a rotor or the joint was asked for more than it has
+    tracking,      ///< the vehicle or the arm strayed too far from its reference
+    unstable,      ///< tumbling, or numbers that are not finite
+    bounds,        ///< the centre of mass left the bounds, or the arm its limits
+};
+
+/// Beyond this pitch a multirotor is lost, whatever its controller does next [rad] (80 degrees).
+inline constexpr double unstable_pitch_rad = 1.3962634015954636;
+/// Farther than this from its reference a flight has nothing to do with its plan any more [m].
+inline constexpr double unstable_error_m = 3.0;
+
+/// What refuses a flight while planning.
+struct FlightRules {
+    double margin_m = 0.05;             ///< least clearance
+    Bounds bounds;                      ///< of the centre of mass
+    double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
+    double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
+    bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
+};
+
+/// What a flight along one segment came to.
+struct SegmentFlight {
+    FlightFault fault = FlightFault::none;
+    std::int64_t ticks = 0;         ///< flown, the refused one included
+    double length_m = 0;            ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2), w = half the arm's length
+    double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
+};
+
+/// Flies one reference segment in closed loop and refuses it at the first tick that breaks a rule.
+/// @param map surface effects while planning; nullptr flies as if there were none and knows no flyable area
+/// @param state vehicle at the beginning, replaced by the vehicle at the end (or where the flight was refused)
+[[nodiscard]] DOWNWASH_EXPORT SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
+                                                const ReferenceSegment& segment, FlightState& state);
+
+/// Distance of the vehicle from its reference in (x, z) [m].
+[[nodiscard]] DOWNWASH_EXPORT double tracking_error_m(const FlightState& state, const ReferencePoint& reference);
+
+/// Whether the numbers are finite and the vehicle neither tumbles nor runs away from its reference.
+[[nodiscard]] DOWNWASH_EXPORT bool is_stable(const FlightState& state, const ReferencePoint& reference);
+
+}  // namespace downwash
