@@ -2,23 +2,24 @@
 
 // What scene/ knows about the placed obstacles beyond the public header. Private: not installed.
 
+#include <string>
 #include <vector>
 
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/convex.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {
 
-/// How an obstacle stands in the world frame N.
-struct Placement {
-    Matrix3 rotation{};    ///< local frame to N: Rz(yaw) Ry(pitch) Rx(roll); its columns are the local axes in N
-    Vector3 axis_world{};  ///< unit axis in N of a cylinder; the local z axis of other shapes
-};
-
-/// Three lists of equal length, one entry per obstacle. Plain data: the checkers build what their library needs.
+/// Four lists of equal length, one entry per obstacle, in the world frame N.
 struct Scene::Solids {
     std::vector<Obstacle> obstacles;
-    std::vector<Placement> placements;
+    std::vector<Placement> placements;  ///< rotation = Rz(yaw) Ry(pitch) Rx(roll)
+    std::vector<Convex> convexes;
     std::vector<Bounds> bounds;  ///< tight
 };
+
+/// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
+void inspect(const Shape& shape, const std::string& key, std::vector<Fault>& faults);
 
 }  // namespace downwash

@@ -1,0 +1,64 @@
+#pragma once
+
+// Convex solids as sums of simple parts, and the distance between two of them. Private: not installed.
+
+#include <array>
+
+#include "downwash/scene/scene.hpp"
+
+namespace downwash {
+
+/// How a solid's own frame is turned in the frame it is placed in.
+struct Placement {
+    Matrix3 rotation{};    ///< own frame to the outer one; its columns are the own axes seen from outside
+    Vector3 axis_world{};  ///< unit axis of a cylinder seen from outside; the own z axis of other shapes
+};
+
+/// All points center + (segments: sum of s_i half_axes[i], |s_i| <= 1) + (a point of the disc) + (a point of the ball).
+/// A box is three segments, a cylinder one segment and a disc, a capsule one segment and a ball, a sphere a ball.
+/// Every vector is in one frame, which the owner names.
+struct Convex {
+    Vector3 center_m{};
+    int segment_count = 0;
+    std::array<Vector3, 3> half_axes_m{};
+    Vector3 disc_normal{0, 0, 1};  ///< unit vector
+    double disc_radius_m = 0;
+    double ball_radius_m = 0;
+};
+
+Placement placement_of(const Shape& shape, const Matrix3& rotation) noexcept;
+
+/// The solid `shape` with its own frame placed at `center_m` in the frame of `placement`.
+Convex convex_of(const Shape& shape, const Vector3& center_m, const Placement& placement);
+
+/// Half the extents along the axes of the frame [m]: the tight bounding box is center +- these.
+Vector3 half_extents_m(const Convex& convex) noexcept;
+
+inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
+    const Vector3 half = half_extents_m(convex);
+    const Vector3& c = convex.center_m;
+    return {{c[0] - half[0], c[1] - half[1], c[2] - half[2]}, {c[0] + half[0], c[1] + half[1], c[2] + half[2]}};
+}
+
+/// Distance between two solids [m] to 1e-9, never above the truth but for rounding; <= 0 on contact (not a depth).
+/// Once the distance is certain to be at least `enough_m`, any certain lower bound of that size may be returned.
+double distance_m(const Convex& a, const Convex& b, double enough_m) noexcept;
+
+/// True when the distance is below `margin_m` (>= 0) or the solids touch; a distance within 1e-9 m of it may count as
+/// below. Sooner than the distance itself.
+bool is_nearer_than(const Convex& a, const Convex& b, double margin_m) noexcept;
+
+/// The largest of the gaps between two bounding boxes along the three axes [m], a lower bound of the distance between
+/// what they hold; negative when they overlap.
+inline double gap_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
+    double gap = a.low_m[0] - b.high_m[0];
+    const auto widen = [&gap](double other) { gap = other > gap ? other : gap; };
+    widen(b.low_m[0] - a.high_m[0]);
+    widen(a.low_m[1] - b.high_m[1]);
+    widen(b.low_m[1] - a.high_m[1]);
+    widen(a.low_m[2] - b.high_m[2]);
+    widen(b.low_m[2] - a.high_m[2]);
+    return gap;
+}
+
+}  // namespace downwash
