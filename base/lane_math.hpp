@@ -123,8 +123,11 @@ T power_three_halves(T x) {
 template <class T>
 T wrap_angle(T x) {
     const T turn(6.28318530717958647692);
+    const T half_turn(3.14159265358979323846);
     const T r = x - turn * round_to_integer(x / turn);
-    return select(r > T(-3.14159265358979323846), r, r + turn);
+    // The quotient is rounded, so that r may lie outside by its rounding on either side.
+    const T lowered = select(r > half_turn, r - turn, r);
+    return select(lowered > -half_turn, lowered, lowered + turn);
 }
 
 }  // namespace downwash::lane

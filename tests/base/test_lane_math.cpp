@@ -1,0 +1,231 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "../support/random.hpp"
+#include "downwash/base/lane_math.hpp"
+
+// The functions are compared with the C library's in long double, which has eleven more bits.
+
+namespace {
+
+using downwash::test::Random;
+namespace lane = downwash::lane;
+
+constexpr long double pi = 3.14159265358979323846264338327950288L;
+
+/// Distance from the exact value in units of its last place.
+double ulps(double value, long double exact) {
+    if (static_cast<long double>(value) == exact) {
+        return 0;
+    }
+    const double size = std::abs(static_cast<double>(exact));
+    const double ulp = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+    return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / static_cast<long double>(ulp));
+}
+
+/// The worst of many samples and where it was.
+struct Worst {
+    double error_ulp = 0;
+    double at = 0;
+    void add(double ulp, double x) {
+        if (!(ulp <= error_ulp)) {
+            error_ulp = ulp;
+            at = x;
+        }
+    }
+};
+
+void add_sin_cos(Worst& worst, double x) {
+    double sine = 0;
+    double cosine = 0;
+    lane::sin_cos(x, sine, cosine);
+    worst.add(ulps(sine, std::sin(static_cast<long double>(x))), x);
+    worst.add(ulps(cosine, std::cos(static_cast<long double>(x))), x);
+}
+
+struct WorstAngle {
+    double error_ulp = 0;
+    double y = 0;
+    double x = 0;
+    void add(double at_y, double at_x) {
+        const double error =
+            ulps(lane::atan2(at_y, at_x), std::atan2(static_cast<long double>(at_y), static_cast<long double>(at_x)));
+        if (!(error <= error_ulp)) {
+            error_ulp = error;
+            y = at_y;
+            x = at_x;
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("Sine and cosine stay within 2 ulp over a few turns") {
+    Random random(1);
+    Worst worst;
+    for (int i = 0; i < 2'000'000; ++i) {
+        add_sin_cos(worst, random.uniform(-20, 20));
+    }
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+}
+
+TEST_CASE("Sine and cosine stay within 2 ulp for huge and tiny arguments") {
+    Random random(2);
+    Worst worst;
+    for (int i = 0; i < 1'000'000; ++i) {
+        add_sin_cos(worst, random.uniform(-1e5, 1e5));
+        add_sin_cos(worst, random.magnitude(-300, 5));
+    }
+    add_sin_cos(worst, 1e5);
+    add_sin_cos(worst, -1e5);
+    add_sin_cos(worst, 0);
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+}
+
+TEST_CASE("Sine and cosine stay within 2 ulp at and beside every multiple of an eighth of a turn") {
+    Worst worst;
+    constexpr int most = 127'323;  // times pi/4 is just below 1e5
+    for (int k = -most; k <= most; ++k) {
+        const double x = static_cast<double>(static_cast<long double>(k) * pi / 4);
+        add_sin_cos(worst, x);
+        add_sin_cos(worst, std::nextafter(x, 1e6));
+        add_sin_cos(worst, std::nextafter(x, -1e6));
+        add_sin_cos(worst, x * (1 + 1e-12));
+        add_sin_cos(worst, x + 1e-7);
+    }
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+}
+
+TEST_CASE("Sine is odd and cosine even to the last bit") {
+    Random random(3);
+    int odd = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const double x = random.uniform(0, 1000);
+        double s1 = 0;
+        double c1 = 0;
+        double s2 = 0;
+        double c2 = 0;
+        lane::sin_cos(x, s1, c1);
+        lane::sin_cos(-x, s2, c2);
+        odd += s1 == -s2 && c1 == c2 ? 0 : 1;
+    }
+    CHECK(odd == 0);
+}
+
+TEST_CASE("The angle of a vector stays within 2 ulp in all directions and sizes") {
+    Random random(4);
+    WorstAngle worst;
+    for (int i = 0; i < 1'000'000; ++i) {
+        worst.add(random.uniform(-3, 3), random.uniform(-3, 3));
+        worst.add(random.magnitude(-100, 100), random.magnitude(-100, 100));
+        const double x = random.magnitude(-3, 3);
+        worst.add(x * random.uniform(0.499, 0.501), x);  // where the argument is reduced
+        worst.add(x * random.uniform(0.999, 1.001), x);  // where the axes change places
+        worst.add(x * random.magnitude(-18, 0), x);
+        worst.add(x, x * random.magnitude(-18, 0));
+    }
+    CAPTURE(worst.y, worst.x);
+    CHECK(worst.error_ulp <= 2);
+}
+
+TEST_CASE("The angle of a vector on an axis or a diagonal has the sign of its quadrant") {
+    const double half_pi = std::acos(0.0);
+    CHECK(lane::atan2(0.0, 2.0) == 0);
+    CHECK(lane::atan2(3.0, 0.0) == half_pi);
+    CHECK(lane::atan2(-3.0, 0.0) == -half_pi);
+    CHECK(lane::atan2(0.0, -2.0) == 2 * half_pi);
+    CHECK(lane::atan2(-0.0, -2.0) == 2 * half_pi);  // (-pi, pi]: one name for this direction
+    CHECK(lane::atan2(1.0, 1.0) == half_pi / 2);
+    CHECK(lane::atan2(-1.0, 1.0) == -half_pi / 2);
+    CHECK(ulps(lane::atan2(1.0, -1.0), 0.75L * pi) <= 1);
+    CHECK(ulps(lane::atan2(-1.0, -1.0), -0.75L * pi) <= 1);
+    CHECK(lane::atan2(-1e-30, -1.0) == -2 * half_pi);
+}
+
+TEST_CASE("The zero vector has the angle zero") {
+    CHECK(lane::atan2(0.0, 0.0) == 0);
+    CHECK(lane::atan2(-0.0, 0.0) == 0);
+    CHECK(lane::atan2(0.0, -0.0) == 0);
+}
+
+TEST_CASE("Powers of three halves stay within 2 ulp") {
+    Random random(5);
+    Worst worst;
+    for (int i = 0; i < 1'000'000; ++i) {
+        for (const double x : {random.uniform(0, 30), std::abs(random.magnitude(-100, 100))}) {
+            const long double exact = static_cast<long double>(x) * std::sqrt(static_cast<long double>(x));
+            worst.add(ulps(lane::power_three_halves(x), exact), x);
+        }
+    }
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+    CHECK(lane::power_three_halves(0.0) == 0);
+    CHECK(lane::power_three_halves(4.0) == 8);
+}
+
+TEST_CASE("A wrapped angle lies in (-pi, pi] and differs by whole turns to the last place of the argument") {
+    Random random(6);
+    const double half_turn = std::acos(-1.0);
+    double outside = 0;
+    Worst worst;
+    const auto add = [&](double x) {
+        const double wrapped = lane::wrap_angle(x);
+        if (!(wrapped > -half_turn && wrapped <= half_turn)) {
+            outside = x;
+        }
+        // The argument's own last place bounds what can be known of the result.
+        const long double turns = (static_cast<long double>(x) - static_cast<long double>(wrapped)) / (2 * pi);
+        const long double error = std::abs(turns - std::round(turns)) * 2 * pi;
+        const double size = std::max(std::abs(x), half_turn);
+        worst.add(static_cast<double>(error) / (std::nextafter(size, 1e9) - size), x);
+    };
+    for (int i = 0; i < 1'000'000; ++i) {
+        add(random.uniform(-20, 20));
+        add(random.uniform(-1e5, 1e5));
+        add(random.magnitude(-300, 5));
+    }
+    constexpr int most = 31'830;  // odd multiples of pi below 1e5, where the wrap jumps
+    for (int k = -most; k < most; ++k) {
+        const double x = static_cast<double>(static_cast<long double>(k) * pi);
+        add(x);
+        add(std::nextafter(x, 1e6));
+        add(std::nextafter(x, -1e6));
+    }
+    CAPTURE(outside, worst.at);
+    CHECK(outside == 0);
+    CHECK(worst.error_ulp <= 2);
+    CHECK(lane::wrap_angle(half_turn) == half_turn);
+    CHECK(lane::wrap_angle(-half_turn) == half_turn);
+    CHECK(lane::wrap_angle(0.25) == 0.25);
+}
+
+TEST_CASE("Rounding gives the nearest integer with ties to even up to 2^51") {
+    Random random(7);
+    int wrong = 0;
+    for (int i = 0; i < 1'000'000; ++i) {
+        const double x = random.magnitude(-5, 15.3);
+        wrong += lane::round_to_integer(x) == std::nearbyint(x) ? 0 : 1;
+    }
+    CHECK(wrong == 0);
+    for (const double tie : {0.5, 1.5, 2.5, -0.5, -1.5, 1048576.5}) {
+        CHECK(lane::round_to_integer(tie) == std::nearbyint(tie));
+    }
+    const double limit = std::nextafter(0x1p51, 0);
+    CHECK(lane::round_to_integer(limit) == std::nearbyint(limit));
+    CHECK(lane::round_to_integer(-limit) == std::nearbyint(-limit));
+}
+
+TEST_CASE("Selections compare as their names say") {
+    CHECK(lane::abs(-2.0) == 2);
+    CHECK(lane::min(1.0, 2.0) == 1);
+    CHECK(lane::max(1.0, 2.0) == 2);
+    CHECK(lane::clamp(5.0, -1.0, 1.0) == 1);
+    CHECK(lane::clamp(-5.0, -1.0, 1.0) == -1);
+    CHECK(lane::clamp(0.5, -1.0, 1.0) == 0.5);
+    CHECK(lane::sqrt(2.0) == std::sqrt(2.0));
+}
