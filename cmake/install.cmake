@@ -41,5 +41,6 @@ install(FILES
 
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH DOWNWASH_PKGCONFIG_PREFIX /prefix/${pkgconfig_dir} /prefix)
+string(REGEX REPLACE "/$" "" DOWNWASH_PKGCONFIG_PREFIX ${DOWNWASH_PKGCONFIG_PREFIX})
 configure_file(cmake/downwash.pc.in ${PROJECT_BINARY_DIR}/cmake/downwash.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/downwash.pc DESTINATION ${pkgconfig_dir})

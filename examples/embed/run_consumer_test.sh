@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Installs a build of Downwash into a temporary prefix and uses it from outside: compiles every installed header alone,
+# builds and runs this example plainly and with -march=native, and calls the installed program.
+# Usage: examples/embed/run_consumer_test.sh [build folder, default: build]
+set -euo pipefail
+
+root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$(cd -P "${1:-$root/build}" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+prefix=$work/installed
+
+cmake --install "$build" --prefix "$prefix" >"$work/install.log" || {
+    cat "$work/install.log"
+    exit 1
+}
+
+echo "installed headers stand alone and show no library but the standard one"
+count=0
+while read -r header; do
+    echo "#include <${header#"$prefix/include/"}>" >"$work/header.cpp"
+    g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I "$prefix/include" -MD -MF "$work/header.d" "$work/header.cpp"
+    if grep -nE '/(eigen3|Eigen|ompl[^/]*|fcl|yaml-cpp|boost|nlohmann|spdlog|fmt)/' "$work/header.d"; then
+        echo "$header brings the header above into programs that use it"
+        exit 1
+    fi
+    count=$((count + 1))
+done < <(find "$prefix/include" -name '*.hpp' | LC_ALL=C sort)
+[[ $count -gt 0 ]] || {
+    echo "no header was installed"
+    exit 1
+}
+echo "    $count headers"
+
+problem=$prefix/share/downwash/problems/bridge_inspection.yaml
+for flags in '' '-march=native'; do
+    echo "the example, built with '${flags:-no flags of its own}'"
+    rm -rf "$work/embed"
+    {
+        cmake -S "$root/examples/embed" -B "$work/embed" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" \
+            -DCMAKE_PREFIX_PATH="$prefix" &&
+            cmake --build "$work/embed"
+    } >"$work/log" || {
+        cat "$work/log"
+        exit 1
+    }
+    "$work/embed/embed" "$problem"
+done
+
+if command -v pkg-config >/dev/null; then
+    echo "the example, built by way of pkg-config"
+    read -ra flags < <(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --cflags --libs downwash)
+    g++ -std=c++20 "$root/examples/embed/main.cpp" "${flags[@]}" -Wl,-rpath,"$prefix/lib" -o "$work/embed_pkg_config"
+    "$work/embed_pkg_config" "$problem"
+fi
+
+echo "the installed program"
+"$prefix/bin/downwash" --version
+"$prefix/bin/downwash" check "$problem"
