@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,17 +21,25 @@ enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
 /// K stored over rotor positions in the plane of motion, one layer per distinct lateral offset of a rotor.
 ///
-/// A layer is a regular grid of square cells of `grid_m`; every cell holds a small regular grid of its own, refined by
-/// powers of two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere
-/// in the flyable area (model 4.5). Immutable after construction.
+/// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
+/// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
+/// flyable area (model 4.5). A cell is `grid_m` wide, or the part of it that 128 steps of refinement can still resolve:
+/// the default ground model asks for at most 0.36 R. Values are kept as float (relative error 2^-24). Immutable after
+/// construction.
+///
+/// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.032 K over R / 6400
+/// (a max_factor above 3 with a min_distance_radii below 0.27) may exceed the 0.01 right at the surface.
 class DOWNWASH_EXPORT AeroMap {
-   public:
+ public:
     /// Builds every layer. The bytes do not depend on the number of threads.
     /// @param lateral_offsets_m distinct distances of rotors to the left of the plane
     /// @param threads at least 1
+    /// @throws InputError when the extent is empty or not finite, grid_m or an offset is out of range, or when the map
+    /// would have too many cells
     AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
             std::vector<double> lateral_offsets_m, int threads = 1);
 
+    /// As given. The cells may reach beyond its upper ends by less than one cell.
     [[nodiscard]] const MapExtent& extent() const noexcept { return extent_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const std::vector<double>& lateral_offsets_m() const noexcept { return lateral_offsets_m_; }
@@ -44,6 +51,8 @@ class DOWNWASH_EXPORT AeroMap {
     [[nodiscard]] double factor(std::size_t layer, double x_m, double z_m) const noexcept {
         const double u = (x_m - extent_.x_low_m) * cells_per_m_;
         const double w = (z_m - extent_.z_low_m) * cells_per_m_;
+        // Written so that NaN fails. Below, u - i is exact and less than 1, and so is its product with a power of two:
+        // no index can leave its cell.
         if (!(u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_))) {
             return factor_outside(layer, x_m, z_m);
         }
@@ -66,7 +75,7 @@ class DOWNWASH_EXPORT AeroMap {
     /// Whether a rotor hub there is inside the flyable area; exact (decided by the cell where the whole cell agrees).
     [[nodiscard]] bool is_flyable(std::size_t layer, double x_m, double z_m) const;
 
-   private:
+ private:
     struct Cell {
         std::uint32_t first_node;
         std::uint8_t steps_x;  ///< intervals along x, a power of two
@@ -79,11 +88,13 @@ class DOWNWASH_EXPORT AeroMap {
     };
 
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
+    void build(int threads);
 
     std::shared_ptr<const DirectEffect> effect_;
     PlaneOfMotion plane_;
     MapExtent extent_;
     std::vector<double> lateral_offsets_m_;
+    double cell_m_;  ///< side of a cell
     double cells_per_m_;
     std::size_t columns_;
     std::size_t rows_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
@@ -8,11 +9,14 @@
 
 namespace downwash {
 
+struct Footprint;
+
 /// The exact surface effect on one rotor at any point of the world: the reference that a map interpolates and that the
 /// flight of a reported plan is flown with. The disc is level and rays are vertical (model 4.1). Immutable.
 class DOWNWASH_EXPORT DirectEffect {
-   public:
+ public:
     /// @param rotor_radius_m R > 0
+    /// @throws InputError when a setting or the radius is out of its range
     DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m);
 
     /// The two one-sided factors and their superposition at a rotor hub.
@@ -22,24 +26,27 @@ class DOWNWASH_EXPORT DirectEffect {
         double total = 1;    ///< 1 + (ground - 1) + (ceiling - 1), capped at max_factor (model 4.2)
     };
 
-    /// Factors at the world position of a rotor hub. Defined everywhere, continuous; a point of the disc inside an
-    /// obstacle counts as touching it. Absolute quadrature error below 1e-3 for level surfaces.
+    /// Factors at the world position of a rotor hub; 1 for a position that is not finite. A point of the disc inside an
+    /// obstacle counts as touching it. Absolute quadrature error in the flyable area: below 1e-4 for level surfaces,
+    /// below 2e-3 for any.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
     /// K, the factor on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
-    /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4).
+    /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4). With the effects disabled
+    /// every finite position is flyable.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
 
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
     [[nodiscard]] const AeroSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] double rotor_radius_m() const noexcept { return radius_m_; }
 
-   private:
+ private:
     std::shared_ptr<const Scene> scene_;
     AeroSettings settings_;
     double radius_m_;
+    std::shared_ptr<const std::vector<Footprint>> footprints_;
 };
 
 }  // namespace downwash

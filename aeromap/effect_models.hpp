@@ -14,9 +14,9 @@ namespace downwash {
 /// What a person should know of a model before using it.
 struct EffectModelInfo {
     EffectModel model;
-    std::string_view name;         ///< as in a problem file, for example "cheeseman-bennett"
-    std::string_view source;       ///< where the formula comes from
-    std::string_view validity;     ///< range of z / R in which it was shown to hold
+    std::string_view name;      ///< as in a problem file, for example "cheeseman-bennett"
+    std::string_view source;    ///< where the formula comes from
+    std::string_view validity;  ///< range of z / R in which it was shown to hold
 };
 
 /// Every model there is, in the order of EffectModel.

@@ -1,0 +1,163 @@
+#include "downwash/aeromap/aero_map.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "downwash/aeromap/layer_builder.hpp"
+#include "downwash/base/fault.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double most_cells = 16777216;  // 2^24
+constexpr std::size_t rows_per_task = 8;
+
+bool is_range(double low, double high) {
+    return std::isfinite(low) && std::isfinite(high) && low < high;
+}
+
+void require_valid(double grid_m, const MapExtent& extent, const std::vector<double>& lateral_offsets_m) {
+    std::vector<Fault> faults;
+    if (!(std::isfinite(grid_m) && grid_m > 0)) {
+        faults.push_back({"aero.grid_m", "must be a finite length above 0 in metres"});
+    }
+    if (!is_range(extent.x_low_m, extent.x_high_m)) {
+        faults.push_back({"environment.bounds.x_m", "must be two finite numbers, the lower one first"});
+    }
+    if (!is_range(extent.z_low_m, extent.z_high_m)) {
+        faults.push_back({"environment.bounds.z_m", "must be two finite numbers, the lower one first"});
+    }
+    for (const double offset : lateral_offsets_m) {
+        if (!std::isfinite(offset)) {
+            faults.push_back({"robot.rotors.positions_m", "must be finite numbers in metres"});
+        }
+    }
+    if (!faults.empty()) {
+        throw InputError(std::move(faults));
+    }
+}
+
+/// An extent that is a whole number of cells stays so in spite of rounding.
+double cells_over(double length_m, double cells_per_m) {
+    return std::max(1.0, std::ceil(length_m * cells_per_m - 1e-9));
+}
+
+/// Does task 0, 1, ... count - 1 on some threads, in any order; rethrows what a task threw.
+template <class Task>
+void run_parallel(std::size_t count, int threads, const Task& task) {
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr failure;
+    std::mutex failure_mutex;
+    const auto work = [&] {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) {
+                task(i);
+            }
+        } catch (...) {
+            next = count;
+            const std::scoped_lock lock(failure_mutex);
+            failure = std::current_exception();
+        }
+    };
+    std::vector<std::jthread> helpers;
+    for (int t = 1; t < threads; ++t) {
+        helpers.emplace_back(work);
+    }
+    work();
+    helpers.clear();  // joins
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+}
+
+}  // namespace
+
+AeroMap::AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
+                 std::vector<double> lateral_offsets_m, int threads)
+    : effect_(std::move(effect)), plane_(plane), extent_(extent), lateral_offsets_m_(std::move(lateral_offsets_m)) {
+    const double grid_m = effect_->settings().grid_m;
+    require_valid(grid_m, extent_, lateral_offsets_m_);
+    const double parts = std::ceil(grid_m / longest_cell_side_m(effect_->settings(), effect_->rotor_radius_m()));
+    cell_m_ = grid_m / std::max(1.0, parts);
+    cells_per_m_ = 1 / cell_m_;
+    const double columns = cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_);
+    const double rows = cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_);
+    if (!(columns * rows * static_cast<double>(lateral_offsets_m_.size()) <= most_cells)) {
+        throw InputError(std::vector<Fault>{
+            {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
+    }
+    columns_ = static_cast<std::size_t>(columns);
+    rows_ = static_cast<std::size_t>(rows);
+    build(threads);
+}
+
+void AeroMap::build(int threads) {
+    std::vector<LayerGrid> grids;
+    for (const double lateral_m : lateral_offsets_m_) {
+        grids.push_back({*effect_, plane_, lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_, rows_});
+    }
+    const std::size_t tasks_per_layer = (rows_ + rows_per_task - 1) / rows_per_task;
+    std::vector<CellRows> parts(tasks_per_layer * grids.size());
+    run_parallel(parts.size(), threads, [&](std::size_t task) {
+        const std::size_t first = (task % tasks_per_layer) * rows_per_task;
+        parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min(first + rows_per_task, rows_));
+    });
+
+    layers_.resize(grids.size());
+    for (std::size_t task = 0; task < parts.size(); ++task) {
+        Layer& layer = layers_[task / tasks_per_layer];
+        std::size_t node = layer.nodes.size();
+        for (std::size_t c = 0; c < parts[task].steps.size(); ++c) {
+            const CellSteps steps = parts[task].steps[c];
+            layer.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z, parts[task].flyability[c]});
+            node += (steps.x + 1U) * (steps.z + 1U);
+        }
+        if (node > std::numeric_limits<std::uint32_t>::max()) {
+            throw InputError(
+                std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
+        }
+        layer.nodes.insert(layer.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
+        parts[task] = {};
+    }
+    for (Layer& layer : layers_) {
+        layer.cells.shrink_to_fit();
+        layer.nodes.shrink_to_fit();
+    }
+}
+
+std::size_t AeroMap::memory_bytes() const noexcept {
+    std::size_t bytes = sizeof(*this);
+    for (const Layer& layer : layers_) {
+        bytes += layer.cells.capacity() * sizeof(Cell) + layer.nodes.capacity() * sizeof(float);
+    }
+    return bytes;
+}
+
+double AeroMap::factor_outside(std::size_t layer, double x_m, double z_m) const noexcept {
+    if (!(std::isfinite(x_m) && std::isfinite(z_m))) {
+        return 1;
+    }
+    return effect_->factor(plane_.to_world(x_m, lateral_offsets_m_[layer], z_m));
+}
+
+bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
+    const double u = (x_m - extent_.x_low_m) * cells_per_m_;
+    const double w = (z_m - extent_.z_low_m) * cells_per_m_;
+    if (u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_)) {
+        const std::size_t cell = static_cast<std::size_t>(w) * columns_ + static_cast<std::size_t>(u);
+        const CellFlyability flyability = layers_[layer].cells[cell].flyability;
+        if (flyability != CellFlyability::mixed) {
+            return flyability == CellFlyability::flyable;
+        }
+    }
+    return effect_->is_flyable(plane_.to_world(x_m, lateral_offsets_m_[layer], z_m));
+}
+
+}  // namespace downwash

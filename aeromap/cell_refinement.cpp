@@ -1,0 +1,130 @@
+#include "downwash/aeromap/cell_refinement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace downwash {
+namespace {
+
+constexpr double allowed_error = 0.0065;
+/// Below this an interval is not looked into further: twice of it still leaves the other axis most of the allowance.
+constexpr double negligible_error = 0.0015;
+constexpr std::size_t levels = 8;  // 2^0 to 2^7 steps
+constexpr double quarters[] = {0, 0.25, 0.5, 0.75, 1};
+
+/// Largest error seen of linear interpolation with 2^level steps.
+using ErrorPerLevel = std::array<double, levels>;
+
+/// Five values a quarter apart.
+using Values = std::array<double, 5>;
+
+/// Deviation of the inner values from the straight line through the outer ones. A kink anywhere between the outer
+/// values deviates at one of the quarter points by at least 85 % of its largest deviation.
+double deviation(const Values& v) {
+    double largest = 0;
+    for (std::size_t i = 1; i < 4; ++i) {
+        largest = std::max(largest, std::abs(v[i] - (v[0] + quarters[i] * (v[4] - v[0]))));
+    }
+    return largest;
+}
+
+/// Finds the errors along one line by halving it where it is not straight.
+class LineProbe {
+ public:
+    /// @param value K along the line, from 0 to 1
+    /// @param is_forbidden whether a stretch of the line with this middle and half width does not matter
+    template <class Value, class IsForbidden>
+    static void run(const Values& v, Value&& value, IsForbidden&& is_forbidden, ErrorPerLevel& errors) {
+        descend(v, 0, 1, 0, value, is_forbidden, errors);
+    }
+
+ private:
+    template <class Value, class IsForbidden>
+    static void descend(const Values& v, double low, double high, std::size_t level, Value& value,
+                        IsForbidden& is_forbidden, ErrorPerLevel& errors) {
+        const double error = deviation(v);
+        const bool is_last = error <= negligible_error || level + 1 == levels;
+        if (error > negligible_error && is_forbidden(0.5 * (low + high), 0.5 * (high - low))) {
+            return;
+        }
+        for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
+            errors[finer] = std::max(errors[finer], error);
+        }
+        if (is_last) {
+            return;
+        }
+        const double width = high - low;
+        const double middle = low + 0.5 * width;
+        const auto at = [&](double eighths) { return value(low + 0.125 * eighths * width); };
+        descend({v[0], at(1), v[1], at(3), v[2]}, low, middle, level + 1, value, is_forbidden, errors);
+        descend({v[2], at(5), v[3], at(7), v[4]}, middle, high, level + 1, value, is_forbidden, errors);
+    }
+};
+
+/// The fewest nodes within the allowance; the least error when nothing is.
+CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
+    CellSteps best{128, 128};
+    double best_error = along_x[levels - 1] + along_z[levels - 1];
+    int best_nodes = 129 * 129;
+    for (std::size_t i = 0; i < levels; ++i) {
+        for (std::size_t k = 0; k < levels; ++k) {
+            const double error = along_x[i] + along_z[k];
+            const int nodes = ((1 << i) + 1) * ((1 << k) + 1);
+            const bool is_allowed = error <= allowed_error;
+            const bool was_allowed = best_error <= allowed_error;
+            const bool is_cheaper = nodes < best_nodes;
+            const bool is_better = is_allowed
+                                       ? (!was_allowed || is_cheaper)
+                                       : !was_allowed && (error < best_error || (error == best_error && is_cheaper));
+            if (is_better) {
+                best = {static_cast<std::uint8_t>(1 << i), static_cast<std::uint8_t>(1 << k)};
+                best_error = error;
+                best_nodes = nodes;
+            }
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+CellSteps steps_for(const CellSquare& cell, const CellField& field) {
+    const auto x_at = [&](double part) { return cell.x_low_m + part * cell.side_m; };
+    const auto z_at = [&](double part) { return cell.z_low_m + part * cell.side_m; };
+    std::array<Values, 5> grid;  // [z][x]
+    for (std::size_t k = 0; k < 5; ++k) {
+        for (std::size_t i = 0; i < 5; ++i) {
+            grid[k][i] = field.factor(x_at(quarters[i]), z_at(quarters[k]));
+        }
+    }
+    const auto is_forbidden = [&](double x, double z, double half) {
+        return field.is_forbidden_around && field.is_forbidden_around(x_at(x), z_at(z), half * cell.side_m);
+    };
+    ErrorPerLevel along_x{};
+    ErrorPerLevel along_z{};
+    for (std::size_t j = 0; j < 5; ++j) {
+        const double at = quarters[j];
+        LineProbe::run(
+            grid[j], [&](double x) { return field.factor(x_at(x), z_at(at)); },
+            [&](double x, double half) { return is_forbidden(x, at, half); }, along_x);
+        LineProbe::run(
+            {grid[0][j], grid[1][j], grid[2][j], grid[3][j], grid[4][j]},
+            [&](double z) { return field.factor(x_at(at), z_at(z)); },
+            [&](double z, double half) { return is_forbidden(at, z, half); }, along_z);
+    }
+    return cheapest(along_x, along_z);
+}
+
+void append_nodes(const CellSquare& cell, const CellSteps& steps, const CellField& field, std::vector<float>& nodes) {
+    for (int k = 0; k <= steps.z; ++k) {
+        for (int i = 0; i <= steps.x; ++i) {
+            const double x = cell.x_low_m + cell.side_m * i / steps.x;
+            const double z = cell.z_low_m + cell.side_m * k / steps.z;
+            nodes.push_back(static_cast<float>(field.factor(x, z)));
+        }
+    }
+}
+
+}  // namespace downwash

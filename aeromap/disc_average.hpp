@@ -1,0 +1,38 @@
+#pragma once
+
+// Private to aeromap.
+
+#include <limits>
+#include <span>
+
+#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/aeromap/footprint.hpp"
+
+namespace downwash {
+
+enum class Side { below, above };
+
+/// A rotor's level disc and what it asks of one side.
+struct DiscQuery {
+    const Scene& scene;
+    Vector3 hub_m;
+    double radius_m;
+    Side side;
+    const SurfaceEffect& effect;
+    double max_factor;
+
+    /// Distance from the rotor plane to a stretch of a vertical line: 0 when the plane cuts it, infinite when the
+    /// stretch lies on the other side.
+    [[nodiscard]] double gap(double low_m, double high_m) const noexcept {
+        const double near = side == Side::below ? hub_m[2] - high_m : low_m - hub_m[2];
+        const double far = side == Side::below ? hub_m[2] - low_m : high_m - hub_m[2];
+        return near > 0 ? near : (far >= 0 ? 0 : std::numeric_limits<double>::infinity());
+    }
+    /// The model's factor at that distance.
+    [[nodiscard]] double factor(double gap_m) const { return surface_factor(effect, gap_m / radius_m, max_factor); }
+};
+
+/// The average over the disc of k(z(p)), z(p) the distance from p to the first surface on the side asked for.
+[[nodiscard]] double disc_average(const DiscQuery& query, std::span<const Footprint> footprints);
+
+}  // namespace downwash

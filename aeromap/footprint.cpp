@@ -1,0 +1,61 @@
+#include "downwash/aeromap/footprint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace downwash {
+
+Footprint::Footprint(const Scene& scene, std::size_t which)
+    : obstacle(which),
+      bounds(scene.bounds(which)),
+      is_level(scene.is_level(which)),
+      outline(shadow_outline(scene, which)),
+      chord_x(1),
+      chord_y(0) {
+    const double center_x = 0.5 * (bounds.low_m[0] + bounds.high_m[0]);
+    const double center_y = 0.5 * (bounds.low_m[1] + bounds.high_m[1]);
+    double longest = 0;
+    for (const OutlineSegment& edge : outline.segments) {
+        const double dx = edge.bx - edge.ax;
+        const double dy = edge.by - edge.ay;
+        const double length = std::sqrt(dx * dx + dy * dy);
+        if (length > longest) {
+            longest = length;
+            chord_x = dx / length;
+            chord_y = dy / length;
+        }
+        if (is_level) {
+            HalfPlane side{dy / length, -dx / length, 0};
+            side.reach = side.nx * edge.ax + side.ny * edge.ay;
+            if (side.nx * center_x + side.ny * center_y > side.reach) {
+                side = {-side.nx, -side.ny, -side.reach};
+            }
+            sides_.push_back(side);
+        }
+    }
+    if (is_level && sides_.empty()) {
+        disc_radius_ = outline.ellipses.front().across_m;
+    }
+}
+
+bool Footprint::meets_column(double x, double y, double radius) const noexcept {
+    const double dx = std::max({bounds.low_m[0] - x, x - bounds.high_m[0], 0.0});
+    const double dy = std::max({bounds.low_m[1] - y, y - bounds.high_m[1], 0.0});
+    return dx * dx + dy * dy < radius * radius;
+}
+
+bool Footprint::covers_disc(double x, double y, double radius) const noexcept {
+    if (!sides_.empty()) {
+        return std::all_of(sides_.begin(), sides_.end(),
+                           [&](const HalfPlane& side) { return side.nx * x + side.ny * y + radius <= side.reach; });
+    }
+    const double room = disc_radius_ - radius;
+    if (!(room >= 0)) {
+        return false;
+    }
+    const double dx = x - outline.ellipses.front().x;
+    const double dy = y - outline.ellipses.front().y;
+    return dx * dx + dy * dy <= room * room;
+}
+
+}  // namespace downwash

@@ -1,0 +1,38 @@
+#pragma once
+
+// Private to aeromap.
+
+#include <cstddef>
+#include <vector>
+
+#include "downwash/scene/scene.hpp"
+#include "downwash/scene/shadow_outline.hpp"
+
+namespace downwash {
+
+/// One obstacle as rotors see it from above or below, prepared once per scene. World coordinates, metres.
+struct Footprint {
+    Footprint(const Scene& scene, std::size_t which);
+
+    /// Whether the obstacle's bounding box reaches into the vertical column through the level disc around (x, y).
+    [[nodiscard]] bool meets_column(double x, double y, double radius) const noexcept;
+
+    /// Whether the shadow holds the whole disc. Only asked of level obstacles, false for others.
+    [[nodiscard]] bool covers_disc(double x, double y, double radius) const noexcept;
+
+    std::size_t obstacle;
+    Scene::Bounds bounds;
+    bool is_level;  ///< see Scene::is_level
+    ShadowOutline outline;
+    double chord_x, chord_y;  ///< unit direction of chords that suit the quadrature over this obstacle
+
+ private:
+    /// The points with nx x + ny y <= reach.
+    struct HalfPlane {
+        double nx, ny, reach;
+    };
+    std::vector<HalfPlane> sides_;  ///< of a level box' shadow
+    double disc_radius_ = 0;        ///< of an upright cylinder's shadow; 0 for others
+};
+
+}  // namespace downwash

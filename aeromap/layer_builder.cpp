@@ -1,0 +1,166 @@
+#include "downwash/aeromap/layer_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/scene/collision_checker.hpp"
+
+namespace downwash {
+namespace {
+
+/// A cell whose K cannot differ more than this from 1 is not looked at closer.
+constexpr double quiet_factor = 1.006;
+/// How exact clearances are taken to be: the cell's verdict and the exact test must never disagree.
+constexpr double clearance_slack_m = 1e-6;
+
+class RowsBuilder {
+ public:
+    RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
+        : grid_(grid),
+          radius_m_(grid.effect.rotor_radius_m()),
+          least_clearance_m_(grid.effect.settings().min_distance_radii * radius_m_),
+          first_(first),
+          last_(last) {
+        rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
+        everywhere_.factor = [this](double x, double z) { return grid_.effect.factor(hub(x, z)); };
+        partly_.factor = everywhere_.factor;
+        partly_.is_forbidden_around = [this](double x, double z, double reach) {
+            return clearance_m(x, z) + reach < least_clearance_m_;
+        };
+    }
+
+    CellRows build() {
+        if (grid_.effect.settings().enabled) {
+            classify(0, grid_.columns, first_, last_);
+        }
+        for (std::size_t k = first_; k < last_; ++k) {
+            for (std::size_t i = 0; i < grid_.columns; ++i) {
+                add_cell(i, k);
+            }
+        }
+        return std::move(rows_);
+    }
+
+ private:
+    [[nodiscard]] double x_at(std::size_t i) const { return grid_.x_low_m + static_cast<double>(i) * grid_.side_m; }
+    [[nodiscard]] double z_at(std::size_t k) const { return grid_.z_low_m + static_cast<double>(k) * grid_.side_m; }
+    [[nodiscard]] Vector3 hub(double x, double z) const { return grid_.plane.to_world(x, grid_.lateral_m, z); }
+    [[nodiscard]] double clearance_m(double x, double z) const {
+        return disc_clearance_m(grid_.effect.scene(), hub(x, z), radius_m_);
+    }
+    CellFlyability& flyability(std::size_t i, std::size_t k) {
+        return rows_.flyability[(k - first_) * grid_.columns + i];
+    }
+
+    /// Moving the disc by d changes its clearance by at most d: one clearance decides a whole block of cells when it
+    /// differs from the least one by more than the block's half diagonal. Otherwise the block is halved.
+    void classify(std::size_t i0, std::size_t i1, std::size_t k0, std::size_t k1) {
+        const double half_x = 0.5 * (x_at(i1) - x_at(i0));
+        const double half_z = 0.5 * (z_at(k1) - z_at(k0));
+        const double reach = std::sqrt(half_x * half_x + half_z * half_z) + clearance_slack_m;
+        const double clearance = clearance_m(x_at(i0) + half_x, z_at(k0) + half_z);
+        CellFlyability verdict = CellFlyability::mixed;
+        if (clearance - reach >= least_clearance_m_) {
+            verdict = CellFlyability::flyable;
+        } else if (clearance + reach < least_clearance_m_) {
+            verdict = CellFlyability::forbidden;
+        } else if (i1 - i0 > 1 || k1 - k0 > 1) {
+            if (i1 - i0 >= k1 - k0) {
+                const std::size_t middle = i0 + (i1 - i0) / 2;
+                classify(i0, middle, k0, k1);
+                classify(middle, i1, k0, k1);
+            } else {
+                const std::size_t middle = k0 + (k1 - k0) / 2;
+                classify(i0, i1, k0, middle);
+                classify(i0, i1, middle, k1);
+            }
+            return;
+        }
+        for (std::size_t k = k0; k < k1; ++k) {
+            for (std::size_t i = i0; i < i1; ++i) {
+                flyability(i, k) = verdict;
+            }
+        }
+    }
+
+    /// No rotor hub in the cell has a larger K: each side counts as covered by a flat surface at the least vertical
+    /// gap. Needs models that fall with distance.
+    [[nodiscard]] double largest_factor(const CellSquare& cell) const {
+        const Scene& scene = grid_.effect.scene();
+        const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
+        const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);
+        double below_m = std::numeric_limits<double>::infinity();
+        double above_m = below_m;
+        for (std::size_t o = 0; o < scene.obstacles().size(); ++o) {
+            const Scene::Bounds& bounds = scene.bounds(o);
+            const auto is_apart = [&](std::size_t axis) {
+                return bounds.high_m[axis] < std::min(from[axis], to[axis]) - radius_m_ ||
+                       bounds.low_m[axis] > std::max(from[axis], to[axis]) + radius_m_;
+            };
+            if (is_apart(0) || is_apart(1)) {
+                continue;
+            }
+            if (bounds.low_m[2] <= to[2]) {
+                below_m = std::min(below_m, std::max(0.0, from[2] - bounds.high_m[2]));
+            }
+            if (bounds.high_m[2] >= from[2]) {
+                above_m = std::min(above_m, std::max(0.0, bounds.low_m[2] - to[2]));
+            }
+        }
+        const AeroSettings& settings = grid_.effect.settings();
+        return surface_factor(settings.ground, below_m / radius_m_, settings.max_factor) +
+               surface_factor(settings.ceiling, above_m / radius_m_, settings.max_factor) - 1;
+    }
+
+    void add_cell(std::size_t i, std::size_t k) {
+        const CellSquare cell{x_at(i), z_at(k), grid_.side_m};
+        const CellFlyability flyable = flyability(i, k);
+        if (flyable == CellFlyability::forbidden) {
+            rows_.steps.push_back({});
+            rows_.nodes.insert(rows_.nodes.end(), 4, 1.0F);
+            return;
+        }
+        const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
+        const bool is_quiet = !grid_.effect.settings().enabled || largest_factor(cell) <= quiet_factor;
+        const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, field);
+        rows_.steps.push_back(steps);
+        append_nodes(cell, steps, field, rows_.nodes);
+    }
+
+    const LayerGrid& grid_;
+    double radius_m_;
+    double least_clearance_m_;
+    std::size_t first_, last_;
+    CellField everywhere_, partly_;
+    CellRows rows_;
+};
+
+/// Largest |dk/d(z/R)| of one side within the flyable area.
+double steepest(const SurfaceEffect& effect, const AeroSettings& settings) {
+    constexpr double step = 1e-3;
+    double largest = 0;
+    for (int j = 0; j < 4000; ++j) {
+        const double zeta = settings.min_distance_radii + j * step;
+        const double change = surface_factor(effect, zeta + step, settings.max_factor) -
+                              surface_factor(effect, zeta, settings.max_factor);
+        largest = std::max(largest, std::abs(change) / step);
+    }
+    return largest;
+}
+
+}  // namespace
+
+CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) {
+    return RowsBuilder(grid, first, last).build();
+}
+
+double longest_cell_side_m(const AeroSettings& settings, double rotor_radius_m) {
+    const double slope = std::max(steepest(settings.ground, settings), steepest(settings.ceiling, settings));
+    // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
+    const double side_radii = slope > 0 ? 128 * 4 * 0.008 / slope : std::numeric_limits<double>::infinity();
+    return rotor_radius_m * std::max(side_radii, 0.02);
+}
+
+}  // namespace downwash

@@ -1,0 +1,36 @@
+#pragma once
+
+// Private to aeromap.
+
+#include <cstddef>
+#include <vector>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/cell_refinement.hpp"
+
+namespace downwash {
+
+/// The raster of one layer: what a builder needs to know of the map.
+struct LayerGrid {
+    const DirectEffect& effect;
+    const PlaneOfMotion& plane;
+    double lateral_m;
+    double x_low_m, z_low_m;
+    double side_m;
+    std::size_t columns, rows;
+};
+
+/// Some rows of cells, as they will stand in the layer.
+struct CellRows {
+    std::vector<CellSteps> steps;
+    std::vector<CellFlyability> flyability;
+    std::vector<float> nodes;  ///< of one cell after the other
+};
+
+/// Rows [first, last) of a layer.
+[[nodiscard]] CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last);
+
+/// The longest cell side for which 128 steps resolve the steepest model of the settings to 0.008; at least R / 50.
+[[nodiscard]] double longest_cell_side_m(const AeroSettings& settings, double rotor_radius_m);
+
+}  // namespace downwash

@@ -1,0 +1,103 @@
+#include "downwash/scene/shadow_outline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "downwash/scene/solids.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double negligible_m = 1e-9;
+
+bool are_close(double ax, double ay, double bx, double by) {
+    return std::abs(ax - bx) < negligible_m && std::abs(ay - by) < negligible_m;
+}
+
+bool are_same(const OutlineSegment& a, const OutlineSegment& b) {
+    return (are_close(a.ax, a.ay, b.ax, b.ay) && are_close(a.bx, a.by, b.bx, b.by)) ||
+           (are_close(a.ax, a.ay, b.bx, b.by) && are_close(a.bx, a.by, b.ax, b.ay));
+}
+
+/// Upright edges shrink to a point, and edges above each other count once.
+void add(ShadowOutline& outline, const OutlineSegment& segment) {
+    const bool is_point = are_close(segment.ax, segment.ay, segment.bx, segment.by);
+    const bool is_known = std::any_of(outline.segments.begin(), outline.segments.end(),
+                                      [&](const OutlineSegment& other) { return are_same(segment, other); });
+    if (!is_point && !is_known) {
+        outline.segments.push_back(segment);
+    }
+}
+
+ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement& placement) {
+    ShadowOutline outline;
+    const Matrix3& r = placement.rotation;
+    const auto corner = [&](const std::array<double, 3>& signs, std::size_t row) {
+        double position = solid.center_m[row];
+        for (std::size_t k = 0; k < 3; ++k) {
+            position += r[row][k] * 0.5 * signs[k] * box.size_m[k];
+        }
+        return position;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const double one : {-1.0, 1.0}) {
+            for (const double other : {-1.0, 1.0}) {
+                std::array<double, 3> from{};
+                from[axis] = -1;
+                from[(axis + 1) % 3] = one;
+                from[(axis + 2) % 3] = other;
+                std::array<double, 3> to = from;
+                to[axis] = 1;
+                add(outline, {corner(from, 0), corner(from, 1), corner(to, 0), corner(to, 1)});
+            }
+        }
+    }
+    return outline;
+}
+
+ShadowOutline outline_of(const Sphere& sphere, const Obstacle& solid, const Placement&) {
+    return {{}, {{solid.center_m[0], solid.center_m[1], 1, 0, sphere.radius_m, sphere.radius_m}}};
+}
+
+ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const Placement& placement) {
+    ShadowOutline outline;
+    const Vector3& axis = placement.axis_world;
+    const double level = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
+    const double x = solid.center_m[0];
+    const double y = solid.center_m[1];
+    const double r = cylinder.radius_m;
+    if (level < negligible_m) {
+        outline.ellipses.push_back({x, y, 1, 0, r, r});
+        return outline;
+    }
+    const double ux = axis[0] / level;
+    const double uy = axis[1] / level;
+    const double half_x = 0.5 * cylinder.length_m * axis[0];
+    const double half_y = 0.5 * cylinder.length_m * axis[1];
+    for (const double side : {-r, r}) {
+        const double px = x - side * uy;
+        const double py = y + side * ux;
+        add(outline, {px - half_x, py - half_y, px + half_x, py + half_y});
+    }
+    for (const double end : {-1.0, 1.0}) {
+        const double px = x + end * half_x;
+        const double py = y + end * half_y;
+        if (std::abs(axis[2]) < negligible_m) {
+            add(outline, {px - r * uy, py + r * ux, px + r * uy, py - r * ux});
+        } else {
+            outline.ellipses.push_back({px, py, ux, uy, r * std::abs(axis[2]), r});
+        }
+    }
+    return outline;
+}
+
+}  // namespace
+
+ShadowOutline shadow_outline(const Scene& scene, std::size_t obstacle) {
+    const Obstacle& solid = scene.solids().obstacles[obstacle];
+    const Placement& placement = scene.solids().placements[obstacle];
+    return std::visit([&](const auto& shape) { return outline_of(shape, solid, placement); }, solid.shape);
+}
+
+}  // namespace downwash
