@@ -18,7 +18,7 @@ struct PlanarPose {
 };
 
 /// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
-/// Bounding boxes dismiss what is plainly apart; then FCL decides contact, and distances are enclosed to 1e-9 m
+/// Bounding boxes dismiss what is plainly apart; then FCL decides contact, and distances are enclosed to 1e-8 m
 /// (scene/convex.hpp says how). No query allocates while nothing touches. A pose that is not finite is in contact.
 /// @pre angles of at most 1e5 rad
 class DOWNWASH_EXPORT CollisionChecker {
@@ -30,7 +30,7 @@ class DOWNWASH_EXPORT CollisionChecker {
     CollisionChecker& operator=(CollisionChecker&&) noexcept;
 
     /// True when some body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Never
-    /// false when it is; true is certain but for 1e-9 m.
+    /// false when it is; true is certain but for 1e-8 m.
     [[nodiscard]] bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
 
     /// Smallest distance from the robot to any obstacle [m]; <= 0 on contact, infinity without obstacles.

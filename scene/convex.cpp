@@ -36,7 +36,7 @@ Vector3 support(const Convex& convex, const Vector3& direction) {
         const Vector3 along =
             rough - dot(normal, rough) * normal;  // what rounding left of the normal would leave the disc
         const double squared = dot(along, along);
-        if (squared > 1e-28 * dot(direction, direction)) {  // else all points of the disc lie equally far
+        if (squared > 0) {
             point = point + (convex.disc_radius_m / std::sqrt(squared)) * along;
         }
     }

@@ -40,12 +40,13 @@ inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
     return {{c[0] - half[0], c[1] - half[1], c[2] - half[2]}, {c[0] + half[0], c[1] + half[1], c[2] + half[2]}};
 }
 
-/// Distance between two solids [m] to 1e-9, never above the truth but for rounding; <= 0 on contact (not a depth).
-/// Once the distance is certain to be at least `enough_m`, any certain lower bound of that size may be returned.
+/// Distance between two solids [m] to 1e-8, mostly to 1e-10, never above the truth but for rounding; <= 0 on contact
+/// (not a depth). Once the distance is certain to be at least `enough_m`, any certain lower bound of that size may be
+/// returned.
 double distance_m(const Convex& a, const Convex& b, double enough_m) noexcept;
 
-/// True when the distance is below `margin_m` (>= 0) or the solids touch; a distance within 1e-9 m of it may count as
-/// below. Sooner than the distance itself.
+/// True when the distance is below `margin_m` (>= 0) or the solids touch; a distance at most 1e-8 m above it may count
+/// as below. Sooner than the distance itself.
 bool is_nearer_than(const Convex& a, const Convex& b, double margin_m) noexcept;
 
 /// The largest of the gaps between two bounding boxes along the three axes [m], a lower bound of the distance between

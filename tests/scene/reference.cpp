@@ -1,0 +1,200 @@
+#include "reference.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace reference {
+namespace {
+
+Vector3 plus(const Vector3& a, double s, const Vector3& b) {
+    return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
+}
+double dot(const Vector3& a, const Vector3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+double norm(const Vector3& a) {
+    return std::sqrt(dot(a, a));
+}
+Vector3 cross(const Vector3& a, const Vector3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Right-handed unit vectors whose third points along `direction`.
+std::array<Vector3, 3> axes_along(const Vector3& direction) {
+    const Vector3 z = plus({0, 0, 0}, 1 / norm(direction), direction);
+    const Vector3 any = std::abs(z[0]) < 0.5 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
+    const Vector3 x = cross(any, z);
+    const Vector3 unit_x = plus({0, 0, 0}, 1 / norm(x), x);
+    return {unit_x, cross(z, unit_x), z};
+}
+
+Vector3 rolled_pitched_yawed(Vector3 v, const Vector3& rpy_rad) {
+    const auto turn = [&v](std::size_t i, std::size_t j, double angle) {
+        const double vi = v[i];
+        v[i] = std::cos(angle) * vi - std::sin(angle) * v[j];
+        v[j] = std::sin(angle) * vi + std::cos(angle) * v[j];
+    };
+    turn(1, 2, rpy_rad[0]);
+    turn(2, 0, rpy_rad[1]);
+    turn(0, 1, rpy_rad[2]);
+    return v;
+}
+
+/// A shape in its own frame, whose axes in the world are `frame`.
+Solid placed(const downwash::Shape& shape, const Vector3& center_m, const std::array<Vector3, 3>& frame) {
+    Solid solid{Solid::Kind::box, center_m, frame, {0, 0, 0}, 0};
+    if (const auto* box = std::get_if<downwash::Box>(&shape)) {
+        solid.half_m = {box->size_m[0] / 2, box->size_m[1] / 2, box->size_m[2] / 2};
+    } else if (const auto* cylinder = std::get_if<downwash::Cylinder>(&shape)) {
+        Vector3 axis{0, 0, 0};
+        for (std::size_t k = 0; k < 3; ++k) {
+            axis = plus(axis, cylinder->axis[k], frame[k]);
+        }
+        solid.kind = Solid::Kind::cylinder;
+        solid.axes = axes_along(axis);
+        solid.half_m = {cylinder->radius_m, 0, cylinder->length_m / 2};
+    } else {
+        solid.ball_m = std::get<downwash::Sphere>(shape).radius_m;
+    }
+    return solid;
+}
+
+double support(const Solid& solid, const Vector3& n) {
+    const double x = dot(solid.axes[0], n);
+    const double y = dot(solid.axes[1], n);
+    const double z = dot(solid.axes[2], n);
+    const double across = solid.kind == Solid::Kind::box ? std::abs(x) * solid.half_m[0] + std::abs(y) * solid.half_m[1]
+                                                         : std::hypot(x, y) * solid.half_m[0];
+    return dot(solid.center_m, n) + across + std::abs(z) * solid.half_m[2] + norm(n) * solid.ball_m;
+}
+
+}  // namespace
+
+Vector3 project(const Solid& solid, const Vector3& p_m) {
+    const Vector3 offset = plus(p_m, -1, solid.center_m);
+    Vector3 local{dot(offset, solid.axes[0]), dot(offset, solid.axes[1]), dot(offset, solid.axes[2])};
+    local[2] = std::clamp(local[2], -solid.half_m[2], solid.half_m[2]);
+    if (solid.kind == Solid::Kind::box) {
+        local[0] = std::clamp(local[0], -solid.half_m[0], solid.half_m[0]);
+        local[1] = std::clamp(local[1], -solid.half_m[1], solid.half_m[1]);
+    } else if (const double r = std::hypot(local[0], local[1]); r > solid.half_m[0]) {
+        local[0] *= solid.half_m[0] / r;
+        local[1] *= solid.half_m[0] / r;
+    }
+    Vector3 core = solid.center_m;
+    for (std::size_t k = 0; k < 3; ++k) {
+        core = plus(core, local[k], solid.axes[k]);
+    }
+    const Vector3 outward = plus(p_m, -1, core);
+    const double distance = norm(outward);
+    return distance <= solid.ball_m ? p_m : plus(core, solid.ball_m / distance, outward);
+}
+
+double distance_to_point(const Solid& solid, const Vector3& p_m) {
+    return norm(plus(p_m, -1, project(solid, p_m)));
+}
+
+Enclosure distance(const Solid& a, const Solid& b) {
+    Enclosure enclosure{0, std::numeric_limits<double>::infinity()};
+    Vector3 p = a.center_m;
+    for (int step = 0; step < 100000 && enclosure.high - enclosure.low > 1e-9; ++step) {
+        const Vector3 q = project(b, p);
+        p = project(a, q);
+        const Vector3 apart = plus(q, -1, p);
+        const double length = norm(apart);
+        enclosure.high = std::min(enclosure.high, length);
+        if (length > 0) {
+            const Vector3 back{-apart[0], -apart[1], -apart[2]};
+            enclosure.low = std::max(enclosure.low, (-support(b, back) - support(a, apart)) / length);
+        }
+    }
+    return enclosure;
+}
+
+Solid solid_of(const downwash::Obstacle& obstacle) {
+    const Vector3& rpy = obstacle.rpy_rad;
+    return placed(obstacle.shape, obstacle.center_m,
+                  {rolled_pitched_yawed({1, 0, 0}, rpy), rolled_pitched_yawed({0, 1, 0}, rpy),
+                   rolled_pitched_yawed({0, 0, 1}, rpy)});
+}
+
+Solid disc(const Vector3& center_m, double radius_m) {
+    return {Solid::Kind::cylinder, center_m, axes_along({0, 0, 1}), {radius_m, 0, 0}, 0};
+}
+
+std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
+                            const downwash::RobotShape& robot) {
+    const double q = pose.pitch_rad;
+    const double a = pose.pitch_rad + pose.arm_rad;
+    const Vector3 origin = plane.to_world(0, 0, 0);
+    const auto in_world = [&](double x, double lateral, double z) {
+        return plus(plane.to_world(x, lateral, z), -1, origin);
+    };
+    const Vector3 b1 = in_world(std::cos(q), 0, -std::sin(q));
+    const Vector3 b2 = in_world(0, 1, 0);
+    const Vector3 b3 = in_world(std::sin(q), 0, std::cos(q));
+    const Vector3 center = plane.to_world(pose.x_m, 0, pose.z_m);
+    std::vector<Solid> solids;
+    for (const downwash::BodyShape& body : robot.bodies) {
+        const Vector3& c = body.center_m;
+        solids.push_back(placed(body.shape, plus(plus(plus(center, c[0], b1), c[1], b2), c[2], b3), {b1, b2, b3}));
+    }
+    const Vector3 arm = in_world(std::cos(a), 0, -std::sin(a));
+    const Vector3 joint = plus(plus(center, robot.joint_x_m, b1), robot.joint_z_m, b3);
+    const double half = robot.arm_length_m / 2;
+    solids.push_back(
+        {Solid::Kind::cylinder, plus(joint, half, arm), axes_along(arm), {0, 0, half}, robot.arm_radius_m});
+    return solids;
+}
+
+Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    Enclosure least{infinity, infinity};
+    for (const downwash::Obstacle& obstacle : obstacles) {
+        const Solid solid = solid_of(obstacle);
+        for (const Solid& part : robot) {
+            const Enclosure pair = distance(part, solid);
+            least.low = std::min(least.low, pair.low);
+            least.high = std::min(least.high, pair.high);
+        }
+    }
+    return least;
+}
+
+downwash::Shape Dice::shape(double least_m, double most_m) {
+    const auto length = [&] { return between(least_m, most_m); };
+    const double kind = between(0, 3);
+    if (kind < 1) {
+        return downwash::Box{{length(), length(), length()}};
+    }
+    if (kind < 2) {
+        return downwash::Cylinder{length() / 2, length(), coin() ? Vector3{0, 1, 0} : vector(-1, 1)};
+    }
+    return downwash::Sphere{length() / 2};
+}
+
+downwash::Obstacle Dice::obstacle() {
+    return {"obstacle", shape(0.1, 1.5), vector(-2, 2), coin() ? Vector3{0, 0, 0} : vector(-4, 4)};
+}
+
+std::vector<downwash::Obstacle> Dice::obstacles(int count) {
+    std::vector<downwash::Obstacle> drawn;
+    for (int i = 0; i < count; ++i) {
+        drawn.push_back(obstacle());
+    }
+    return drawn;
+}
+
+downwash::RobotShape Dice::robot() {
+    return {{{shape(0.05, 0.6), vector(-0.1, 0.1)}, {shape(0.05, 0.3), vector(-0.2, 0.2)}},
+            between(-0.1, 0.1),
+            between(-0.1, 0.1),
+            between(0.1, 0.7),
+            between(0.01, 0.05)};
+}
+
+downwash::PlanarPose Dice::pose() {
+    return {between(-2.5, 2.5), between(-2.5, 2.5), between(-0.7, 0.7), between(-7, 7)};
+}
+
+}  // namespace reference

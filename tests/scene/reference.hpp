@@ -1,0 +1,59 @@
+#pragma once
+
+// A second way to distances, as plain as possible and sharing nothing with the library but its input types: nearest
+// points by alternating projections (Cheney and Goldstein 1959), each answer enclosed by a separating plane.
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "downwash/scene/collision_checker.hpp"
+
+namespace reference {
+
+using downwash::Vector3;
+
+/// A rounded box, cylinder or point in the world: `ball_m` is added all around.
+struct Solid {
+    enum class Kind { box, cylinder } kind = Kind::box;
+    Vector3 center_m{};
+    std::array<Vector3, 3> axes{};  ///< right-handed unit vectors in the world; a cylinder's axis is the third
+    Vector3 half_m{};               ///< box: half edges; cylinder: radius, -, half length
+    double ball_m = 0;
+};
+
+/// An enclosure of the distance [m]; high is 0 on contact.
+struct Enclosure {
+    double low, high;
+};
+
+Vector3 project(const Solid& solid, const Vector3& p_m);
+double distance_to_point(const Solid& solid, const Vector3& p_m);
+Enclosure distance(const Solid& a, const Solid& b);
+
+Solid solid_of(const downwash::Obstacle& obstacle);
+Solid disc(const Vector3& center_m, double radius_m);
+std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
+                            const downwash::RobotShape& robot);
+Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles);
+
+/// Draws scenes, robots and poses.
+class Dice {
+ public:
+    explicit Dice(unsigned seed) : engine_(seed) {}
+    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+    bool coin() { return between(0, 1) < 0.5; }
+    Vector3 vector(double low, double high) { return {between(low, high), between(low, high), between(low, high)}; }
+    downwash::Shape shape(double least_m, double most_m);
+    /// Half of them stand square to the world.
+    downwash::Obstacle obstacle();
+    std::vector<downwash::Obstacle> obstacles(int count);
+    downwash::RobotShape robot();
+    downwash::PlanarPose pose();
+
+ private:
+    std::mt19937 engine_;
+};
+
+}  // namespace reference
