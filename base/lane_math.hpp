@@ -104,10 +104,12 @@ T atan2(T y, T x) {
         p = T(1.0 / (2 * k + 1)) - p * w;
     }
     // p = 1/3 - w/5 + w^2/7 - ...; atan t = t - t w p
-    const T small_angle = t - t * w * p;
+    const T bend = t * w * p;
     const T pi_low(1.2246467991473532e-16);
-    const T quarter = T(0.78539816339744830962) + (small_angle + T(0.25) * pi_low);
-    const T first = select(is_large, quarter, small_angle);
+    const T pi_quarter(0.78539816339744830962);
+    const T sum = pi_quarter + t;
+    const T sum_lost = t - (sum - pi_quarter);
+    const T first = select(is_large, sum + (sum_lost + (T(0.25) * pi_low - bend)), t - bend);
     const T second = select(ay > ax, T(1.57079632679489661923) - (first - T(0.5) * pi_low), first);
     const T third = select(x < T(0), T(3.14159265358979323846) - (second - pi_low), second);
     return select(y < T(0), -third, third);
