@@ -45,12 +45,16 @@ struct MotionLimits {
     double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
 };
 
+/// Wall time of a search that is limited by nothing else [s].
+inline constexpr double default_time_limit_s = 10;
+
 /// How to search.
 struct PlannerSettings {
     Variant variant = Variant::mp_arm_ada;
     std::string algorithm = "rrt-star";  ///< one of the names that algorithms() lists
     Objective objective = Objective::energy;
-    double time_limit_s = 10;                     ///< wall time of the search, > 0
+    /// Wall time of the search [s], > 0. Empty: default_time_limit_s, or none where max_iterations is set.
+    std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
     std::uint32_t seed = 1;
     double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0

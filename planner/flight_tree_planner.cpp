@@ -1,0 +1,190 @@
+#include "downwash/planner/flight_tree_planner.hpp"
+
+#include <ompl/base/PlannerData.h>
+#include <ompl/base/ScopedState.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "downwash/planner/ompl_space.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// How often the search aims at the goal region.
+constexpr double goal_bias = 0.1;
+
+/// Longest edge as a share of the space's extent; OMPL's own habit.
+constexpr double range_share = 0.2;
+
+/// Surfaces may make a flight cheaper than its estimate in free air; a flight is worth its simulation when it could
+/// win with so much less.
+constexpr double optimism = 0.9;
+
+/// A better plan is worth a direct flight from this relative gain on.
+constexpr double least_gain = 1e-3;
+
+}  // namespace
+
+FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, FlightTree& tree,
+                                     const SearchSpace& space, Random& random,
+                                     std::function<bool(const Candidate&)> accept)
+    : ompl::base::Planner(information, "FlightTree"),
+      tree_(tree),
+      space_(space),
+      random_(random),
+      accept_(std::move(accept)),
+      nearest_to_goal_(&tree.root()),
+      nearest_distance_m_(space.goal_distance_m(tree.root().configuration)),
+      range_m_(range_share * space.extent_m()) {
+    specs_.approximateSolutions = true;
+    specs_.optimizingPaths = true;
+}
+
+ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
+    if (iterations_ == 0 && space_.is_near_goal(tree_.root().configuration)) {
+        try_hold(tree_.root());
+        review_holds();
+    }
+    while (!terminated && !(max_iterations_ && iterations_ >= *max_iterations_)) {
+        ++iterations_;
+        grow();
+        review_holds();
+        if (observer_) {
+            observer_();
+        }
+    }
+    return incumbent_ ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::TIMEOUT;
+}
+
+std::optional<Configuration> FlightTreePlanner::target() {
+    return random_.chance(goal_bias) ? space_.sample_goal(random_) : space_.sample(random_);
+}
+
+std::size_t FlightTreePlanner::neighbour_count() const {
+    // k-nearest RRT* (Karaman and Frazzoli 2011): k > e (1 + 1/d) log n in d dimensions.
+    constexpr double dimension = 3;
+    const auto n = static_cast<double>(tree_.size());
+    return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
+}
+
+void FlightTreePlanner::grow() {
+    const std::optional<Configuration> aim = target();
+    if (!aim) {
+        return;
+    }
+    const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
+    const Configuration to = space_.steered(nearest, *aim, range_m_);
+    if (!space_.is_valid(to)) {
+        tree_.count_rejection("collision");
+        return;
+    }
+    const std::vector<FlightNode*> neighbours = tree_.nearest(to, neighbour_count());
+    FlightNode* const node = connect(to, neighbours);
+    if (node == nullptr) {
+        return;
+    }
+    const double distance_m = space_.goal_distance_m(node->configuration);
+    if (distance_m < nearest_distance_m_) {
+        nearest_distance_m_ = distance_m;
+        nearest_to_goal_ = node;
+    }
+    if (space_.is_near_goal(node->configuration)) {
+        try_hold(*node);
+    }
+    rewire_through(*node, neighbours);
+}
+
+FlightNode* FlightTreePlanner::connect(const Configuration& to, const std::vector<FlightNode*>& neighbours) {
+    struct Parent {
+        FlightNode* node;
+        double estimate;
+    };
+    std::vector<Parent> parents;
+    for (FlightNode* node : neighbours) {
+        const double estimate = node->cost + optimism * tree_.estimated_cost(*node, to);
+        const bool is_hopeless = incumbent_ && estimate >= incumbent_->cost;
+        if (!is_hopeless && space_.distance_m(node->configuration, to) > 1e-6) {
+            parents.push_back({node, estimate});
+        }
+    }
+    std::stable_sort(parents.begin(), parents.end(),
+                     [](const Parent& a, const Parent& b) { return a.estimate < b.estimate; });
+    std::optional<FlightTree::Flown> best;
+    FlightNode* best_parent = nullptr;
+    for (const Parent& parent : parents) {
+        if (best && parent.estimate >= best->cost) {
+            break;
+        }
+        auto flight = tree_.flown(*parent.node, space_.seen_from(parent.node->configuration, to));
+        if (flight && (!best || flight->cost < best->cost)) {
+            best = std::move(flight);
+            best_parent = parent.node;
+        }
+    }
+    if (!best || (incumbent_ && best->cost >= incumbent_->cost)) {
+        return nullptr;
+    }
+    return &tree_.add(*best_parent, *best);
+}
+
+void FlightTreePlanner::rewire_through(FlightNode& node, const std::vector<FlightNode*>& neighbours) {
+    for (FlightNode* neighbour : neighbours) {
+        if (neighbour == &tree_.root() || neighbour == node.parent) {
+            continue;
+        }
+        if (node.cost + optimism * tree_.estimated_cost(node, neighbour->configuration) < neighbour->cost) {
+            tree_.rewire(*neighbour, node);
+        }
+    }
+}
+
+void FlightTreePlanner::try_hold(FlightNode& node) {
+    tree_.add_hold(node);
+}
+
+void FlightTreePlanner::review_holds() {
+    for (;;) {
+        const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
+        FlightNode* best = nullptr;
+        for (FlightNode* hold : tree_.holds()) {
+            if (!hold->is_discarded && hold->cost < to_beat && (best == nullptr || hold->cost < best->cost)) {
+                best = hold;
+            }
+        }
+        if (best == nullptr) {
+            return;
+        }
+        Candidate candidate{tree_.plan_to(*best), best->cost, iterations_};
+        if (accept_(candidate)) {
+            tree_.verify(*best);
+            incumbent_ = std::move(candidate);
+            return;
+        }
+        best->is_discarded = true;
+        tree_.count_rejection("direct_flight");
+    }
+}
+
+void FlightTreePlanner::getPlannerData(ompl::base::PlannerData& data) const {
+    Planner::getPlannerData(data);
+    std::vector<ompl::base::ScopedState<>> states;  // one per node, in the order of the tree
+    std::map<const FlightNode*, std::size_t> index;
+    for (const FlightNode* node : tree_.nodes()) {
+        index[node] = states.size();
+        write(node->configuration, states.emplace_back(si_).get(), space_);
+    }
+    for (const FlightNode* node : tree_.nodes()) {
+        const ompl::base::PlannerDataVertex vertex(states[index[node]].get());
+        if (node->parent == nullptr) {
+            data.addStartVertex(vertex);
+        } else {
+            data.addEdge(ompl::base::PlannerDataVertex(states[index[node->parent]].get()), vertex);
+        }
+    }
+    data.decoupleFromPlanner();  // the states above end here
+}
+
+}  // namespace downwash::planning

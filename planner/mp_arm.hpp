@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "downwash/planner/random.hpp"
+#include "downwash/planner/search_space.hpp"
+#include "downwash/planner/solution.hpp"
+
+namespace downwash::planning {
+
+/// How a geometric search ended.
+struct GeometricResult {
+    Status status = Status::none;
+    std::optional<Plan> plan;
+    double cost = 0;  ///< estimate of the variant: level hover along the reference and through the hold
+    std::uint64_t iterations = 0;
+    std::uint64_t states_checked = 0;
+    std::uint64_t collisions = 0;  ///< refused states and motions
+};
+
+/// What a geometric search is told and asked while it runs.
+struct GeometricHooks {
+    /// Asked in every iteration with its number.
+    std::function<bool(std::uint64_t iteration)> is_over;
+    /// Told of every better path.
+    std::function<void(double cost, std::uint64_t iteration)> on_improvement;
+};
+
+/// MP-ARM: OMPL's RRT* in (x, z, arm) with the vehicle level and straight edges; blind to dynamics (thesis C.2).
+[[nodiscard]] GeometricResult plan_geometrically(const Problem& problem, const FlightModel& model,
+                                                 const SearchSpace& space, Random& random, const GeometricHooks& hooks);
+
+/// The rest-to-rest reference through waypoints whose arm angles are unwrapped, the first at the start's motion.
+[[nodiscard]] Plan timed_plan(const std::vector<Waypoint>& waypoints, const ReferencePoint& start,
+                              const ReferenceLimits& limits, double tick_s);
+
+}  // namespace downwash::planning

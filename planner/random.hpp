@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace downwash::planning {
+
+/// The randomness of one search, seeded by the caller; the same numbers on every machine.
+class Random {
+ public:
+    explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+    /// Uniform in [low, high).
+    double uniform(double low, double high) {
+        constexpr double scale = 0x1p-53;
+        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * scale);
+    }
+
+    /// True with this probability.
+    bool chance(double probability) { return uniform(0, 1) < probability; }
+
+ private:
+    std::mt19937_64 engine_;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,138 @@
+#include "downwash/planner/search_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/rigid_body.hpp"
+
+namespace downwash::planning {
+
+SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
+    : model_(model),
+      bounds_(problem.bounds),
+      goal_(problem.goal),
+      arm_(problem.robot.arm),
+      margin_m_(problem.planner.safety_margin_m) {}
+
+double SearchSpace::arm_low_rad() const noexcept {
+    return arm_.is_limited ? arm_.lower_limit_rad : -std::numbers::pi;
+}
+
+double SearchSpace::arm_high_rad() const noexcept {
+    return arm_.is_limited ? arm_.upper_limit_rad : std::numbers::pi;
+}
+
+double SearchSpace::arm_turn_rad(double from_rad, double to_rad) const noexcept {
+    return arm_.is_limited ? to_rad - from_rad : lane::wrap_angle(to_rad - from_rad);
+}
+
+Configuration SearchSpace::seen_from(const Configuration& from, Configuration to) const noexcept {
+    to.arm_rad = from.arm_rad + arm_turn_rad(from.arm_rad, to.arm_rad);
+    return to;
+}
+
+double SearchSpace::distance_m(const Configuration& a, const Configuration& b) const noexcept {
+    const double dx = b.x_m - a.x_m;
+    const double dz = b.z_m - a.z_m;
+    const double turn = arm_weight_m() * arm_turn_rad(a.arm_rad, b.arm_rad);
+    return std::sqrt(dx * dx + dz * dz + turn * turn);
+}
+
+Configuration SearchSpace::steered(const Configuration& from, const Configuration& to, double range_m) const {
+    const Configuration target = seen_from(from, to);
+    const double distance = distance_m(from, target);
+    if (distance <= range_m) {
+        return target;
+    }
+    const double s = range_m / distance;
+    return {from.x_m + s * (target.x_m - from.x_m), from.z_m + s * (target.z_m - from.z_m),
+            from.arm_rad + s * (target.arm_rad - from.arm_rad)};
+}
+
+Configuration SearchSpace::sample(Random& random) const {
+    Configuration c;
+    c.x_m = random.uniform(bounds_.x_low_m, bounds_.x_high_m);
+    c.z_m = random.uniform(bounds_.z_low_m, bounds_.z_high_m);
+    c.arm_rad = random.uniform(arm_low_rad(), arm_high_rad());
+    return c;
+}
+
+double SearchSpace::into_arm_range(double arm_rad) const noexcept {
+    constexpr double turn = 2 * std::numbers::pi;
+    return arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
+}
+
+Configuration SearchSpace::goal_candidate(Random& random) const {
+    Configuration c = sample(random);
+    if (goal_.end_effector) {
+        const EndEffectorGoal& goal = *goal_.end_effector;
+        if (goal.direction_rad) {
+            const double half = 0.5 * goal.direction_tolerance_rad;
+            c.arm_rad = into_arm_range(*goal.direction_rad + random.uniform(-half, half));
+        }
+        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
+        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
+        c.x_m = goal.x_m - tip.x;
+        c.z_m = goal.z_m - tip.z;
+        return c;
+    }
+    const ConfigurationGoal& goal = *goal_.configuration;
+    c.x_m = goal.x_m.value_or(c.x_m);
+    c.z_m = goal.z_m.value_or(c.z_m);
+    c.arm_rad = goal.arm_rad ? into_arm_range(*goal.arm_rad) : c.arm_rad;
+    return c;
+}
+
+std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
+    constexpr int tries = 20;
+    for (int i = 0; i < tries; ++i) {
+        const Configuration candidate = goal_candidate(random);
+        if (is_valid(candidate)) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+GoalError SearchSpace::error(const Configuration& c) const {
+    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
+    return goal_error(goal_, model_.tick().plant, q);
+}
+
+bool SearchSpace::is_near_goal(const Configuration& c) const {
+    GoalError doubled = error(c);
+    doubled.distance_m *= 2;
+    doubled.angle_rad *= 2;
+    return is_met(goal_, doubled);
+}
+
+double SearchSpace::goal_distance_m(const Configuration& c) const {
+    const GoalError e = error(c);
+    const bool by_tip = goal_.end_effector.has_value();
+    const double tolerance_m = by_tip ? goal_.end_effector->tolerance_m : goal_.configuration->tolerance_m;
+    const double tolerance_rad =
+        by_tip ? goal_.end_effector->direction_tolerance_rad : goal_.configuration->tolerance_rad;
+    return std::max(0.0, e.distance_m - 0.5 * tolerance_m) +
+           arm_weight_m() * std::max(0.0, e.angle_rad - 0.5 * tolerance_rad);
+}
+
+bool SearchSpace::is_inside(const Configuration& c) const noexcept {
+    return c.x_m >= bounds_.x_low_m && c.x_m <= bounds_.x_high_m && c.z_m >= bounds_.z_low_m &&
+           c.z_m <= bounds_.z_high_m &&
+           (!arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad));
+}
+
+bool SearchSpace::is_valid(const Configuration& c) const {
+    return is_inside(c) && !model_.collisions().is_nearer_than({c.x_m, c.z_m, 0, c.arm_rad}, margin_m_);
+}
+
+double SearchSpace::extent_m() const noexcept {
+    const double dx = bounds_.x_high_m - bounds_.x_low_m;
+    const double dz = bounds_.z_high_m - bounds_.z_low_m;
+    const double turn = arm_weight_m() * (arm_.is_limited ? arm_high_rad() - arm_low_rad() : std::numbers::pi);
+    return std::sqrt(dx * dx + dz * dz + turn * turn);
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/random.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash::planning {
+
+/// A point of the reference space: where vehicle and arm are asked to be, the vehicle level.
+struct Configuration {
+    double x_m = 0;
+    double z_m = 0;
+    double arm_rad = 0;
+};
+
+/// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
+class SearchSpace {
+ public:
+    SearchSpace(const Problem& problem, const FlightModel& model);
+
+    [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+    [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
+    [[nodiscard]] bool arm_is_limited() const noexcept { return arm_.is_limited; }
+    [[nodiscard]] double arm_low_rad() const noexcept;
+    [[nodiscard]] double arm_high_rad() const noexcept;
+
+    /// Metres that one radian of the arm counts for: half the arm's length.
+    [[nodiscard]] double arm_weight_m() const noexcept { return 0.5 * arm_.length_m; }
+
+    /// Turn from one arm angle to another [rad]: the shorter way, unless the arm has limits.
+    [[nodiscard]] double arm_turn_rad(double from_rad, double to_rad) const noexcept;
+
+    /// `to` with its arm angle unwrapped so that it is reached from `from` by the shorter turn.
+    [[nodiscard]] Configuration seen_from(const Configuration& from, Configuration to) const noexcept;
+
+    /// sqrt(dx^2 + dz^2 + (w darm)^2) [m], the arm by the shorter turn.
+    [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
+
+    /// The point at most `range_m` from `from` on the straight line towards `to`.
+    [[nodiscard]] Configuration steered(const Configuration& from, const Configuration& to, double range_m) const;
+
+    /// A configuration within the bounds.
+    [[nodiscard]] Configuration sample(Random& random) const;
+
+    /// A configuration of the level vehicle that meets the goal, free of collision: inverse kinematics with the arm in
+    /// any direction that the goal leaves open, so both branches of the arm occur. Nothing after some failed tries.
+    [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
+
+    /// Goal error of the level vehicle.
+    [[nodiscard]] GoalError error(const Configuration& configuration) const;
+
+    /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within half
+    /// of each tolerance, the other half being left to the flight.
+    [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
+
+    /// Distance and angle to the goal as one length [m], 0 inside the goal region.
+    [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
+
+    /// Whether the level vehicle there lies within the bounds and keeps the safety margin.
+    [[nodiscard]] bool is_valid(const Configuration& configuration) const;
+
+    /// Largest distance between two configurations [m].
+    [[nodiscard]] double extent_m() const noexcept;
+
+ private:
+    [[nodiscard]] Configuration goal_candidate(Random& random) const;
+    /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
+    [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
+    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
+
+    const FlightModel& model_;
+    Bounds bounds_;
+    Goal goal_;
+    ArmParameters arm_;
+    double margin_m_;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/reference_segment.hpp"
+#include "downwash/planner/problem.hpp"
+#include "downwash/simulation/execution.hpp"
+
+namespace downwash {
+
+/// A corner of a plan: plane coordinates [m], arm angle relative to the multirotor, unwrapped [rad].
+struct Waypoint {
+    double x_m = 0;
+    double z_m = 0;
+    double arm_rad = 0;
+};
+
+/// A timed reference for (x, z, arm) and the corners that it runs through.
+struct Plan {
+    std::vector<Waypoint> waypoints;
+    std::vector<ReferenceKnot> reference;  ///< one knot per waypoint; the first at tick 0
+    double tick_s = 0;                     ///< length of a control tick
+
+    [[nodiscard]] double duration_s() const {
+        return reference.empty() ? 0 : static_cast<double>(reference.back().tick) * tick_s;
+    }
+};
+
+/// What a search came to.
+enum class Status : std::uint8_t {
+    none,         ///< not even a first step
+    approximate,  ///< the best there is does not reach the goal
+    solved,       ///< the planner's own model reaches the goal and holds there
+};
+
+/// A moment at which the best plan became cheaper.
+struct Improvement {
+    double wall_s = 0;
+    std::uint64_t iteration = 0;
+    double cost = 0;
+};
+
+/// How a search went.
+struct SearchRecord {
+    double wall_s = 0;                            ///< of the search itself
+    double map_wall_s = 0;                        ///< spent on the aero map before it
+    double flight_wall_s = 0;                     ///< spent on the direct flight of the reported plan
+    std::optional<double> first_solution_wall_s;  ///< first plan that the planner's own model accepted
+    std::uint64_t iterations = 0;
+    std::uint64_t edges_simulated = 0;
+    double simulated_s = 0;            ///< flight time simulated, not counting direct flights
+    std::uint64_t states_checked = 0;  ///< collision queries of single states
+    std::vector<Improvement> improvements;
+    std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
+};
+
+/// The answer to a problem.
+struct Solution {
+    Status status = Status::none;
+    bool interrupted = false;  ///< ended by the stop token
+    Variant variant = Variant::mp_arm_ada;
+    std::string algorithm;
+    Objective objective = Objective::energy;
+    std::uint32_t seed = 1;
+    int threads = 1;
+    double cost = 0;            ///< the planner's own figure; 0 without a plan
+    double execution_cost = 0;  ///< the same objective in the flight with direct aerodynamics
+    SearchRecord planning;
+    std::optional<Plan> plan;            ///< empty with Status::none
+    std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
+};
+
+/// Names as in problem files: "mp-arm-ada", "energy", "solved".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Objective objective);
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Status status);
+
+/// What an executed flight costs under an objective.
+[[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, Objective objective);
+
+}  // namespace downwash

@@ -1,0 +1,206 @@
+#include "downwash/planner/solve.hpp"
+
+#include <array>
+#include <chrono>
+
+#include "downwash/planner/flight_tree_planner.hpp"
+#include "downwash/planner/mp_arm.hpp"
+#include "downwash/planner/ompl_space.hpp"
+#include "downwash/planner/quiet_ompl.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr std::array algorithm_table{
+    AlgorithmInfo{"rrt-star", "geometric (mp-arm), kinodynamic (mp-arm-da, mp-arm-ada)",
+                  "RRT*: straight edges by OMPL for mp-arm; closed-loop flights as edges for mp-arm-da and mp-arm-ada, "
+                  "parents chosen and nodes rewired by flown cost. Anytime."}};
+
+class Stopwatch {
+ public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+ private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// What every search has in common: its limits, its clock and whom it tells.
+class Search {
+ public:
+    Search(const Problem& problem, const SolveOptions& options, Solution& solution)
+        : settings_(problem.planner), options_(options), solution_(solution) {
+        if (settings_.time_limit_s || !settings_.max_iterations) {
+            limit_s_ = settings_.time_limit_s.value_or(default_time_limit_s);
+        }
+    }
+
+    [[nodiscard]] double seconds() const { return clock_.seconds(); }
+
+    [[nodiscard]] bool is_over() const {
+        return options_.stop.stop_requested() || (limit_s_ && clock_.seconds() >= *limit_s_) ||
+               (options_.stop_at_first_solution && !solution_.planning.improvements.empty());
+    }
+
+    void found_first(double at_s) {
+        if (!solution_.planning.first_solution_wall_s) {
+            solution_.planning.first_solution_wall_s = at_s;
+        }
+    }
+
+    void improved(double cost, std::uint64_t iteration) {
+        solution_.planning.improvements.push_back({clock_.seconds(), iteration, cost});
+    }
+
+    void report(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
+        constexpr double period_s = 0.1;
+        const double now_s = clock_.seconds();
+        if (!options_.on_progress || now_s < reported_s_ + period_s) {
+            return;
+        }
+        reported_s_ = now_s;
+        const auto& improvements = solution_.planning.improvements;
+        options_.on_progress({now_s, iterations, nodes, rejected,
+                              improvements.empty() ? std::nullopt : std::optional(improvements.back().cost)});
+    }
+
+ private:
+    const PlannerSettings& settings_;
+    const SolveOptions& options_;
+    Solution& solution_;
+    Stopwatch clock_;
+    std::optional<double> limit_s_;
+    double reported_s_ = 0;
+};
+
+/// Flies a plan with direct aerodynamics and notes how long that took.
+Execution fly_directly(const Problem& problem, const FlightModel& model, const Plan& plan, SearchRecord& record) {
+    const Stopwatch clock;
+    Execution execution = execute(model, start_state(model, problem.start), plan.reference, problem.goal, true);
+    record.flight_wall_s = clock.seconds();
+    return execution;
+}
+
+void search_geometrically(const Problem& problem, const FlightModel& model, const SolveOptions& options,
+                          Solution& solution) {
+    const planning::SearchSpace space(problem, model);
+    planning::Random random(problem.planner.seed);
+    Search search(problem, options, solution);
+    planning::GeometricHooks hooks;
+    hooks.is_over = [&](std::uint64_t iteration) {
+        search.report(iteration, iteration, 0);
+        return search.is_over() || (problem.planner.max_iterations && iteration >= *problem.planner.max_iterations);
+    };
+    hooks.on_improvement = [&](double cost, std::uint64_t iteration) {
+        search.found_first(search.seconds());
+        search.improved(cost, iteration);
+    };
+    planning::GeometricResult result = planning::plan_geometrically(problem, model, space, random, hooks);
+    SearchRecord& record = solution.planning;
+    record.wall_s = search.seconds();
+    record.iterations = result.iterations;
+    record.states_checked = result.states_checked;
+    record.rejected["collision"] = result.collisions;
+    solution.status = result.status;
+    solution.plan = std::move(result.plan);
+    solution.cost = result.cost;
+}
+
+void search_by_flights(const Problem& problem, const FlightModel& model, const SolveOptions& options,
+                       const AeroMap* map, Solution& solution) {
+    const bool is_aware = problem.planner.variant == Variant::mp_arm_ada;
+    const planning::SearchSpace space(problem, model);
+    planning::Random random(problem.planner.seed);
+    planning::FlightTree tree(problem, model, space, map);
+    planning::QueryCounts counts;
+    Search search(problem, options, solution);
+    SearchRecord& record = solution.planning;
+
+    const auto accept = [&](const planning::Candidate& candidate) {
+        search.found_first(search.seconds());
+        if (is_aware) {
+            Execution flight = fly_directly(problem, model, candidate.plan, record);
+            if (flight.outcome != Outcome::ok) {
+                return false;
+            }
+            solution.execution = std::move(flight);
+        }
+        search.improved(candidate.cost, candidate.iteration);
+        return true;
+    };
+    const planning::QuietOmpl quiet;
+    const auto information = planning::make_space_information(space, random, 0.1, counts);
+    planning::FlightTreePlanner planner(information, tree, space, random, accept);
+    planner.set_max_iterations(problem.planner.max_iterations);
+    planner.set_observer([&] { search.report(planner.iterations(), tree.size(), tree.statistics().rejections); });
+    planner.solve(ompl::base::PlannerTerminationCondition([&] { return search.is_over(); }));
+
+    record.wall_s = search.seconds();
+    record.iterations = planner.iterations();
+    record.edges_simulated = tree.statistics().edges;
+    record.simulated_s = static_cast<double>(tree.statistics().ticks) * model.tick().tick_s;
+    record.states_checked = tree.statistics().states_checked;
+    record.rejected = tree.statistics().rejected;
+    if (planner.incumbent()) {
+        solution.status = Status::solved;
+        solution.plan = planner.incumbent()->plan;
+        solution.cost = planner.incumbent()->cost;
+    } else if (planner.nearest_to_goal().parent != nullptr) {
+        solution.status = Status::approximate;
+        solution.plan = tree.plan_to(planner.nearest_to_goal());
+        solution.cost = planner.nearest_to_goal().cost;
+    }
+}
+
+}  // namespace
+
+std::span<const AlgorithmInfo> algorithms() {
+    return algorithm_table;
+}
+
+std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
+    return std::make_shared<const FlightModel>(problem.robot, problem.plane,
+                                               std::make_shared<const Scene>(problem.obstacles), problem.aero);
+}
+
+FlightState start_state(const FlightModel& model, const Start& start) {
+    const double q[4] = {start.x_m, start.z_m, start.pitch_rad, start.arm_rad};
+    const double u[4] = {start.vx_m_s, start.vz_m_s, start.pitch_rate_rad_s, start.arm_rate_rad_s};
+    return model.state_at(q, u);
+}
+
+Solution solve(const Problem& problem, const SolveOptions& options) {
+    if (std::vector<Fault> faults = problem_faults(problem); !faults.empty()) {
+        throw InputError(std::move(faults));
+    }
+    const auto model = make_flight_model(problem);
+    Solution solution;
+    solution.variant = problem.planner.variant;
+    solution.algorithm = problem.planner.algorithm;
+    solution.objective = problem.planner.objective;
+    solution.seed = problem.planner.seed;
+    solution.threads = options.threads;
+
+    if (problem.planner.variant == Variant::mp_arm) {
+        search_geometrically(problem, *model, options, solution);
+    } else {
+        std::shared_ptr<const AeroMap> map;
+        if (problem.planner.variant == Variant::mp_arm_ada && problem.aero.enabled) {
+            const Stopwatch clock;
+            map = options.map ? options.map : model->make_map(problem.bounds, options.threads);
+            solution.planning.map_wall_s = clock.seconds();
+        }
+        search_by_flights(problem, *model, options, map.get(), solution);
+    }
+    solution.interrupted = options.stop.stop_requested();
+    if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
+        solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning);
+    }
+    if (solution.execution) {
+        solution.execution_cost = cost_of(*solution.execution, solution.objective);
+    }
+    return solution;
+}
+
+}  // namespace downwash

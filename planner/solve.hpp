@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash {
+
+/// A glance at a running search.
+struct Progress {
+    double wall_s = 0;
+    std::uint64_t iterations = 0;
+    std::uint64_t nodes = 0;
+    std::uint64_t rejected = 0;       ///< edges refused so far, for any reason
+    std::optional<double> best_cost;  ///< empty before the first solution
+};
+
+/// How a program takes part in a search.
+struct SolveOptions {
+    int threads = 1;                                   ///< for building the aero map; the result does not depend on it
+    std::stop_token stop;                              ///< ends the search early, with the best plan so far
+    std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
+    bool stop_at_first_solution = false;
+    std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty
+};
+
+/// One search algorithm.
+struct AlgorithmInfo {
+    std::string_view name;
+    std::string_view kind;  ///< "geometric and kinodynamic", ...
+    std::string_view description;
+};
+
+/// Every algorithm that a problem may name.
+[[nodiscard]] DOWNWASH_EXPORT std::span<const AlgorithmInfo> algorithms();
+
+/// The robot and scene of a problem, bound together.
+/// @pre problem_faults(problem) is empty
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem);
+
+/// The vehicle at the start of a problem.
+[[nodiscard]] DOWNWASH_EXPORT FlightState start_state(const FlightModel& model, const Start& start);
+
+/// Plans, and flies the plan with direct aerodynamics, hold included.
+/// An aerodynamics-aware plan whose direct flight fails is discarded and the search goes on; the other variants'
+/// plans are reported with their failed flight. Never prints, never exits.
+/// @throws InputError with every fault when the problem cannot be planned
+[[nodiscard]] DOWNWASH_EXPORT Solution solve(const Problem& problem, const SolveOptions& options = {});
+
+}  // namespace downwash
