@@ -31,12 +31,12 @@ Vector3 support(const Convex& convex, const Vector3& direction) {
         point = dot(axis, direction) < 0 ? point - axis : point + axis;
     }
     if (convex.disc_radius_m > 0) {
+        // Twice, and not for a direction along the normal: what rounding leaves of the normal would leave the disc.
         const Vector3& normal = convex.disc_normal;
         const Vector3 rough = direction - dot(normal, direction) * normal;
-        const Vector3 along =
-            rough - dot(normal, rough) * normal;  // what rounding left of the normal would leave the disc
+        const Vector3 along = rough - dot(normal, rough) * normal;
         const double squared = dot(along, along);
-        if (squared > 0) {
+        if (squared > 1e-28 * dot(direction, direction)) {
             point = point + (convex.disc_radius_m / std::sqrt(squared)) * along;
         }
     }

@@ -139,6 +139,30 @@ TEST_CASE("Clearance agrees with alternating projections in random scenes") {
     CHECK(undecided < 15);
 }
 
+TEST_CASE("Clearance agrees with alternating projections where solids stand square and diagonal to one another") {
+    reference::Dice dice(9);
+    for (int round = 0; round < 5000; ++round) {
+        const std::vector<Obstacle> obstacles{dice.gridded_obstacle()};
+        const Obstacle body = dice.gridded_obstacle();
+        const RobotShape robot{{{body.shape, {0, 0, 0}}}, 0, 0, 0.25, 0.01};
+        const PlaneOfMotion plane(body.center_m, body.rpy_rad[2]);
+        const PlanarPose pose{0, 0, body.rpy_rad[1], body.rpy_rad[0]};
+        const reference::Enclosure truth = reference::clearance(reference::robot_at(pose, plane, robot), obstacles);
+        CAPTURE(round);
+        const double clearance = checker_of(obstacles, robot, plane).clearance_m(pose);
+        REQUIRE(std::max(0.0, clearance) >= truth.low - 1e-8);
+        REQUIRE(clearance <= truth.high + 1e-12);
+    }
+}
+
+TEST_CASE("A ball straight before the face of a diagonal post is measured to that face") {
+    const RobotShape robot{{{Sphere{0.125}, {}}}, 0, 0, 0.3, 0.01};
+    const Obstacle post{"", Cylinder{0.625, 0.25, {-1, -1, 0}}, {-0.5, -1, -0.75}, {}};
+    const CollisionChecker checker = checker_of({post}, robot, {{0, -0.25, 0}, 0});
+    const double expected = 0.75 * std::sqrt(2.0) - 0.25;
+    CHECK(checker.clearance_m({0.25, -1.25, 0, 0}) == Approx(expected).epsilon(0).margin(1e-9));
+}
+
 TEST_CASE("Clearance agrees with samples of the robot's surface") {
     reference::Dice dice(3);
     for (int round = 0; round < 100; ++round) {

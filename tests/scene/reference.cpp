@@ -177,6 +177,23 @@ downwash::Obstacle Dice::obstacle() {
     return {"obstacle", shape(0.1, 1.5), vector(-2, 2), coin() ? Vector3{0, 0, 0} : vector(-4, 4)};
 }
 
+downwash::Obstacle Dice::gridded_obstacle() {
+    const auto steps = [&](double low, double high) { return std::round(between(low, high)); };
+    const auto length = [&] { return 0.25 * steps(1, 6); };
+    const double half_right = 0.78539816339744830962;
+    downwash::Obstacle drawn = obstacle();
+    if (coin()) {
+        drawn.shape = downwash::Cylinder{length() / 2, length(), {steps(-1, 1), steps(-1, 1), 1}};
+    } else if (coin()) {
+        drawn.shape = downwash::Box{{length(), length(), length()}};
+    } else {
+        drawn.shape = downwash::Sphere{length() / 2};
+    }
+    drawn.center_m = {0.25 * steps(-6, 6), 0.25 * steps(-6, 6), 0.25 * steps(-6, 6)};
+    drawn.rpy_rad = {half_right * steps(-2, 2), half_right * steps(-2, 2), half_right * steps(-2, 2)};
+    return drawn;
+}
+
 std::vector<downwash::Obstacle> Dice::obstacles(int count) {
     std::vector<downwash::Obstacle> drawn;
     for (int i = 0; i < count; ++i) {

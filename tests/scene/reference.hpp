@@ -48,6 +48,8 @@ class Dice {
     downwash::Shape shape(double least_m, double most_m);
     /// Half of them stand square to the world.
     downwash::Obstacle obstacle();
+    /// Lengths and positions on a grid of a quarter metre, angles of whole and half right angles.
+    downwash::Obstacle gridded_obstacle();
     std::vector<downwash::Obstacle> obstacles(int count);
     downwash::RobotShape robot();
     downwash::PlanarPose pose();
