@@ -1,0 +1,54 @@
+#pragma once
+
+#include "downwash/dynamics/plant_model.hpp"
+#include "downwash/simulation/robot.hpp"
+
+namespace downwash::test {
+
+/// The aerial manipulator that the tests fly: a quadrotor of 4.5 kg in X layout and an arm of 1.2 m that turns about
+/// its centre of mass. Rotors without lag, joint without limits.
+inline Robot test_robot() {
+    Robot robot;
+    robot.name = "test-robot";
+    robot.multirotor = {4.5, 0.20};
+
+    constexpr double rotor_radius_m = 0.1905;
+    constexpr double reach_m = 0.32;
+    constexpr double height_m = 0.06;
+    robot.body.push_back({Box{{0.40, 0.40, 0.12}}, {0, 0, 0}});
+    robot.rotors.radius_m = rotor_radius_m;
+    for (const double x_m : {reach_m, -reach_m}) {
+        for (const double y_m : {reach_m, -reach_m}) {
+            robot.rotors.positions_m.push_back({x_m, y_m, height_m});
+            robot.body.push_back({Cylinder{rotor_radius_m, 0.04, {0, 0, 1}}, {x_m, y_m, height_m}});
+        }
+    }
+    robot.rotors.min_thrust_n = 0;
+    robot.rotors.max_thrust_n = 28;
+    robot.rotors.time_constant_s = 0;
+    robot.rotors.power_coefficient_w_n1p5 = 2.9;
+
+    robot.arm.length_m = 1.2;
+    robot.arm.mass_kg = 0.45;
+    robot.arm.center_of_mass_m = 0.72;
+    robot.arm.inertia_kg_m2 = 0.06;
+    robot.arm.radius_m = 0.03;
+    robot.arm.max_torque_nm = 12;
+
+    robot.controller.rate_hz = 100;
+    robot.controller.position_kp = 2.0;
+    robot.controller.position_kd = 2.6;
+    robot.controller.position_ki = 0.4;
+    robot.controller.attitude_k5 = 8;
+    robot.controller.attitude_ku5 = 20;
+    robot.controller.arm_kp = 30;
+    robot.controller.arm_kd = 11;
+    return robot;
+}
+
+/// Its plant.
+inline PlantModel plant_of(const Robot& robot) {
+    return make_plant_model(robot.multirotor, robot.arm, robot.rotors);
+}
+
+}  // namespace downwash::test
