@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <unordered_set>
 
 #include "downwash/planner/ompl_space.hpp"
 
@@ -15,6 +16,12 @@ namespace {
 
 /// How often the search aims at the goal region.
 constexpr double goal_bias = 0.1;
+
+/// How often, once there is a plan, the search looks beside one of its corners (local biasing, Akgun and Stilman 2011).
+constexpr double local_bias = 0.5;
+
+/// How far beside it at the most [m].
+constexpr double local_radius_m = 2.0;
 
 /// Longest edge as a share of the space's extent; OMPL's own habit.
 constexpr double range_share = 0.2;
@@ -25,6 +32,20 @@ constexpr double optimism = 0.9;
 
 /// A better plan is worth a direct flight from this relative gain on.
 constexpr double least_gain = 1e-3;
+
+/// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
+/// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
+/// et al. 2019).
+std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
+    std::vector<FlightNode*> all = nodes;
+    std::unordered_set<const FlightNode*> known(nodes.begin(), nodes.end());
+    for (FlightNode* node : nodes) {
+        for (FlightNode* n = node->parent; n != nullptr && known.insert(n).second; n = n->parent) {
+            all.push_back(n);
+        }
+    }
+    return all;
+}
 
 }  // namespace
 
@@ -60,7 +81,19 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
 }
 
 std::optional<Configuration> FlightTreePlanner::target() {
+    if (incumbent_ && random_.chance(local_bias)) {
+        return target_beside_incumbent();
+    }
     return random_.chance(goal_bias) ? space_.sample_goal(random_) : space_.sample(random_);
+}
+
+std::optional<Configuration> FlightTreePlanner::target_beside_incumbent() {
+    const std::vector<Waypoint>& corners = incumbent_->plan.waypoints;
+    const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(corners.size())));
+    const Configuration corner{corners[i].x_m, corners[i].z_m, corners[i].arm_rad};
+    const double radius_m = local_radius_m * random_.uniform(0, 1) * random_.uniform(0, 1);
+    return i + 1 == corners.size() ? space_.sample_goal_near(corner, radius_m, random_)
+                                   : space_.sample_near(corner, radius_m, random_);
 }
 
 std::size_t FlightTreePlanner::neighbour_count() const {
@@ -103,7 +136,7 @@ FlightNode* FlightTreePlanner::connect(const Configuration& to, const std::vecto
         double estimate;
     };
     std::vector<Parent> parents;
-    for (FlightNode* node : neighbours) {
+    for (FlightNode* node : with_ancestors(neighbours)) {
         const double estimate = node->cost + optimism * tree_.estimated_cost(*node, to);
         const bool is_hopeless = incumbent_ && estimate >= incumbent_->cost;
         if (!is_hopeless && space_.distance_m(node->configuration, to) > 1e-6) {

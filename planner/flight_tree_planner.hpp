@@ -42,6 +42,7 @@ class FlightTreePlanner : public ompl::base::Planner {
  private:
     void grow();
     [[nodiscard]] std::optional<Configuration> target();
+    [[nodiscard]] std::optional<Configuration> target_beside_incumbent();
     FlightNode* connect(const Configuration& to, const std::vector<FlightNode*>& neighbours);
     void rewire_through(FlightNode& node, const std::vector<FlightNode*>& neighbours);
     void try_hold(FlightNode& node);

@@ -64,8 +64,25 @@ double SearchSpace::into_arm_range(double arm_rad) const noexcept {
     return arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
 }
 
-Configuration SearchSpace::goal_candidate(Random& random) const {
-    Configuration c = sample(random);
+Configuration SearchSpace::sample_near(const Configuration& configuration, double radius_m, Random& random) const {
+    const double turn = radius_m / arm_weight_m();
+    Configuration c;
+    c.x_m = std::clamp(configuration.x_m + random.uniform(-radius_m, radius_m), bounds_.x_low_m, bounds_.x_high_m);
+    c.z_m = std::clamp(configuration.z_m + random.uniform(-radius_m, radius_m), bounds_.z_low_m, bounds_.z_high_m);
+    c.arm_rad = configuration.arm_rad + random.uniform(-turn, turn);
+    if (arm_.is_limited) {
+        c.arm_rad = std::clamp(c.arm_rad, arm_.lower_limit_rad, arm_.upper_limit_rad);
+    }
+    return c;
+}
+
+std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& configuration, double radius_m,
+                                                           Random& random) const {
+    const Configuration candidate = moved_to_goal(sample_near(configuration, radius_m, random), random);
+    return is_valid(candidate) ? std::optional(candidate) : std::nullopt;
+}
+
+Configuration SearchSpace::moved_to_goal(Configuration c, Random& random) const {
     if (goal_.end_effector) {
         const EndEffectorGoal& goal = *goal_.end_effector;
         if (goal.direction_rad) {
@@ -88,7 +105,7 @@ Configuration SearchSpace::goal_candidate(Random& random) const {
 std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
     constexpr int tries = 20;
     for (int i = 0; i < tries; ++i) {
-        const Configuration candidate = goal_candidate(random);
+        const Configuration candidate = moved_to_goal(sample(random), random);
         if (is_valid(candidate)) {
             return candidate;
         }

@@ -48,6 +48,14 @@ class SearchSpace {
     /// any direction that the goal leaves open, so both branches of the arm occur. Nothing after some failed tries.
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
 
+    /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
+    [[nodiscard]] Configuration sample_near(const Configuration& configuration, double radius_m, Random& random) const;
+
+    /// The same for a configuration that meets the goal: what the goal leaves free is moved. Nothing when that
+    /// collides.
+    [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
+                                                                Random& random) const;
+
     /// Goal error of the level vehicle.
     [[nodiscard]] GoalError error(const Configuration& configuration) const;
 
@@ -65,7 +73,7 @@ class SearchSpace {
     [[nodiscard]] double extent_m() const noexcept;
 
  private:
-    [[nodiscard]] Configuration goal_candidate(Random& random) const;
+    [[nodiscard]] Configuration moved_to_goal(Configuration configuration, Random& random) const;
     /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
     [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;

@@ -1,0 +1,337 @@
+#include "downwash/planner/problem_parameters.hpp"
+
+#include <string>
+#include <vector>
+
+#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/base/parameter_factories.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/scene/shape_parameters.hpp"
+#include "downwash/simulation/robot_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+using Rows = std::vector<Parameter<Problem>>;
+
+constexpr double farthest_m = 1e5;  ///< from the origin; farther out, positions lose their millimetres
+
+// The factories for this table's Model; the members are named by lambdas.
+template <class Member>
+Parameter<Problem> number(std::string path, std::string description, Member member) {
+    return parameters::number<Problem>(std::move(path), std::move(description), member);
+}
+Parameter<Problem> group(std::string path, std::string description) {
+    return parameters::group<Problem>(std::move(path), std::move(description));
+}
+template <class Member>
+Parameter<Problem> position(std::string path, std::string description, Member member) {
+    return number(std::move(path), std::move(description), member).at_least(-farthest_m).at_most(farthest_m);
+}
+template <class Member>
+Parameter<Problem> angle(std::string path, std::string description, double most_deg, Member member) {
+    return number(std::move(path), std::move(description), member).at_least(-most_deg).at_most(most_deg);
+}
+template <class Member>
+Parameter<Problem> positive(std::string path, std::string description, double most, Member member) {
+    return number(std::move(path), std::move(description), member).above(0).at_most(most);
+}
+
+void add_robot(Rows& rows) {
+    rows.push_back(group("robot", "the aerial manipulator, here or in a file of its own").is_required().or_file());
+    for (const Parameter<Robot>& inner : robot_parameters().rows()) {
+        rows.push_back(parameters::nested<Problem>(
+            inner, "robot.", [](auto& p) -> auto& { return p.robot; }));
+    }
+}
+
+void add_plane(Rows& rows) {
+    rows.push_back(group("environment.plane", "the vertical plane of motion"));
+    rows.push_back(parameters::numbers<Problem>(
+                       "environment.plane.origin_m", "a world point of the plane, its (0, 0)", {"x", "y", "z"},
+                       [](const Problem& p, std::size_t) {
+                           return std::vector<double>(p.plane.origin_m().begin(), p.plane.origin_m().end());
+                       },
+                       [](Problem& p, std::size_t, const std::vector<double>& given) {
+                           p.plane = PlaneOfMotion({given[0], given[1], given[2]}, p.plane.heading_rad());
+                       })
+                       .at_least(-farthest_m)
+                       .at_most(farthest_m));
+    auto heading = parameters::row<Problem>(ParameterKind::number, "environment.plane.heading_deg",
+                                            "direction of its x axis, from the world's x to its y");
+    heading.get = [](const Problem& p, std::size_t) { return Value(p.plane.heading_rad()); };
+    heading.set = [](Problem& p, std::size_t, const Value& value) {
+        p.plane = PlaneOfMotion(p.plane.origin_m(), std::get<double>(value));
+    };
+    rows.push_back(std::move(heading).at_least(-360).at_most(360));
+}
+
+void add_obstacles(Rows& rows) {
+    rows.push_back(parameters::list<Problem>(
+        "environment.obstacles", "solids in the world frame", [](auto& p) -> auto& { return p.obstacles; }));
+    rows.push_back(parameters::text<Problem>(
+        "environment.obstacles[].name", "name, used once",
+        [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].name; }));
+    add_shape_rows<Problem>(
+        rows, "environment.obstacles[]", [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].shape; },
+        [](Rows& to, const std::string& path) {
+            to.push_back(parameters::vector<Problem>(
+                             path + ".center_m", "centre", {"x", "y", "z"},
+                             [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_m; })
+                             .is_required()
+                             .at_least(-farthest_m)
+                             .at_most(farthest_m));
+            to.push_back(parameters::vector<Problem>(
+                             path + ".rpy_deg", "orientation, R = Rz(yaw) Ry(pitch) Rx(roll)", {"roll", "pitch", "yaw"},
+                             [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].rpy_rad; })
+                             .at_least(-360)
+                             .at_most(360));
+        });
+    rows.push_back(parameters::planned<Problem>("environment.obstacles[].mesh", "a triangle mesh from a file"));
+    rows.push_back(parameters::planned<Problem>("environment.obstacles[].octomap", "an octree from a file"));
+}
+
+void add_environment(Rows& rows) {
+    rows.push_back(group("environment", "the world and where the vehicle may be").is_required());
+    add_plane(rows);
+    rows.push_back(group("environment.bounds", "where the multirotor's centre of mass may be").is_required());
+    rows.push_back(parameters::pair<Problem>(
+                       "environment.bounds.x_m", "along the plane", {"low", "high"},
+                       [](auto& p) -> auto& { return p.bounds.x_low_m; },
+                       [](auto& p) -> auto& { return p.bounds.x_high_m; })
+                       .is_required()
+                       .at_least(-farthest_m)
+                       .at_most(farthest_m));
+    rows.push_back(parameters::pair<Problem>(
+                       "environment.bounds.z_m", "upwards", {"low", "high"},
+                       [](auto& p) -> auto& { return p.bounds.z_low_m; },
+                       [](auto& p) -> auto& { return p.bounds.z_high_m; })
+                       .is_required()
+                       .at_least(-farthest_m)
+                       .at_most(farthest_m));
+    add_obstacles(rows);
+}
+
+/// One side's surface effect; `effect` names it in a Problem.
+template <class Effect>
+void add_surface(Rows& rows, const std::string& path, const std::string& description, Effect effect) {
+    std::vector<std::pair<EffectModel, std::string_view>> models;
+    for (const EffectModel model : {EffectModel::none, EffectModel::cheeseman_bennett, EffectModel::sanchez_cuevas}) {
+        models.emplace_back(model, info(model).name);
+    }
+    auto surface = group(path, description).or_none();
+    surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
+        if (count == 0) {
+            effect(p).model = EffectModel::none;
+        }
+    };
+    const auto has_fit = [effect](const Problem& p, std::size_t) {
+        return effect(p).model == EffectModel::sanchez_cuevas;
+    };
+    const std::string when = "with the model " + std::string(info(EffectModel::sanchez_cuevas).name);
+    rows.push_back(std::move(surface));
+    rows.push_back(parameters::choice<Problem>(
+        path + ".model", "the formula", models, [effect](auto& p) -> auto& { return effect(p).model; }));
+    rows.push_back(positive(
+                       path + ".k1", "divisor of the fit", 1e6, [effect](auto& p) -> auto& { return effect(p).k1; })
+                       .only(when, has_fit));
+    rows.push_back(number(
+                       path + ".k2_over_radius",
+                       "offset of the fit", [effect](auto& p) -> auto& { return effect(p).k2_over_radius; })
+                       .at_least(0)
+                       .at_most(100)
+                       .only(when, has_fit));
+}
+
+void add_aero(Rows& rows) {
+    auto aero = group("aero", "how surfaces act on the rotors").or_none();
+    aero.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
+    aero.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
+    rows.push_back(std::move(aero));
+    add_surface(
+        rows, "aero.ground", "surfaces below a rotor", [](auto& p) -> auto& { return p.aero.ground; });
+    add_surface(
+        rows, "aero.ceiling", "surfaces above a rotor", [](auto& p) -> auto& { return p.aero.ceiling; });
+    rows.push_back(number(
+                       "aero.max_factor", "most that a surface may multiply thrust by",
+                       [](auto& p) -> auto& { return p.aero.max_factor; })
+                       .at_least(1)
+                       .at_most(10));
+    rows.push_back(number(
+                       "aero.min_distance_radii", "flyable area: least distance of a rotor's disc from obstacles",
+                       [](auto& p) -> auto& { return p.aero.min_distance_radii; })
+                       .at_least(0)
+                       .at_most(100));
+    rows.push_back(number(
+                       "aero.grid_m", "cell size of the map", [](auto& p) -> auto& { return p.aero.grid_m; })
+                       .at_least(0.001)
+                       .at_most(10));
+}
+
+void add_start(Rows& rows) {
+    rows.push_back(group("start", "where the flight begins").is_required());
+    rows.push_back(position(
+                       "start.x_m", "along the plane", [](auto& p) -> auto& { return p.start.x_m; })
+                       .is_required());
+    rows.push_back(position(
+                       "start.z_m", "upwards", [](auto& p) -> auto& { return p.start.z_m; })
+                       .is_required());
+    rows.push_back(angle(
+                       "start.arm_deg", "arm from the vehicle's nose, down is 90", 3600,
+                       [](auto& p) -> auto& { return p.start.arm_rad; })
+                       .is_required());
+    rows.push_back(angle(
+        "start.pitch_deg", "pitch, nose down", 89, [](auto& p) -> auto& { return p.start.pitch_rad; }));
+    rows.push_back(angle(
+        "start.vx_m_s", "speed along the plane", 100, [](auto& p) -> auto& { return p.start.vx_m_s; }));
+    rows.push_back(angle(
+        "start.vz_m_s", "speed upwards", 100, [](auto& p) -> auto& { return p.start.vz_m_s; }));
+    rows.push_back(angle(
+        "start.pitch_rate_deg_s", "pitch rate, nose down", 1800,
+        [](auto& p) -> auto& { return p.start.pitch_rate_rad_s; }));
+    rows.push_back(angle(
+        "start.arm_rate_deg_s", "rate of the arm's joint", 1800,
+        [](auto& p) -> auto& { return p.start.arm_rate_rad_s; }));
+}
+
+void add_goal(Rows& rows) {
+    rows.push_back(group("goal", "where the flight must end and stay").is_required());
+    rows.push_back(
+        parameters::optional_group<Problem>(
+            "goal.end_effector", "the end effector at a point", [](auto& p) -> auto& { return p.goal.end_effector; })
+            .is_exclusive());
+    const auto tip = [](auto& p) -> auto& {
+        return *p.goal.end_effector;
+    };
+    rows.push_back(position(
+                       "goal.end_effector.x_m", "along the plane", [tip](auto& p) -> auto& { return tip(p).x_m; })
+                       .is_required());
+    rows.push_back(position(
+                       "goal.end_effector.z_m", "upwards", [tip](auto& p) -> auto& { return tip(p).z_m; })
+                       .is_required());
+    rows.push_back(positive(
+        "goal.end_effector.tolerance_m", "distance that is near enough",
+        100, [tip](auto& p) -> auto& { return tip(p).tolerance_m; }));
+    rows.push_back(angle(
+        "goal.end_effector.direction_deg", "direction of the arm in the plane, down is 90; null for any",
+        3600, [tip](auto& p) -> auto& { return tip(p).direction_rad; }));
+    rows.push_back(positive(
+        "goal.end_effector.direction_tolerance_deg", "deviation that is near enough",
+        180, [tip](auto& p) -> auto& { return tip(p).direction_tolerance_rad; }));
+
+    rows.push_back(
+        parameters::optional_group<Problem>(
+            "goal.configuration", "the vehicle and its arm", [](auto& p) -> auto& { return p.goal.configuration; })
+            .is_exclusive());
+    const auto pose = [](auto& p) -> auto& {
+        return *p.goal.configuration;
+    };
+    rows.push_back(position(
+        "goal.configuration.x_m", "along the plane; null for any", [pose](auto& p) -> auto& { return pose(p).x_m; }));
+    rows.push_back(position(
+        "goal.configuration.z_m", "upwards; null for any", [pose](auto& p) -> auto& { return pose(p).z_m; }));
+    rows.push_back(angle(
+        "goal.configuration.arm_deg", "arm from the vehicle's nose, modulo a turn; null for any",
+        3600, [pose](auto& p) -> auto& { return pose(p).arm_rad; }));
+    rows.push_back(positive(
+        "goal.configuration.tolerance_m", "distance that is near enough",
+        100, [pose](auto& p) -> auto& { return pose(p).tolerance_m; }));
+    rows.push_back(positive(
+        "goal.configuration.tolerance_deg", "deviation of the arm that is near enough",
+        180, [pose](auto& p) -> auto& { return pose(p).tolerance_rad; }));
+    rows.push_back(number(
+                       "goal.hold_s", "how long the end is held", [](auto& p) -> auto& { return p.goal.hold_s; })
+                       .at_least(1)
+                       .at_most(3600));
+}
+
+void add_motion(Rows& rows) {
+    rows.push_back(group("motion", "limits of the reference"));
+    rows.push_back(positive(
+        "motion.max_speed_m_s", "speed", 100, [](auto& p) -> auto& { return p.motion.max_speed_m_s; }));
+    rows.push_back(positive(
+        "motion.max_acceleration_m_s2", "acceleration", 100,
+        [](auto& p) -> auto& { return p.motion.max_acceleration_m_s2; }));
+    rows.push_back(positive(
+        "motion.max_arm_rate_deg_s", "rate of the arm's joint", 3600,
+        [](auto& p) -> auto& { return p.motion.max_arm_rate_rad_s; }));
+    rows.push_back(positive(
+        "motion.max_arm_acceleration_deg_s2", "acceleration of the arm's joint", 36000,
+        [](auto& p) -> auto& { return p.motion.max_arm_acceleration_rad_s2; }));
+}
+
+std::vector<std::string_view> algorithm_names() {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        names.push_back(algorithm.name);
+    }
+    return names;
+}
+
+void add_planner(Rows& rows) {
+    std::vector<std::pair<Variant, std::string_view>> variants;
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        variants.emplace_back(variant, name_of(variant));
+    }
+    std::vector<std::pair<Objective, std::string_view>> objectives;
+    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+        objectives.emplace_back(objective, name_of(objective));
+    }
+    rows.push_back(group("planner", "how to search"));
+    rows.push_back(parameters::choice<Problem>(
+        "planner.variant", "what the planner knows of the physics", variants,
+        [](auto& p) -> auto& { return p.planner.variant; }));
+    rows.push_back(parameters::choice<Problem>(
+        "planner.algorithm", "the tree planner", algorithm_names(),
+        [](auto& p) -> auto& { return p.planner.algorithm; }));
+    rows.push_back(parameters::choice<Problem>(
+        "planner.objective", "what a plan should keep small", objectives,
+        [](auto& p) -> auto& { return p.planner.objective; }));
+    rows.push_back(positive(
+        "planner.time_limit_s", "wall time of the search", 1e6,
+        [](auto& p) -> auto& { return p.planner.time_limit_s; }));
+    rows.push_back(parameters::integer<Problem>(
+                       "planner.max_iterations", "limit for a run that is repeatable bit for bit",
+                       [](auto& p) -> auto& { return p.planner.max_iterations; })
+                       .at_least(1)
+                       .at_most(1e15));
+    rows.push_back(
+        parameters::integer<Problem>(
+            "planner.seed", "of every random number of the search", [](auto& p) -> auto& { return p.planner.seed; })
+            .at_least(0)
+            .at_most(4294967295.0));
+    rows.push_back(number(
+                       "planner.safety_margin_m", "least clearance while planning",
+                       [](auto& p) -> auto& { return p.planner.safety_margin_m; })
+                       .at_least(0)
+                       .at_most(100));
+}
+
+Rows all_rows() {
+    Rows rows;
+    rows.push_back(
+        parameters::constant<Problem>("schema", "format and version of a problem file", "downwash/problem/v1")
+            .is_required());
+    rows.push_back(parameters::identifier<Problem>(
+        "name", "name of the problem; it becomes part of a path", [](auto& p) -> auto& { return p.name; }));
+    rows.push_back(parameters::text<Problem>(
+        "description", "what the problem is about", [](auto& p) -> auto& { return p.description; }));
+    add_robot(rows);
+    add_environment(rows);
+    add_aero(rows);
+    add_start(rows);
+    add_goal(rows);
+    add_motion(rows);
+    add_planner(rows);
+    return rows;
+}
+
+}  // namespace
+
+const ParameterTable<Problem>& problem_parameters() {
+    static const ParameterTable<Problem> table(all_rows());
+    return table;
+}
+
+}  // namespace downwash
