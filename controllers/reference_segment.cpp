@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace downwash {
 namespace {
@@ -19,9 +20,10 @@ double translation(const double axis[3]) {
     return std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
 }
 
-/// Largest ratio of a sampled speed or acceleration to its limit over the segment.
+/// Largest ratio of a sampled speed or acceleration to its limit between the ends of the segment.
 double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
-    constexpr std::int64_t samples = 64;
+    constexpr std::int64_t most_samples = 64;
+    const std::int64_t samples = std::min(most_samples, segment.ticks());
     double worst = 0;
     for (std::int64_t i = 1; i < samples; ++i) {
         const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
@@ -106,16 +108,37 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     if (is_at_rest(from)) {
         return ticks;
     }
-    // From a moving start the shortest time has no closed form: start from what braking alone needs and stretch.
+    // From a moving start the shortest time has no closed form: begin with less than any motion within the limits
+    // needs, stretch until they are kept, then close in on the last step.
     const double braking_s = std::max(translation(from.velocity) / limits.max_acceleration_m_s2,
                                       std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2);
     ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
+    const auto ratio_in = [&](std::int64_t count) {
+        return worst_ratio(ReferenceSegment(from, to, count, tick_s), limits);
+    };
+    constexpr double kept = 1 + 1e-9;
     constexpr int most_stretches = 60;
+    std::int64_t too_few = ticks - 1;
+    std::int64_t gentlest = ticks;
+    double least_ratio = std::numeric_limits<double>::infinity();
     for (int i = 0; i < most_stretches; ++i) {
-        if (worst_ratio(ReferenceSegment(from, to, ticks, tick_s), limits) <= 1) {
-            return ticks;
+        const double ratio = ratio_in(ticks);
+        if (ratio < least_ratio) {
+            least_ratio = ratio;
+            gentlest = ticks;
         }
+        if (ratio <= kept) {
+            break;
+        }
+        too_few = ticks;
         ticks += std::max<std::int64_t>(1, ticks / 16);
+    }
+    if (least_ratio > kept) {
+        return gentlest;
+    }
+    while (ticks - too_few > 1) {
+        const std::int64_t middle = too_few + (ticks - too_few) / 2;
+        (ratio_in(middle) <= kept ? ticks : too_few) = middle;
     }
     return ticks;
 }

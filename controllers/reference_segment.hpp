@@ -48,7 +48,9 @@ struct ReferenceKnot {
 };
 
 /// The fewest ticks in which the quintic from `from` to rest at `to` keeps the limits; 1 when nothing moves.
-/// A start that already breaks the limits is given the time that its motion needs, but cannot be mended.
+/// From a moving start the limits are sampled (kept to 0.3 %), and one tick less breaks them. A start from which no
+/// duration keeps them is given the one that breaks them least.
+/// @pre `to` is at rest
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
                                                           const ReferenceLimits& limits, double tick_s);
 

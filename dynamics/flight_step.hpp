@@ -57,7 +57,8 @@ template <class T>
 T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
     T sum(0);
     for (int i = 0; i < model.rotor_count; ++i) {
-        sum = sum + lane::power_three_halves(thrust_n[i]);
+        // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.
+        sum = sum + lane::power_three_halves(lane::max(thrust_n[i], T(0)));
     }
     return T(model.power_coefficient_w_n1p5) * sum;
 }

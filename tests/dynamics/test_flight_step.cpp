@@ -270,6 +270,18 @@ TEST_CASE("Rotor energy with lag is the power of the thrust that the lag has rea
     CHECK(end.energy_j == Approx(2.9 * 4 * std::pow(12.0, 1.5) * 0.05 / 1.5).epsilon(1e-6));
 }
 
+TEST_CASE("A lag shorter than the step leaves a finite energy when the thrust is cut") {
+    auto robot = test_robot();
+    robot.rotors.time_constant_s = 0.006;
+    const PlantModel model = plant_of(robot);
+    State state = state_of({0, 99, 0, quarter_turn}, {0, 0, 0, 0});
+    std::fill(state.thrust_n, state.thrust_n + 4, 12.0);
+    state = dynamics::flight_step(model, state, even_command(model, 0, 0), 0.01, FreeAir{});
+    CHECK(std::isfinite(state.energy_j));
+    CHECK(state.thrust_n[0] > 0);
+    CHECK(state.thrust_n[0] < 6);
+}
+
 TEST_CASE("Arm energy is the torque times the way it turned") {
     const PlantModel model = plant_of(test_robot());
     const State start = state_of({0, 9, 0, 0}, {0, 0, 0, 0});

@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/random.hpp"
+#include "../support/test_robot.hpp"
+#include "downwash/controllers/model_inversion.hpp"
+
+namespace {
+
+using downwash::ControllerGains;
+using downwash::PlantModel;
+using downwash::test::plant_of;
+using downwash::test::Random;
+using downwash::test::test_robot;
+namespace controllers = downwash::controllers;
+namespace dynamics = downwash::dynamics;
+using Memory = controllers::ControllerState<double>;
+using Setpoint = controllers::Setpoint<double>;
+using Step = controllers::ControlStep<double>;
+
+constexpr double tick_s = 0.01;
+constexpr double quarter_turn = 1.57079632679489661923;
+
+/// A robot whose arm is not at its centre of mass, so that nothing cancels by luck.
+downwash::Robot offset_robot() {
+    auto robot = test_robot();
+    robot.arm.joint_x_m = 0.1;
+    robot.arm.joint_z_m = -0.07;
+    robot.controller.attitude_kiu5 = 3;
+    robot.controller.arm_ki = 5;
+    return robot;
+}
+
+/// Somewhere in a lively flight.
+struct Case {
+    double q[4];
+    double u[4];
+    Memory memory;
+    Setpoint reference;
+    explicit Case(Random& random) {
+        for (int i = 0; i < 4; ++i) {
+            q[i] = random.uniform(-0.6, 0.6);
+            u[i] = random.uniform(-1, 1);
+        }
+        memory = {{random.uniform(-1, 1), random.uniform(-1, 1)},
+                  random.uniform(-0.3, 0.3),
+                  random.uniform(-0.3, 0.3),
+                  random.uniform(-0.4, 0.4),
+                  random.uniform(-1, 1),
+                  random.uniform(-1, 1)};
+        for (int i = 0; i < 3; ++i) {
+            reference.position[i] = q[i == 2 ? 3 : i] + random.uniform(-0.5, 0.5);
+            reference.velocity[i] = random.uniform(-1, 1);
+            reference.acceleration[i] = random.uniform(-1, 1);
+        }
+    }
+    [[nodiscard]] Step step(const PlantModel& model, const ControllerGains& gains) const {
+        return controllers::model_inversion_control(model, gains, q, u, memory, reference, tick_s);
+    }
+};
+
+/// What the plant does under a demand that is met in full.
+void accelerations(const PlantModel& model, const double (&q)[4], const double (&u)[4],
+                   const controllers::Demand<double>& demand, double (&du)[4]) {
+    const auto a = dynamics::attitude(model, q[2], q[3]);
+    const double force[4] = {demand.thrust_n * std::sin(q[2]), demand.thrust_n * std::cos(q[2]), demand.pitch_torque_nm,
+                             demand.joint_torque_nm};
+    dynamics::forward_dynamics(model, dynamics::equations_of_motion(model, a, u), force, du);
+}
+
+double limited(double value, double limit) {
+    return std::clamp(value, -limit, limit);
+}
+
+double wanted_arm_acceleration(const ControllerGains& g, const Case& c) {
+    return c.reference.acceleration[2] + g.arm_kd * (c.reference.velocity[2] - c.u[3]) +
+           g.arm_kp * (c.reference.position[2] - c.q[3]) +
+           limited(g.arm_ki * c.memory.arm_integral, g.arm_integral_limit_rad_s2);
+}
+
+double wanted_acceleration(const ControllerGains& g, const Case& c, int axis) {
+    return c.reference.acceleration[axis] + g.position_kd * (c.reference.velocity[axis] - c.u[axis]) +
+           g.position_kp * (c.reference.position[axis] - c.q[axis]) +
+           limited(g.position_ki * c.memory.position_integral[axis], g.position_integral_limit_m_s2);
+}
+
+Setpoint hold(double x_m, double z_m, double arm_rad) {
+    return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
+}
+
+}  // namespace
+
+TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and nothing needs remembering") {
+    const auto robot = test_robot();
+    const PlantModel model = plant_of(robot);
+    for (const double arm : {0.0, 0.7, quarter_turn, -2.0}) {
+        const double q[4] = {1, 2, 0, arm};
+        const double u[4] = {0, 0, 0, 0};
+        const Step step = controllers::model_inversion_control(
+            model, robot.controller, q, u, controllers::rested_controller(0.0), hold(1, 2, arm), tick_s);
+        const double gravity_torque_nm = -0.45 * 9.80665 * 0.72 * std::cos(arm);
+        CHECK(step.demand.thrust_n == Approx(4.95 * 9.80665).epsilon(1e-14));
+        CHECK(step.demand.joint_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
+        CHECK(step.demand.pitch_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
+        CHECK(step.integrated.pitch_reference_rad == Approx(0).margin(1e-15));
+        CHECK(step.integrated.position_integral[0] == 0);
+        CHECK(step.integrated.position_integral[1] == 0);
+        CHECK(step.integrated.arm_integral == 0);
+        CHECK(step.integrated.pitch_rate_integral == Approx(0).margin(1e-15));
+    }
+}
+
+TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") {
+    Random random(1);
+    auto robot = offset_robot();
+    const PlantModel model = plant_of(robot);
+    double worst = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        robot.controller.rate_feed_forward = i % 2 == 0;
+        const ControllerGains& g = robot.controller;
+        const Case c(random);
+        const Step step = c.step(model, g);
+
+        // The pitch loop once more, from the pitch reference on.
+        const double reference = step.integrated.pitch_reference_rad;
+        const double raw_rate = (reference - c.memory.pitch_reference_rad) / tick_s;
+        const double filtered = (g.pitch_rate_filter_s * c.memory.pitch_reference_rate + tick_s * raw_rate) /
+                                (g.pitch_rate_filter_s + tick_s);
+        const double rate_reference = filtered + g.attitude_k5 * (reference - c.q[2]);
+        double v5 = g.attitude_ku5 * (rate_reference - c.u[2]) + g.attitude_kiu5 * c.memory.pitch_rate_integral;
+        if (g.rate_feed_forward) {
+            v5 += (rate_reference - c.memory.rate_reference) / tick_s;
+        }
+        double du[4];
+        accelerations(model, c.q, c.u, step.demand, du);
+        worst = std::max({worst, std::abs(du[2] - v5) / std::max(1.0, std::abs(v5)),
+                          std::abs(du[3] - wanted_arm_acceleration(g, c)) / 10});
+        worst = std::max({worst, std::abs(step.integrated.pitch_reference_rate - filtered),
+                          std::abs(step.integrated.rate_reference - rate_reference)});
+    }
+    CHECK(worst < 1e-10);
+}
+
+TEST_CASE("Once the vehicle has the pitch that is asked for, it accelerates exactly as wanted") {
+    Random random(2);
+    auto robot = offset_robot();
+    robot.controller.attitude_ku5 = 0;  // the force is worked out for a pitch that does not accelerate
+    robot.controller.attitude_kiu5 = 0;
+    const PlantModel model = plant_of(robot);
+    double worst = 0;
+    int reached = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Case c(random);
+        Step step = c.step(model, robot.controller);
+        for (int k = 0; k < 200; ++k) {
+            c.q[2] = step.integrated.pitch_reference_rad;
+            step = c.step(model, robot.controller);
+        }
+        if (std::abs(c.q[2]) > 0.99 * robot.controller.max_tilt_rad) {
+            continue;  // clipped
+        }
+        ++reached;
+        double du[4];
+        accelerations(model, c.q, c.u, step.demand, du);
+        for (int axis = 0; axis < 2; ++axis) {
+            worst = std::max(worst, std::abs(du[axis] - wanted_acceleration(robot.controller, c, axis)));
+        }
+    }
+    CHECK(reached > 1000);
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("The pitch reference leans towards the target and never beyond the greatest tilt") {
+    const auto robot = test_robot();
+    const PlantModel model = plant_of(robot);
+    const double q[4] = {0, 2, 0, quarter_turn};
+    const double u[4] = {0, 0, 0, 0};
+    const auto pitch_reference = [&](double x_m, double z_m) {
+        return controllers::model_inversion_control(model, robot.controller, q, u, controllers::rested_controller(0.0),
+                                                    hold(x_m, z_m, quarter_turn), tick_s)
+            .integrated.pitch_reference_rad;
+    };
+    CHECK(pitch_reference(0.1, 2) == Approx(std::atan2(0.1 * 2.0, 9.80665)));
+    CHECK(pitch_reference(-0.1, 2) == Approx(-std::atan2(0.1 * 2.0, 9.80665)));
+    CHECK(pitch_reference(100, 2) == robot.controller.max_tilt_rad);
+    CHECK(pitch_reference(-100, 2) == -robot.controller.max_tilt_rad);
+    // Asked to dive faster than it can fall, it keeps its head up: f_min stands in for the downward force.
+    CHECK(pitch_reference(0.1, -100) == Approx(std::atan2(0.1 * 2.0, 0.2 * 9.80665)));
+}
+
+TEST_CASE("Integrators add error over time and stop where their limit can use no more") {
+    auto robot = offset_robot();
+    const ControllerGains& g = robot.controller;
+    const PlantModel model = plant_of(robot);
+    const double q[4] = {0, 2, 0, 0.5};
+    const double u[4] = {0, 0, 0, 0};
+    const Setpoint far = hold(0.4, 1.7, 0.8);
+    Memory memory = controllers::rested_controller(0.0);
+    memory = controllers::model_inversion_control(model, g, q, u, memory, far, tick_s).integrated;
+    CHECK(memory.position_integral[0] == Approx(0.4 * tick_s));
+    CHECK(memory.position_integral[1] == Approx(-0.3 * tick_s));
+    CHECK(memory.arm_integral == Approx(0.3 * tick_s));
+    for (int i = 0; i < 10'000; ++i) {
+        memory = controllers::model_inversion_control(model, g, q, u, memory, far, tick_s).integrated;
+    }
+    CHECK(memory.position_integral[0] == g.position_integral_limit_m_s2 / g.position_ki);
+    CHECK(memory.position_integral[1] == -g.position_integral_limit_m_s2 / g.position_ki);
+    CHECK(memory.arm_integral == g.arm_integral_limit_rad_s2 / g.arm_ki);
+    CHECK(std::abs(memory.pitch_rate_integral) <= g.attitude_integral_limit_rad_s2 / g.attitude_kiu5);
+
+    // Wound up to the limit, the integral leaves it with the first error of the other sign.
+    const auto back = controllers::model_inversion_control(model, g, q, u, memory, hold(-0.4, 2, 0.5), tick_s);
+    CHECK(back.integrated.position_integral[0] ==
+          Approx(g.position_integral_limit_m_s2 / g.position_ki - 0.4 * tick_s));
+}
+
+TEST_CASE("An integrator without gain stays where it is") {
+    const auto robot = test_robot();
+    const PlantModel model = plant_of(robot);
+    Random random(3);
+    const Case c(random);
+    const Step step = c.step(model, robot.controller);
+    CHECK(step.integrated.arm_integral == c.memory.arm_integral);
+    CHECK(step.integrated.pitch_rate_integral == c.memory.pitch_rate_integral);
+    CHECK(step.integrated.position_integral[0] != c.memory.position_integral[0]);
+}
+
+TEST_CASE("A frozen step keeps all integrals but goes on following the pitch reference") {
+    const auto robot = offset_robot();
+    const PlantModel model = plant_of(robot);
+    Random random(4);
+    for (int i = 0; i < 100; ++i) {
+        const Case c(random);
+        const Step step = c.step(model, robot.controller);
+        CHECK(step.frozen.position_integral[0] == c.memory.position_integral[0]);
+        CHECK(step.frozen.position_integral[1] == c.memory.position_integral[1]);
+        CHECK(step.frozen.pitch_rate_integral == c.memory.pitch_rate_integral);
+        CHECK(step.frozen.arm_integral == c.memory.arm_integral);
+        CHECK(step.frozen.pitch_reference_rad == step.integrated.pitch_reference_rad);
+        CHECK(step.frozen.pitch_reference_rate == step.integrated.pitch_reference_rate);
+        CHECK(step.frozen.rate_reference == step.integrated.rate_reference);
+    }
+}

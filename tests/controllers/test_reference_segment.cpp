@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/random.hpp"
+#include "downwash/controllers/reference_segment.hpp"
+
+namespace {
+
+using downwash::ReferenceLimits;
+using downwash::ReferencePoint;
+using downwash::ReferenceSegment;
+using downwash::rest_to_rest_duration_s;
+using downwash::shortest_ticks;
+using downwash::test::Random;
+
+constexpr double tick_s = 0.01;
+constexpr ReferenceLimits limits{1.0, 0.5, 0.785, 1.57};
+
+ReferencePoint rest_at(double x_m, double z_m, double arm_rad) {
+    ReferencePoint point;
+    point.position[0] = x_m;
+    point.position[1] = z_m;
+    point.position[2] = arm_rad;
+    return point;
+}
+
+ReferencePoint random_point(Random& random) {
+    ReferencePoint point;
+    for (int axis = 0; axis < 3; ++axis) {
+        point.position[axis] = random.uniform(-3, 3);
+        point.velocity[axis] = random.uniform(-1, 1);
+        point.acceleration[axis] = random.uniform(-1, 1);
+    }
+    return point;
+}
+
+double length(const double axis[3]) {
+    return std::hypot(axis[0], axis[1]);
+}
+
+/// The greatest of speeds and accelerations over their limits, at every tick between the ends.
+double use_of_limits(const ReferenceSegment& segment, const ReferenceLimits& most) {
+    double worst = 0;
+    for (std::int64_t tick = 1; tick < segment.ticks(); ++tick) {
+        const ReferencePoint p = segment.at_tick(tick);
+        worst = std::max({worst, length(p.velocity) / most.max_speed_m_s,
+                          length(p.acceleration) / most.max_acceleration_m_s2,
+                          std::abs(p.velocity[2]) / most.max_arm_rate_rad_s,
+                          std::abs(p.acceleration[2]) / most.max_arm_acceleration_rad_s2});
+    }
+    return worst;
+}
+
+/// A start that a flight along some earlier reference could have left, well within the limits.
+ReferencePoint moving_start(Random& random) {
+    ReferencePoint point = rest_at(0, 0, random.uniform(-3, 3));
+    const double direction = random.uniform(-3.2, 3.2);
+    const double speed = random.uniform(0.05, 0.8);
+    point.velocity[0] = speed * std::cos(direction);
+    point.velocity[1] = speed * std::sin(direction);
+    point.velocity[2] = random.uniform(-0.6, 0.6);
+    return point;
+}
+
+}  // namespace
+
+TEST_CASE("A segment begins and ends in exactly its two points") {
+    Random random(1);
+    for (int i = 0; i < 100; ++i) {
+        const ReferencePoint from = random_point(random);
+        const ReferencePoint to = random_point(random);
+        const std::int64_t ticks = random.integer(1, 500);
+        const ReferenceSegment segment(from, to, ticks, tick_s);
+        CHECK(segment.at_tick(0) == from);
+        CHECK(segment.at_tick(ticks) == to);
+        CHECK(segment.duration_s() == Approx(static_cast<double>(ticks) * tick_s));
+    }
+}
+
+TEST_CASE("The polynomial itself meets position, velocity and acceleration at both ends") {
+    // One tick of a very fine grid from each end, carried over by a Taylor step.
+    Random random(2);
+    constexpr std::int64_t ticks = 1'000'000;
+    constexpr double fine_s = 2e-6;
+    double worst = 0;
+    for (int i = 0; i < 200; ++i) {
+        const ReferencePoint ends[2] = {random_point(random), random_point(random)};
+        const ReferenceSegment segment(ends[0], ends[1], ticks, fine_s);
+        const ReferencePoint beside[2] = {segment.at_tick(1), segment.at_tick(ticks - 1)};
+        for (int end = 0; end < 2; ++end) {
+            const double h = end == 0 ? fine_s : -fine_s;
+            for (int axis = 0; axis < 3; ++axis) {
+                const ReferencePoint& at = ends[end];
+                worst = std::max(
+                    {worst, std::abs(beside[end].position[axis] - (at.position[axis] + h * at.velocity[axis])) / 1e-9,
+                     std::abs(beside[end].velocity[axis] - (at.velocity[axis] + h * at.acceleration[axis])) / 1e-7,
+                     std::abs(beside[end].acceleration[axis] - at.acceleration[axis]) / 1e-3});
+            }
+        }
+    }
+    CHECK(worst < 1);
+}
+
+TEST_CASE("Velocity and acceleration are the derivatives of the position") {
+    Random random(3);
+    double worst = 0;
+    for (int i = 0; i < 100; ++i) {
+        const ReferenceSegment segment(random_point(random), random_point(random), 2000, 1e-3);
+        for (std::int64_t tick = 1; tick < 2000; tick += 37) {
+            const ReferencePoint before = segment.at_tick(tick - 1);
+            const ReferencePoint here = segment.at_tick(tick);
+            const ReferencePoint after = segment.at_tick(tick + 1);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double velocity = (after.position[axis] - before.position[axis]) / 2e-3;
+                const double acceleration = (after.velocity[axis] - before.velocity[axis]) / 2e-3;
+                worst = std::max({worst, std::abs(velocity - here.velocity[axis]),
+                                  std::abs(acceleration - here.acceleration[axis])});
+            }
+        }
+    }
+    CHECK(worst < 1e-4);  // the difference quotients' own error, second order in 1 ms
+}
+
+TEST_CASE("Between points at rest the reference is a straight line that all axes pass together") {
+    Random random(4);
+    for (int i = 0; i < 50; ++i) {
+        const ReferencePoint from = rest_at(random.uniform(-3, 3), random.uniform(0, 3), random.uniform(-3, 3));
+        const ReferencePoint to = rest_at(random.uniform(-3, 3), random.uniform(0, 3), random.uniform(-3, 3));
+        const std::int64_t ticks = shortest_ticks(from, to, limits, tick_s);
+        const ReferenceSegment segment(from, to, ticks, tick_s);
+        for (std::int64_t tick = 0; tick <= ticks; tick += 7) {
+            const double t = static_cast<double>(tick) / static_cast<double>(ticks);
+            const double s = t * t * t * (10 + t * (-15 + 6 * t));
+            const ReferencePoint p = segment.at_tick(tick);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double expected = from.position[axis] + s * (to.position[axis] - from.position[axis]);
+                CHECK(std::abs(p.position[axis] - expected) < 1e-12);
+            }
+        }
+    }
+}
+
+TEST_CASE("The shortest segment between points at rest touches a limit and breaks none") {
+    Random random(5);
+    for (int i = 0; i < 500; ++i) {
+        const double size = std::abs(random.magnitude(-2, 1));
+        const ReferencePoint from = rest_at(0, 1, 0.3);
+        const ReferencePoint to =
+            rest_at(size * random.uniform(-1, 1), 1 + size * random.uniform(-1, 1), 0.3 + size * random.uniform(-1, 1));
+        const std::int64_t ticks = shortest_ticks(from, to, limits, tick_s);
+        REQUIRE(ticks >= 2);
+        CHECK(use_of_limits(ReferenceSegment(from, to, ticks, tick_s), limits) <= 1 + 1e-9);
+        // By the peaks of the quintic between its ticks one tick less is too fast.
+        const double distance = std::hypot(to.position[0] - from.position[0], to.position[1] - from.position[1]);
+        const double arm = std::abs(to.position[2] - from.position[2]);
+        const double duration_s = rest_to_rest_duration_s(distance, arm, limits);
+        CHECK(static_cast<double>(ticks) * tick_s >= duration_s - 1e-9);
+        CHECK(static_cast<double>(ticks - 1) * tick_s < duration_s);
+    }
+}
+
+TEST_CASE("The duration at rest is that of the limit that binds") {
+    CHECK(rest_to_rest_duration_s(8, 0, limits) == Approx(15));                                // speed
+    CHECK(rest_to_rest_duration_s(0.5, 0, limits) == Approx(std::sqrt(10 / std::sqrt(3.0))));  // acceleration
+    CHECK(rest_to_rest_duration_s(0, 0.785 * 8, limits) == Approx(15));
+    CHECK(rest_to_rest_duration_s(0, 0.157, limits) == Approx(std::sqrt(1 / std::sqrt(3.0))));
+    CHECK(rest_to_rest_duration_s(0, 0, limits) == 0);
+}
+
+TEST_CASE("The limit of translation is Euclidean, not per axis") {
+    const std::int64_t along = shortest_ticks(rest_at(0, 0, 0), rest_at(5, 0, 0), limits, tick_s);
+    const std::int64_t across = shortest_ticks(rest_at(0, 0, 0), rest_at(3, 4, 0), limits, tick_s);
+    CHECK(along == across);
+}
+
+TEST_CASE("Going nowhere takes one tick") {
+    CHECK(shortest_ticks(rest_at(1, 2, 3), rest_at(1, 2, 3), limits, tick_s) == 1);
+}
+
+TEST_CASE("From a moving start the limits are kept all the way") {
+    Random random(6);
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const ReferencePoint from = moving_start(random);
+        const ReferencePoint to = rest_at(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+        const ReferenceSegment segment(from, to, shortest_ticks(from, to, limits, tick_s), tick_s);
+        worst = std::max(worst, use_of_limits(segment, limits));
+    }
+    CHECK(worst < 1.003);
+}
+
+TEST_CASE("From a moving start one tick less would break a limit") {
+    Random random(7);
+    int slack = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const ReferencePoint from = moving_start(random);
+        const ReferencePoint to = rest_at(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+        const std::int64_t ticks = shortest_ticks(from, to, limits, tick_s);
+        if (ticks > 1 && use_of_limits(ReferenceSegment(from, to, ticks - 1, tick_s), limits) < 1) {
+            ++slack;
+        }
+    }
+    CHECK(slack == 0);
+}
+
+TEST_CASE("A short correction of a moving start is not stretched to the sampling of its limits") {
+    ReferencePoint from = rest_at(0, 0, 0);
+    from.velocity[0] = 0.01;
+    const std::int64_t ticks = shortest_ticks(from, rest_at(0.001, 0, 0), limits, tick_s);
+    CHECK(ticks < 20);
+    CHECK(use_of_limits(ReferenceSegment(from, rest_at(0.001, 0, 0), ticks, tick_s), limits) <= 1 + 1e-9);
+}
+
+TEST_CASE("A start at a limit, to the last bit beyond it, can still be left") {
+    ReferencePoint from = rest_at(0, 0, 0);
+    from.velocity[0] = std::nextafter(limits.max_speed_m_s, 2);
+    const std::int64_t ticks = shortest_ticks(from, rest_at(3, 0, 0), limits, tick_s);
+    CHECK(use_of_limits(ReferenceSegment(from, rest_at(3, 0, 0), ticks, tick_s), limits) < 1.003);
+    CHECK(static_cast<double>(ticks) * tick_s < 8);
+}
+
+TEST_CASE("A start that no duration can mend is not flown at a crawl") {
+    // Already at the speed limit and still accelerating.
+    ReferencePoint from = rest_at(0, 0, 0);
+    from.velocity[0] = limits.max_speed_m_s;
+    from.acceleration[0] = limits.max_acceleration_m_s2;
+    const std::int64_t ticks = shortest_ticks(from, rest_at(3, 0, 0), limits, tick_s);
+    const double use = use_of_limits(ReferenceSegment(from, rest_at(3, 0, 0), ticks, tick_s), limits);
+    CHECK(static_cast<double>(ticks) * tick_s < 8);
+    for (const std::int64_t other : {ticks / 2, ticks * 3 / 4, ticks * 5 / 4, ticks * 2, ticks * 4}) {
+        CHECK(use <= use_of_limits(ReferenceSegment(from, rest_at(3, 0, 0), other, tick_s), limits));
+    }
+}

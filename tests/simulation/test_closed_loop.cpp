@@ -1,0 +1,333 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "../support/test_robot.hpp"
+#include "downwash/simulation/closed_loop.hpp"
+
+// The closed loop far from every surface.
+
+namespace {
+
+using downwash::ControllerGains;
+using downwash::Robot;
+using downwash::test::plant_of;
+using downwash::test::test_robot;
+namespace controllers = downwash::controllers;
+namespace simulation = downwash::simulation;
+using Setpoint = controllers::Setpoint<double>;
+using State = simulation::State<double>;
+using Record = simulation::TickRecord<double>;
+
+constexpr double quarter_turn = 1.57079632679489661923;
+constexpr double degree = quarter_turn / 90;
+constexpr double gravity = 9.80665;
+
+struct FreeAir {
+    double operator()(int, double, double) const { return 1; }
+};
+
+simulation::TickModel model_of(const Robot& robot) {
+    return {plant_of(robot), robot.controller, 1 / robot.controller.rate_hz};
+}
+
+State resting_at(double x_m, double z_m, double arm_rad) {
+    State state{};
+    state.plant.q[0] = x_m;
+    state.plant.q[1] = z_m;
+    state.plant.q[3] = arm_rad;
+    std::fill(state.plant.thrust_n, state.plant.thrust_n + 4, 4.95 * gravity / 4);
+    state.controller = controllers::rested_controller(0.0);
+    return state;
+}
+
+Setpoint hold(double x_m, double z_m, double arm_rad) {
+    return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
+}
+
+State flown(const simulation::TickModel& model, State state, const Setpoint& reference, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+        Record record{};
+        state = simulation::tick(model, state, reference, FreeAir{}, record);
+    }
+    return state;
+}
+
+bool same_bytes(const State& a, const State& b) {
+    return std::memcmp(&a, &b, sizeof(State)) == 0;
+}
+
+/// The first tick from which on a response stays within `band` of its final value.
+int settling_tick(const std::vector<double>& response, double final, double band) {
+    int tick = static_cast<int>(response.size());
+    while (tick > 0 && std::abs(response[static_cast<std::size_t>(tick - 1)] - final) <= band) {
+        --tick;
+    }
+    return tick;
+}
+
+/// The linear loops that the gains were chosen for, sampled and held like the real ones. A step of 1 from rest.
+std::vector<double> ideal_height(const ControllerGains& g, int ticks) {
+    const double h = 1 / g.rate_hz;
+    double z = 0;
+    double u = 0;
+    double integral = 0;
+    std::vector<double> response;
+    for (int i = 0; i < ticks; ++i) {
+        response.push_back(z);
+        const double v = g.position_kp * (1 - z) - g.position_kd * u + g.position_ki * integral;
+        integral += (1 - z) * h;
+        z += u * h + 0.5 * v * h * h;
+        u += v * h;
+    }
+    return response;
+}
+
+/// Sideways the acceleration is g times the pitch, which follows its reference with poles of its own.
+std::vector<double> ideal_sideways(const ControllerGains& g, int ticks) {
+    const double h = 1 / g.rate_hz;
+    double x = 0;
+    double u = 0;
+    double integral = 0;
+    double pitch = 0;
+    double rate = 0;
+    double last = 0;
+    double filtered = 0;
+    std::vector<double> response;
+    for (int i = 0; i < ticks; ++i) {
+        response.push_back(x);
+        const double v = g.position_kp * (1 - x) - g.position_kd * u + g.position_ki * integral;
+        integral += (1 - x) * h;
+        const double reference = v / gravity;
+        filtered += h / (g.pitch_rate_filter_s + h) * ((reference - last) / h - filtered);
+        last = reference;
+        const double v5 = g.attitude_ku5 * (filtered + g.attitude_k5 * (reference - pitch) - rate);
+        // Exact over a tick of constant angular acceleration.
+        x += u * h + gravity * (pitch * h * h / 2 + rate * h * h * h / 6 + v5 * h * h * h * h / 24);
+        u += gravity * (pitch * h + rate * h * h / 2 + v5 * h * h * h / 6);
+        pitch += rate * h + 0.5 * v5 * h * h;
+        rate += v5 * h;
+    }
+    return response;
+}
+
+std::vector<double> ideal_arm(const ControllerGains& g, int ticks) {
+    const double h = 1 / g.rate_hz;
+    double q = 0;
+    double u = 0;
+    std::vector<double> response;
+    for (int i = 0; i < ticks; ++i) {
+        response.push_back(q);
+        const double v = g.arm_kp * (1 - q) - g.arm_kd * u;
+        q += u * h + 0.5 * v * h * h;
+        u += v * h;
+    }
+    return response;
+}
+
+/// One coordinate over a flight.
+std::vector<double> response_of(const simulation::TickModel& model, State state, const Setpoint& reference, int ticks,
+                                int coordinate) {
+    std::vector<double> response;
+    for (int i = 0; i < ticks; ++i) {
+        response.push_back(state.plant.q[coordinate]);
+        state = flown(model, state, reference, 1);
+    }
+    return response;
+}
+
+}  // namespace
+
+TEST_CASE("Hover stands still for ten seconds with the arm in any direction") {
+    const auto model = model_of(test_robot());
+    for (const double arm : {0.0, 0.8, quarter_turn, 3.0, -quarter_turn}) {
+        State state = resting_at(1, 2, arm);
+        double worst = 0;
+        for (int i = 0; i < 1000; ++i) {
+            state = flown(model, state, hold(1, 2, arm), 1);
+            worst = std::max({worst, std::abs(state.plant.q[0] - 1), std::abs(state.plant.q[1] - 2),
+                              std::abs(state.plant.q[2]), std::abs(state.plant.q[3] - arm)});
+        }
+        CHECK(worst < 1e-9);
+    }
+}
+
+TEST_CASE("From 5 cm beside its place the vehicle returns as the gains foretell and holds it to 1 mm and 0.1 degrees") {
+    const Robot robot = test_robot();
+    const auto model = model_of(robot);
+    const double arm = 0.6;
+    const int expected = std::max(settling_tick(ideal_height(robot.controller, 6000), 1, 0.001 / 0.05),
+                                  settling_tick(ideal_sideways(robot.controller, 6000), 1, 0.001 / 0.05));
+    INFO("expected to be back after ticks: " << expected);
+    State state = flown(model, resting_at(0.95, 2.05, arm), hold(1, 2, arm), expected * 11 / 10);
+    double worst_m = 0;
+    double worst_rad = 0;
+    for (int i = 0; i < 1000; ++i) {
+        state = flown(model, state, hold(1, 2, arm), 1);
+        worst_m = std::max({worst_m, std::abs(state.plant.q[0] - 1), std::abs(state.plant.q[1] - 2)});
+        worst_rad = std::max({worst_rad, std::abs(state.plant.q[2]), std::abs(state.plant.q[3] - arm)});
+    }
+    CHECK(worst_m < 0.001);
+    CHECK(worst_rad < 0.1 * degree);
+}
+
+TEST_CASE("A step of a metre upward follows the linear loop of the gains") {
+    const Robot robot = test_robot();
+    const auto model = model_of(robot);
+    constexpr int ticks = 3000;
+    const auto ideal = ideal_height(robot.controller, ticks);
+    const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(0, 3, quarter_turn), ticks, 1);
+    double worst = 0;
+    for (std::size_t i = 0; i < response.size(); ++i) {
+        worst = std::max(worst, std::abs(response[i] - 2 - ideal[i]));
+    }
+    CHECK(worst < 1e-6);
+    const int expected = settling_tick(ideal, 1, 0.02);
+    INFO("settles after ticks: " << expected);
+    CHECK(std::abs(settling_tick(response, 3, 0.02) - expected) <= 1);
+}
+
+TEST_CASE("A step of a metre sideways settles when the linear loop of the gains does") {
+    const Robot robot = test_robot();
+    const auto model = model_of(robot);
+    constexpr int ticks = 3000;
+    const int expected = settling_tick(ideal_sideways(robot.controller, ticks), 1, 0.02);
+    const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(1, 2, quarter_turn), ticks, 0);
+    const int settled = settling_tick(response, 1, 0.02);
+    INFO("settles after ticks: " << settled << ", expected: " << expected);
+    CHECK(std::abs(settled - expected) <= expected / 50);
+}
+
+TEST_CASE("A step of 60 degrees of the arm settles when the linear loop of the gains does") {
+    const Robot robot = test_robot();
+    const auto model = model_of(robot);
+    constexpr int ticks = 1000;
+    const int expected = settling_tick(ideal_arm(robot.controller, ticks), 1, 0.02);
+    const double from = 30 * degree;
+    const double to = 90 * degree;
+    const auto response = response_of(model, resting_at(0, 2, from), hold(0, 2, to), ticks, 3);
+    const int settled = settling_tick(response, to, 0.02 * (to - from));
+    INFO("settles after ticks: " << settled << ", expected: " << expected);
+    CHECK(std::abs(settled - expected) <= expected / 20);
+}
+
+TEST_CASE("A swing of the arm hardly moves the vehicle, because its reaction is foreseen") {
+    const auto model = model_of(test_robot());
+    State state = resting_at(0, 2, 30 * degree);
+    double pitch = 0;
+    double way_m = 0;
+    for (int i = 0; i < 500; ++i) {
+        state = flown(model, state, hold(0, 2, 90 * degree), 1);
+        pitch = std::max(pitch, std::abs(state.plant.q[2]));
+        way_m = std::max({way_m, std::abs(state.plant.q[0]), std::abs(state.plant.q[1] - 2)});
+    }
+    INFO("pitch " << pitch / degree << " degrees, way " << way_m << " m");
+    CHECK(pitch < 15 * degree);
+    CHECK(way_m < 0.1);
+}
+
+TEST_CASE("A tick hides nothing: the same arguments give the same bytes") {
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = 0.012;
+    const auto model = model_of(robot);
+    State state = resting_at(0, 2, 0.3);
+    for (int i = 0; i < 100; ++i) {
+        Record first_record{};
+        Record second_record{};
+        const State first = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, first_record);
+        const State second = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, second_record);
+        REQUIRE(same_bytes(first, second));
+        REQUIRE(std::memcmp(&first_record, &second_record, sizeof(Record)) == 0);
+        state = first;
+    }
+}
+
+TEST_CASE("A flight that is split and resumed from a copied state ends in the same bytes") {
+    for (const double lag_s : {0.0, 0.012}) {
+        Robot robot = test_robot();
+        robot.rotors.time_constant_s = lag_s;
+        robot.controller.attitude_kiu5 = 2;
+        robot.controller.arm_ki = 4;
+        robot.controller.rate_feed_forward = true;
+        const auto model = model_of(robot);
+        const Setpoint reference = hold(0.2, 2.2, 0.1);
+        const State start = resting_at(0, 2, 0.3);
+        const State whole = flown(model, start, reference, 300);
+        const State middle = flown(model, start, reference, 137);
+        unsigned char bytes[sizeof(State)];
+        std::memcpy(bytes, &middle, sizeof(State));
+        State copy;
+        std::memcpy(&copy, bytes, sizeof(State));
+        CHECK(same_bytes(flown(model, copy, reference, 163), whole));
+        CHECK(whole.plant.q[0] > 0.05);  // it did fly
+    }
+}
+
+TEST_CASE("Every number of the state matters to what follows") {
+    // If one did not, it would be dead weight; if something else did, the flight above could not be resumed.
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = 0.012;
+    robot.controller.attitude_kiu5 = 2;
+    robot.controller.arm_ki = 4;
+    robot.controller.rate_feed_forward = true;
+    const auto model = model_of(robot);
+    const Setpoint reference = hold(0.2, 2.2, 0.1);
+    const State state = flown(model, resting_at(0, 2, 0.3), reference, 50);
+    const State next = flown(model, state, reference, 2);
+    constexpr std::size_t numbers = sizeof(State) / sizeof(double);
+    for (std::size_t i = 0; i < numbers; ++i) {
+        const bool is_missing_rotor = i >= 12 && i < 16;
+        std::array<double, numbers> all{};
+        std::memcpy(all.data(), &state, sizeof(State));
+        all[i] += 1e-3;
+        State changed;
+        std::memcpy(&changed, all.data(), sizeof(State));
+        changed = flown(model, changed, reference, 2);
+        if (is_missing_rotor) {
+            changed.plant.thrust_n[i - 8] = next.plant.thrust_n[i - 8];
+        }
+        INFO("number " << i);
+        CHECK(same_bytes(changed, next) == is_missing_rotor);
+    }
+}
+
+TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the integrators") {
+    Robot robot = test_robot();
+    robot.controller.attitude_kiu5 = 2;
+    robot.controller.arm_ki = 4;
+    const auto model = model_of(robot);
+    const State state = resting_at(0, 2, 0);
+    Record record{};
+
+    const State calm = simulation::tick(model, state, hold(0, 2.05, 0), FreeAir{}, record);
+    CHECK(record.saturation < 1);
+    CHECK(calm.controller.position_integral[1] == Approx(0.05 * 0.01));
+
+    const State lifted = simulation::tick(model, state, hold(0, 50, 0), FreeAir{}, record);
+    CHECK(record.saturation > 1);
+    CHECK(*std::max_element(record.command.thrust_n, record.command.thrust_n + 4) == 28);
+    CHECK(lifted.controller.position_integral[1] == 0);
+
+    const State dropped = simulation::tick(model, state, hold(0, -50, 0), FreeAir{}, record);
+    CHECK(record.saturation > 1);
+    CHECK(*std::min_element(record.command.thrust_n, record.command.thrust_n + 4) == 0);
+    CHECK(dropped.controller.position_integral[1] == 0);
+
+    const State swung = simulation::tick(model, state, hold(0, 2, 3), FreeAir{}, record);
+    CHECK(record.saturation > 1);
+    CHECK(record.command.joint_torque_nm == 12);
+    CHECK(swung.controller.arm_integral == 0);
+    CHECK(swung.controller.pitch_rate_integral == 0);
+}
+
+TEST_CASE("Saturation is one at either limit of a rotor and greater beyond") {
+    const auto plant = plant_of(test_robot());
+    CHECK(simulation::thrust_saturation(plant, 28.0) == 1);
+    CHECK(simulation::thrust_saturation(plant, 0.0) == 1);
+    CHECK(simulation::thrust_saturation(plant, 14.0) == 0.5);
+    CHECK(simulation::thrust_saturation(plant, 29.0) > 1);
+    CHECK(simulation::thrust_saturation(plant, -1.0) > 1);
+}
