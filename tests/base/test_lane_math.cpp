@@ -168,7 +168,7 @@ TEST_CASE("Powers of three halves stay within 2 ulp") {
     CHECK(lane::power_three_halves(4.0) == 8);
 }
 
-TEST_CASE("A wrapped angle lies in (-pi, pi] and differs by whole turns to the last place of the argument") {
+TEST_CASE("A wrapped angle lies within half a turn and differs by whole turns to the last place of the argument") {
     Random random(6);
     const double half_turn = std::acos(-1.0);
     double outside = 0;
