@@ -12,22 +12,16 @@ constexpr double allowed_error = 0.0065;
 /// Below this an interval is not looked into further: twice of it still leaves the other axis most of the allowance.
 constexpr double negligible_error = 0.0015;
 constexpr std::size_t levels = 8;  // 2^0 to 2^7 steps
-constexpr double quarters[] = {0, 0.25, 0.5, 0.75, 1};
-
 /// Largest error seen of linear interpolation with 2^level steps.
 using ErrorPerLevel = std::array<double, levels>;
 
-/// Five values a quarter apart.
-using Values = std::array<double, 5>;
+/// Values at the ends and the middle of an interval.
+using Values = std::array<double, 3>;
 
-/// Deviation of the inner values from the straight line through the outer ones. A kink anywhere between the outer
-/// values deviates at one of the quarter points by at least 85 % of its largest deviation.
+/// Estimate of the largest deviation from the straight line through the ends. The middle shows all of a bend, two
+/// thirds of a kink at a quarter, and half of a kink at an end, where it hardly matters.
 double deviation(const Values& v) {
-    double largest = 0;
-    for (std::size_t i = 1; i < 4; ++i) {
-        largest = std::max(largest, std::abs(v[i] - (v[0] + quarters[i] * (v[4] - v[0]))));
-    }
-    return largest;
+    return 1.5 * std::abs(v[1] - 0.5 * (v[0] + v[2]));
 }
 
 /// Finds the errors along one line by halving it where it is not straight.
@@ -57,9 +51,8 @@ class LineProbe {
         }
         const double width = high - low;
         const double middle = low + 0.5 * width;
-        const auto at = [&](double eighths) { return value(low + 0.125 * eighths * width); };
-        descend({v[0], at(1), v[1], at(3), v[2]}, low, middle, level + 1, value, is_forbidden, errors);
-        descend({v[2], at(5), v[3], at(7), v[4]}, middle, high, level + 1, value, is_forbidden, errors);
+        descend({v[0], value(low + 0.25 * width), v[1]}, low, middle, level + 1, value, is_forbidden, errors);
+        descend({v[1], value(low + 0.75 * width), v[2]}, middle, high, level + 1, value, is_forbidden, errors);
     }
 };
 
@@ -90,28 +83,21 @@ CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
 
 }  // namespace
 
-CellSteps steps_for(const CellSquare& cell, const CellField& field) {
+CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const CellField& field) {
     const auto x_at = [&](double part) { return cell.x_low_m + part * cell.side_m; };
     const auto z_at = [&](double part) { return cell.z_low_m + part * cell.side_m; };
-    std::array<Values, 5> grid;  // [z][x]
-    for (std::size_t k = 0; k < 5; ++k) {
-        for (std::size_t i = 0; i < 5; ++i) {
-            grid[k][i] = field.factor(x_at(quarters[i]), z_at(quarters[k]));
-        }
-    }
     const auto is_forbidden = [&](double x, double z, double half) {
         return field.is_forbidden_around && field.is_forbidden_around(x_at(x), z_at(z), half * cell.side_m);
     };
     ErrorPerLevel along_x{};
     ErrorPerLevel along_z{};
-    for (std::size_t j = 0; j < 5; ++j) {
-        const double at = quarters[j];
+    for (std::size_t j = 0; j < 3; ++j) {
+        const double at = 0.5 * static_cast<double>(j);
         LineProbe::run(
-            grid[j], [&](double x) { return field.factor(x_at(x), z_at(at)); },
+            probes[j], [&](double x) { return field.factor(x_at(x), z_at(at)); },
             [&](double x, double half) { return is_forbidden(x, at, half); }, along_x);
         LineProbe::run(
-            {grid[0][j], grid[1][j], grid[2][j], grid[3][j], grid[4][j]},
-            [&](double z) { return field.factor(x_at(at), z_at(z)); },
+            {probes[0][j], probes[1][j], probes[2][j]}, [&](double z) { return field.factor(x_at(at), z_at(z)); },
             [&](double z, double half) { return is_forbidden(at, z, half); }, along_z);
     }
     return cheapest(along_x, along_z);

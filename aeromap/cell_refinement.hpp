@@ -2,9 +2,9 @@
 
 // Private to aeromap.
 
+#include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace downwash {
@@ -28,10 +28,13 @@ struct CellField {
     std::function<bool(double x_m, double z_m, double reach_m)> is_forbidden_around;
 };
 
+/// K at the corners, edge middles and middle of a cell: [row from below][column from the left].
+using CellProbes = std::array<std::array<double, 3>, 3>;
+
 /// The cheapest division whose bilinear interpolation error in the flyable part is estimated below 0.0065, which
 /// leaves a third of the promised 0.01 for what hides between the probes. Where even 128 steps do not reach it (a
 /// model steeper than 0.026 per step) the most exact division.
-[[nodiscard]] CellSteps steps_for(const CellSquare& cell, const CellField& field);
+[[nodiscard]] CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const CellField& field);
 
 /// Appends the (steps.x + 1)(steps.z + 1) node values of a cell, x running fastest.
 void append_nodes(const CellSquare& cell, const CellSteps& steps, const CellField& field, std::vector<float>& nodes);

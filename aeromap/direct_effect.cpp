@@ -59,8 +59,12 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
     : scene_(std::move(scene)),
       settings_(settings),
       radius_m_(rotor_radius_m),
+      ground_kink_m_(-1),
+      ceiling_kink_m_(-1),
       footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {
     require_valid(settings, rotor_radius_m);
+    ground_kink_m_ = radius_m_ * kink_of(settings.ground, settings.max_factor);
+    ceiling_kink_m_ = radius_m_ * kink_of(settings.ceiling, settings.max_factor);
 }
 
 DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
@@ -68,14 +72,14 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     if (!settings_.enabled) {
         return factors;
     }
-    const auto one_sided = [&](Side side, const SurfaceEffect& effect) {
+    const auto one_sided = [&](Side side, const SurfaceEffect& effect, double kink_m) {
         if (effect.model == EffectModel::none) {
             return 1.0;
         }
-        return disc_average({*scene_, hub_m, radius_m_, side, effect, settings_.max_factor}, *footprints_);
+        return disc_average({*scene_, hub_m, radius_m_, side, effect, settings_.max_factor, kink_m}, *footprints_);
     };
-    factors.ground = one_sided(Side::below, settings_.ground);
-    factors.ceiling = one_sided(Side::above, settings_.ceiling);
+    factors.ground = one_sided(Side::below, settings_.ground, ground_kink_m_);
+    factors.ceiling = one_sided(Side::above, settings_.ceiling, ceiling_kink_m_);
     factors.total = lane::min(1 + (factors.ground - 1) + (factors.ceiling - 1), settings_.max_factor);
     return factors;
 }

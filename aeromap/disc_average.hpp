@@ -20,6 +20,7 @@ struct DiscQuery {
     Side side;
     const SurfaceEffect& effect;
     double max_factor;
+    double kink_m;  ///< distance at which the model meets its cap, negative when it never does; see kink_of
 
     /// Distance from the rotor plane to a stretch of a vertical line: 0 when the plane cuts it, infinite when the
     /// stretch lies on the other side.
@@ -31,6 +32,9 @@ struct DiscQuery {
     /// The model's factor at that distance.
     [[nodiscard]] double factor(double gap_m) const { return surface_factor(effect, gap_m / radius_m, max_factor); }
 };
+
+/// Distance in rotor radii down to which the model stays below max_factor; negative when it does so at contact.
+[[nodiscard]] double kink_of(const SurfaceEffect& effect, double max_factor);
 
 /// The average over the disc of k(z(p)), z(p) the distance from p to the first surface on the side asked for.
 [[nodiscard]] double disc_average(const DiscQuery& query, std::span<const Footprint> footprints);

@@ -9,31 +9,24 @@ Footprint::Footprint(const Scene& scene, std::size_t which)
     : obstacle(which),
       bounds(scene.bounds(which)),
       is_level(scene.is_level(which)),
-      outline(shadow_outline(scene, which)),
-      chord_x(1),
-      chord_y(0) {
+      outline(shadow_outline(scene, which)) {
+    if (!is_level) {
+        return;
+    }
     const double center_x = 0.5 * (bounds.low_m[0] + bounds.high_m[0]);
     const double center_y = 0.5 * (bounds.low_m[1] + bounds.high_m[1]);
-    double longest = 0;
     for (const OutlineSegment& edge : outline.segments) {
         const double dx = edge.bx - edge.ax;
         const double dy = edge.by - edge.ay;
         const double length = std::sqrt(dx * dx + dy * dy);
-        if (length > longest) {
-            longest = length;
-            chord_x = dx / length;
-            chord_y = dy / length;
+        HalfPlane side{dy / length, -dx / length, 0};
+        side.reach = side.nx * edge.ax + side.ny * edge.ay;
+        if (side.nx * center_x + side.ny * center_y > side.reach) {
+            side = {-side.nx, -side.ny, -side.reach};
         }
-        if (is_level) {
-            HalfPlane side{dy / length, -dx / length, 0};
-            side.reach = side.nx * edge.ax + side.ny * edge.ay;
-            if (side.nx * center_x + side.ny * center_y > side.reach) {
-                side = {-side.nx, -side.ny, -side.reach};
-            }
-            sides_.push_back(side);
-        }
+        sides_.push_back(side);
     }
-    if (is_level && sides_.empty()) {
+    if (sides_.empty()) {
         disc_radius_ = outline.ellipses.front().across_m;
     }
 }

@@ -24,7 +24,6 @@ struct Footprint {
     Scene::Bounds bounds;
     bool is_level;  ///< see Scene::is_level
     ShadowOutline outline;
-    double chord_x, chord_y;  ///< unit direction of chords that suit the quadrature over this obstacle
 
  private:
     /// The points with nx x + ny y <= reach.

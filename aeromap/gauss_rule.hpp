@@ -28,6 +28,7 @@ constexpr std::array<GaussNode, N> smoothed(const std::array<GaussNode, N / 2>& 
 }
 
 // Nodes from the outermost inwards: zeros of the Legendre polynomials.
+inline constexpr auto smoothed_2 = smoothed<2>({{{0.57735026918962576, 1}}});
 inline constexpr auto smoothed_4 =
     smoothed<4>({{{0.8611363115940526, 0.34785484513745385}, {0.33998104358485626, 0.6521451548625461}}});
 inline constexpr auto smoothed_6 = smoothed<6>({{{0.932469514203152, 0.17132449237917036},

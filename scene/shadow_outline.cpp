@@ -10,6 +10,7 @@ namespace downwash {
 namespace {
 
 constexpr double negligible_m = 1e-9;
+constexpr double negligible_tilt = 1e-9;
 
 bool are_close(double ax, double ay, double bx, double by) {
     return std::abs(ax - bx) < negligible_m && std::abs(ay - by) < negligible_m;
@@ -22,17 +23,38 @@ bool are_same(const OutlineSegment& a, const OutlineSegment& b) {
 
 /// Upright edges shrink to a point, and edges above each other count once.
 void add(ShadowOutline& outline, const OutlineSegment& segment) {
-    const bool is_point = are_close(segment.ax, segment.ay, segment.bx, segment.by);
-    const bool is_known = std::any_of(outline.segments.begin(), outline.segments.end(),
-                                      [&](const OutlineSegment& other) { return are_same(segment, other); });
-    if (!is_point && !is_known) {
-        outline.segments.push_back(segment);
+    if (are_close(segment.ax, segment.ay, segment.bx, segment.by)) {
+        return;
     }
+    const auto known = std::find_if(outline.segments.begin(), outline.segments.end(),
+                                    [&](const OutlineSegment& other) { return are_same(segment, other); });
+    if (known == outline.segments.end()) {
+        outline.segments.push_back(segment);
+    } else {
+        known->seen_from_above |= segment.seen_from_above;
+        known->seen_from_below |= segment.seen_from_below;
+    }
+}
+
+/// The horizontal part of the steepest local axis, which is the normal of the upper or lower face; of a level box
+/// another axis.
+void set_slope(ShadowOutline& outline, const Matrix3& r) {
+    const auto level_part = [&](std::size_t axis) {
+        return std::sqrt(r[0][axis] * r[0][axis] + r[1][axis] * r[1][axis]);
+    };
+    std::size_t normal = 0;
+    for (const std::size_t axis : {1U, 2U}) {
+        normal = level_part(axis) < level_part(normal) ? axis : normal;
+    }
+    const std::size_t chosen = level_part(normal) > negligible_tilt ? normal : (normal + 1) % 3;
+    outline.slope_x = r[0][chosen] / level_part(chosen);
+    outline.slope_y = r[1][chosen] / level_part(chosen);
 }
 
 ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement& placement) {
     ShadowOutline outline;
     const Matrix3& r = placement.rotation;
+    set_slope(outline, r);
     const auto corner = [&](const std::array<double, 3>& signs, std::size_t row) {
         double position = solid.center_m[row];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -49,7 +71,11 @@ ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement&
                 from[(axis + 2) % 3] = other;
                 std::array<double, 3> to = from;
                 to[axis] = 1;
-                add(outline, {corner(from, 0), corner(from, 1), corner(to, 0), corner(to, 1)});
+                // The two faces that meet in this edge.
+                const double rise = one * r[2][(axis + 1) % 3];
+                const double other_rise = other * r[2][(axis + 2) % 3];
+                add(outline, {corner(from, 0), corner(from, 1), corner(to, 0), corner(to, 1),
+                              rise > 0 || other_rise > 0, rise < 0 || other_rise < 0});
             }
         }
     }
@@ -57,7 +83,7 @@ ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement&
 }
 
 ShadowOutline outline_of(const Sphere& sphere, const Obstacle& solid, const Placement&) {
-    return {{}, {{solid.center_m[0], solid.center_m[1], 1, 0, sphere.radius_m, sphere.radius_m}}};
+    return {1, 0, {}, {{solid.center_m[0], solid.center_m[1], 1, 0, sphere.radius_m, sphere.radius_m, true, true}}};
 }
 
 ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const Placement& placement) {
@@ -67,26 +93,29 @@ ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const 
     const double x = solid.center_m[0];
     const double y = solid.center_m[1];
     const double r = cylinder.radius_m;
-    if (level < negligible_m) {
-        outline.ellipses.push_back({x, y, 1, 0, r, r});
+    if (level < negligible_tilt) {
+        outline.ellipses.push_back({x, y, 1, 0, r, r, true, true});
         return outline;
     }
     const double ux = axis[0] / level;
     const double uy = axis[1] / level;
+    outline.slope_x = -uy;
+    outline.slope_y = ux;
     const double half_x = 0.5 * cylinder.length_m * axis[0];
     const double half_y = 0.5 * cylinder.length_m * axis[1];
     for (const double side : {-r, r}) {
         const double px = x - side * uy;
         const double py = y + side * ux;
-        add(outline, {px - half_x, py - half_y, px + half_x, py + half_y});
+        add(outline, {px - half_x, py - half_y, px + half_x, py + half_y, true, true});
     }
     for (const double end : {-1.0, 1.0}) {
         const double px = x + end * half_x;
         const double py = y + end * half_y;
-        if (std::abs(axis[2]) < negligible_m) {
-            add(outline, {px - r * uy, py + r * ux, px + r * uy, py - r * ux});
+        if (std::abs(axis[2]) < negligible_tilt) {
+            add(outline, {px - r * uy, py + r * ux, px + r * uy, py - r * ux, true, true});
         } else {
-            outline.ellipses.push_back({px, py, ux, uy, r * std::abs(axis[2]), r});
+            outline.ellipses.push_back(
+                {px, py, ux, uy, r * std::abs(axis[2]), r, end * axis[2] > 0, end * axis[2] < 0});
         }
     }
     return outline;

@@ -11,6 +11,7 @@ namespace downwash {
 /// A straight line of a shadow from (ax, ay) to (bx, by), world coordinates [m].
 struct OutlineSegment {
     double ax, ay, bx, by;
+    bool seen_from_above, seen_from_below;
 };
 
 /// A full ellipse of a shadow, world coordinates: semi-axis `along_m` in the unit direction (ux, uy), `across_m` square
@@ -19,12 +20,16 @@ struct OutlineEllipse {
     double x, y;
     double ux, uy;
     double along_m, across_m;
+    bool seen_from_above, seen_from_below;
 };
 
-/// Where an obstacle's vertical extent is not smooth, seen from above: its edges and the rim of its shadow. Whoever
-/// integrates over the shadow splits there. A box gives the distinct projections of its edges, a sphere a circle, a
-/// cylinder the two straight sides of its shadow and its rims.
+/// Where an obstacle's vertical extent is not smooth, projected on the ground: its edges and the rim of its shadow.
+/// What is seen from above can crease its upper surface, what is seen from below its lower one. Whoever integrates over
+/// the shadow splits there. A box gives the distinct projections of its edges, a sphere a circle, a cylinder the two
+/// straight sides of its shadow and its rims.
 struct ShadowOutline {
+    /// Unit horizontal direction in which upper and lower surface fall or bend most; any edge's where both are level.
+    double slope_x = 1, slope_y = 0;
     std::vector<OutlineSegment> segments;
     std::vector<OutlineEllipse> ellipses;
 };
