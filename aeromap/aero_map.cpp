@@ -116,18 +116,20 @@ void AeroMap::build(int threads) {
         std::size_t node = layer.nodes.size();
         for (std::size_t c = 0; c < parts[task].steps.size(); ++c) {
             const CellSteps steps = parts[task].steps[c];
-            layer.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z, parts[task].flyability[c]});
-            node += (steps.x + 1U) * (steps.z + 1U);
+            layer.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
+            node += std::size_t{steps.x + 1U} * (steps.z + 1U);
         }
         if (node > std::numeric_limits<std::uint32_t>::max()) {
             throw InputError(
                 std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
         }
+        layer.flyability.insert(layer.flyability.end(), parts[task].flyability.begin(), parts[task].flyability.end());
         layer.nodes.insert(layer.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
         parts[task] = {};
     }
     for (Layer& layer : layers_) {
         layer.cells.shrink_to_fit();
+        layer.flyability.shrink_to_fit();
         layer.nodes.shrink_to_fit();
     }
 }
@@ -135,7 +137,8 @@ void AeroMap::build(int threads) {
 std::size_t AeroMap::memory_bytes() const noexcept {
     std::size_t bytes = sizeof(*this);
     for (const Layer& layer : layers_) {
-        bytes += layer.cells.capacity() * sizeof(Cell) + layer.nodes.capacity() * sizeof(float);
+        bytes += layer.cells.capacity() * sizeof(Cell) + layer.flyability.capacity() +
+                 layer.nodes.capacity() * sizeof(float);
     }
     return bytes;
 }
@@ -152,7 +155,7 @@ bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
     const double w = (z_m - extent_.z_low_m) * cells_per_m_;
     if (u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_)) {
         const std::size_t cell = static_cast<std::size_t>(w) * columns_ + static_cast<std::size_t>(u);
-        const CellFlyability flyability = layers_[layer].cells[cell].flyability;
+        const CellFlyability flyability = layers_[layer].flyability[cell];
         if (flyability != CellFlyability::mixed) {
             return flyability == CellFlyability::flyable;
         }

@@ -27,8 +27,8 @@ enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 /// the default ground model asks for at most 0.36 R. Values are kept as float (relative error 2^-24). Immutable after
 /// construction.
 ///
-/// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.032 K over R / 6400
-/// (a max_factor above 3 with a min_distance_radii below 0.27) may exceed the 0.01 right at the surface.
+/// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.016 K over R / 25600
+/// (a max_factor far above 3 with a min_distance_radii near the model's pole) may exceed the 0.01 right at the surface.
 class DOWNWASH_EXPORT AeroMap {
  public:
     /// Builds every layer. The bytes do not depend on the number of threads.
@@ -78,12 +78,12 @@ class DOWNWASH_EXPORT AeroMap {
  private:
     struct Cell {
         std::uint32_t first_node;
-        std::uint8_t steps_x;  ///< intervals along x, a power of two
-        std::uint8_t steps_z;  ///< intervals along z, a power of two
-        CellFlyability flyability;
+        std::uint16_t steps_x;  ///< intervals along x, a power of two
+        std::uint16_t steps_z;  ///< intervals along z, a power of two
     };
     struct Layer {
         std::vector<Cell> cells;
+        std::vector<CellFlyability> flyability;  ///< of each cell
         std::vector<float> nodes;
     };
 

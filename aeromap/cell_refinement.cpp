@@ -11,7 +11,8 @@ namespace {
 constexpr double allowed_error = 0.0065;
 /// Below this an interval is not looked into further: twice of it still leaves the other axis most of the allowance.
 constexpr double negligible_error = 0.0015;
-constexpr std::size_t levels = 8;  // 2^0 to 2^7 steps
+constexpr std::size_t levels = 10;  // 2^0 to 2^9 steps
+static_assert(1 << (levels - 1) == most_steps);
 /// Largest error seen of linear interpolation with 2^level steps.
 using ErrorPerLevel = std::array<double, levels>;
 
@@ -22,6 +23,11 @@ using Values = std::array<double, 3>;
 /// thirds of a kink at a quarter, and half of a kink at an end, where it hardly matters.
 double deviation(const Values& v) {
     return 1.5 * std::abs(v[1] - 0.5 * (v[0] + v[2]));
+}
+
+/// Whether the curve could have bent one way before the middle and the other way after it.
+bool may_hide_a_turn(const Values& v) {
+    return std::abs(v[2] - v[0]) > 10 * negligible_error;
 }
 
 /// Finds the errors along one line by halving it where it is not straight.
@@ -38,29 +44,36 @@ class LineProbe {
     template <class Value, class IsForbidden>
     static void descend(const Values& v, double low, double high, std::size_t level, Value& value,
                         IsForbidden& is_forbidden, ErrorPerLevel& errors) {
-        const double error = deviation(v);
-        const bool is_last = error <= negligible_error || level + 1 == levels;
-        if (error > negligible_error && is_forbidden(0.5 * (low + high), 0.5 * (high - low))) {
-            return;
+        double error = deviation(v);
+        const double width = high - low;
+        Values lower{v[0], 0, v[1]};
+        Values upper{v[1], 0, v[2]};
+        const bool is_split = error > negligible_error || may_hide_a_turn(v);
+        if (is_split) {
+            if (is_forbidden(low + 0.5 * width, 0.5 * width)) {
+                return;
+            }
+            lower[1] = value(low + 0.25 * width);
+            upper[1] = value(low + 0.75 * width);
+            error = std::max({error, std::abs(lower[1] - (0.75 * v[0] + 0.25 * v[2])),
+                              std::abs(upper[1] - (0.25 * v[0] + 0.75 * v[2]))});
         }
+        const bool is_last = error <= negligible_error || level + 1 == levels;
         for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
             errors[finer] = std::max(errors[finer], error);
         }
-        if (is_last) {
-            return;
+        if (!is_last) {
+            descend(lower, low, low + 0.5 * width, level + 1, value, is_forbidden, errors);
+            descend(upper, low + 0.5 * width, high, level + 1, value, is_forbidden, errors);
         }
-        const double width = high - low;
-        const double middle = low + 0.5 * width;
-        descend({v[0], value(low + 0.25 * width), v[1]}, low, middle, level + 1, value, is_forbidden, errors);
-        descend({v[1], value(low + 0.75 * width), v[2]}, middle, high, level + 1, value, is_forbidden, errors);
     }
 };
 
 /// The fewest nodes within the allowance; the least error when nothing is.
 CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
-    CellSteps best{128, 128};
+    CellSteps best{most_steps, most_steps};
     double best_error = along_x[levels - 1] + along_z[levels - 1];
-    int best_nodes = 129 * 129;
+    int best_nodes = (most_steps + 1) * (most_steps + 1);
     for (std::size_t i = 0; i < levels; ++i) {
         for (std::size_t k = 0; k < levels; ++k) {
             const double error = along_x[i] + along_z[k];
@@ -72,7 +85,7 @@ CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
                                        ? (!was_allowed || is_cheaper)
                                        : !was_allowed && (error < best_error || (error == best_error && is_cheaper));
             if (is_better) {
-                best = {static_cast<std::uint8_t>(1 << i), static_cast<std::uint8_t>(1 << k)};
+                best = {static_cast<std::uint16_t>(1 << i), static_cast<std::uint16_t>(1 << k)};
                 best_error = error;
                 best_nodes = nodes;
             }

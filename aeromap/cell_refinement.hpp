@@ -9,9 +9,11 @@
 
 namespace downwash {
 
-/// How finely one map cell is divided along x and z; powers of two up to 128.
+inline constexpr int most_steps = 512;
+
+/// How finely one map cell is divided along x and z; powers of two up to most_steps.
 struct CellSteps {
-    std::uint8_t x = 1, z = 1;
+    std::uint16_t x = 1, z = 1;
 };
 
 /// A square cell in plane coordinates [m].
@@ -32,8 +34,8 @@ struct CellField {
 using CellProbes = std::array<std::array<double, 3>, 3>;
 
 /// The cheapest division whose bilinear interpolation error in the flyable part is estimated below 0.0065, which
-/// leaves a third of the promised 0.01 for what hides between the probes. Where even 128 steps do not reach it (a
-/// model steeper than 0.026 per step) the most exact division.
+/// leaves a third of the promised 0.01 for what hides between the probes. Where even most_steps do not reach it the
+/// most exact division.
 [[nodiscard]] CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const CellField& field);
 
 /// Appends the (steps.x + 1)(steps.z + 1) node values of a cell, x running fastest.
