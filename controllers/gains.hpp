@@ -15,8 +15,8 @@ struct ControllerGains {
     double attitude_ku5 = 0;   ///< pitch rate to pitch acceleration [1/s]
     double attitude_kiu5 = 0;  ///< integral of the pitch rate error [1/s2]
     double attitude_integral_limit_rad_s2 = 5.0;
-    double pitch_rate_filter_s = 0.05;  ///< time constant of the filtered derivative of the pitch reference
-    bool rate_feed_forward = false;     ///< adds d(u5_ref)/dt to the pitch acceleration
+    double pitch_rate_filter_s = 0.1;  ///< time constant of the filtered derivative of the pitch reference
+    bool rate_feed_forward = false;    ///< adds d(u5_ref)/dt to the pitch acceleration
 
     double arm_kp = 0;  ///< [1/s2]
     double arm_kd = 0;  ///< [1/s]

@@ -35,9 +35,9 @@ ControllerState<T> rested_controller(T pitch_rad) {
 /// What the controller asks for, before allocation and any limit.
 template <class T>
 struct Demand {
-    T thrust_n;         ///< F3
-    T pitch_torque_nm;  ///< T2
-    T joint_torque_nm;  ///< tau7
+    T thrust_n;          ///< F3
+    T pitch_torque_nm;   ///< T2
+    T arm_acceleration;  ///< v7 [rad/s2]; the joint torque follows from it and from what the rotors really give
 };
 
 /// Demand and next memory of one control step.
@@ -46,7 +46,19 @@ struct ControlStep {
     Demand<T> demand;
     ControllerState<T> integrated;  ///< next memory when the demand can be met
     ControllerState<T> frozen;      ///< next memory when it was clipped: integrators stand still (anti-windup)
+    dynamics::Attitude<T> attitude;
+    dynamics::EquationsOfMotion<T> equations;
 };
+
+/// D7^-1: the joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give.
+/// Where they give what was demanded this is row 4 with the accelerations of the inversion (model 5.2). Where they lag
+/// or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the
+/// vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
+template <class T>
+T joint_torque(const PlantModel& model, const ControlStep<T>& step, T thrust_n, T pitch_torque_nm) {
+    const T force[3] = {thrust_n * step.attitude.sin_pitch, thrust_n * step.attitude.cos_pitch, pitch_torque_nm};
+    return dynamics::joint_torque_for(model, step.equations, force, step.demand.arm_acceleration);
+}
 
 /// ki * integral, within its limit.
 template <class T>
@@ -73,6 +85,8 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     const dynamics::Attitude<T> a = dynamics::attitude(model, q[2], q[3]);
     const dynamics::EquationsOfMotion<T> e = dynamics::equations_of_motion(model, a, u);
     ControlStep<T> step;
+    step.attitude = a;
+    step.equations = e;
     step.frozen = memory;
 
     // Position and arm PID: the accelerations to impose.
@@ -121,7 +135,7 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     T force[4];
     dynamics::inverse_dynamics(model, e, acceleration, force);
     step.demand.pitch_torque_nm = force[2];
-    step.demand.joint_torque_nm = force[3];
+    step.demand.arm_acceleration = v7;
 
     step.integrated = step.frozen;
     for (int i = 0; i < 2; ++i) {

@@ -102,6 +102,24 @@ void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
     force[3] = arm_mass * (e.arm_x * du[0] + e.arm_z * du[1]) + e.m57 * du[2] + e.m77 * du[3] + e.bias[3];
 }
 
+/// The joint torque [N m] that gives the arm the acceleration `arm_acceleration` [rad/s2] while the other generalised
+/// forces are `force` [N, N, N m]: forward dynamics with du7 given.
+template <class T>
+T joint_torque_for(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3], T arm_acceleration) {
+    const T reduced_mass(model.reduced_mass_kg);
+    const T ratio(model.arm_mass_ratio);
+    const T inertia_b(model.arm_inertia_kg_m2);
+    const T fx = force[0] - e.bias[0];
+    const T fz = force[1] - e.bias[1];
+    const T s55 =
+        T(model.pitch_inertia_kg_m2) + inertia_b + reduced_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
+    const T s57 = inertia_b + reduced_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
+    const T g5 = force[2] - e.bias[2] - ratio * (e.pitch_x * fx + e.pitch_z * fz);
+    const T pitch_acceleration = (g5 - s57 * arm_acceleration) / s55;
+    const T s77 = inertia_b + reduced_mass * T(model.arm_center_of_mass_m * model.arm_center_of_mass_m);
+    return s57 * pitch_acceleration + s77 * arm_acceleration + ratio * (e.arm_x * fx + e.arm_z * fz) + e.bias[3];
+}
+
 /// Kinetic energy of both bodies [J].
 template <class T>
 T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T u[4]) {

@@ -35,6 +35,24 @@ T thrust_saturation(const PlantModel& plant, T demand_n) {
     return lane::max(demand_n / T(plant.max_thrust_n), T(1) + (T(plant.min_thrust_n) - demand_n) / span);
 }
 
+/// What the controller expects of the rotors in the middle of the tick: the commands, or where a lag will have brought
+/// the thrust by then (one implicit step of half a tick). Surface effects are not known to it.
+template <class T>
+dynamics::RotorWrench<T> expected_wrench(const TickModel& model, const State<T>& state,
+                                         const dynamics::PlantCommand<T>& command) {
+    const PlantModel& plant = model.plant;
+    const double half_tick_s = 0.5 * model.tick_s;
+    const T reached(half_tick_s / (half_tick_s + plant.rotor_time_constant_s));  // 1 without lag
+    dynamics::RotorWrench<T> wrench{T(0), T(0)};
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        const T from = plant.rotor_time_constant_s > 0 ? state.plant.thrust_n[i] : command.thrust_n[i];
+        const T thrust_n = from + reached * (command.thrust_n[i] - from);
+        wrench.thrust_n = wrench.thrust_n + thrust_n;
+        wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(plant.rotor_x_m[i]) * thrust_n;
+    }
+    return wrench;
+}
+
 /// The commands that the controller holds from this state on, and its memory at the end of the tick.
 template <class T>
 controllers::ControllerState<T> control(const TickModel& model, const State<T>& state,
@@ -44,13 +62,16 @@ controllers::ControllerState<T> control(const TickModel& model, const State<T>& 
                                                            state.controller, reference, T(model.tick_s));
     T demand_n[max_rotors];
     dynamics::allocate(plant, step.demand.thrust_n, step.demand.pitch_torque_nm, demand_n);
-    const T most_torque(plant.max_joint_torque_nm);
-    record.saturation = lane::abs(step.demand.joint_torque_nm) / most_torque;
-    record.command.joint_torque_nm = lane::clamp(step.demand.joint_torque_nm, -most_torque, most_torque);
+    record.saturation = T(0);
     for (int i = 0; i < plant.rotor_count; ++i) {
         record.saturation = lane::max(record.saturation, thrust_saturation(plant, demand_n[i]));
         record.command.thrust_n[i] = lane::clamp(demand_n[i], T(plant.min_thrust_n), T(plant.max_thrust_n));
     }
+    const dynamics::RotorWrench<T> wrench = expected_wrench(model, state, record.command);
+    const T torque_nm = controllers::joint_torque(plant, step, wrench.thrust_n, wrench.pitch_torque_nm);
+    const T most_torque(plant.max_joint_torque_nm);
+    record.saturation = lane::max(record.saturation, lane::abs(torque_nm) / most_torque);
+    record.command.joint_torque_nm = lane::clamp(torque_nm, -most_torque, most_torque);
     const auto is_clipped = record.saturation > T(1);
     controllers::ControllerState<T> next = step.integrated;
     for (int i = 0; i < 2; ++i) {

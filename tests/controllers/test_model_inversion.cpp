@@ -61,11 +61,12 @@ struct Case {
 };
 
 /// What the plant does under a demand that is met in full.
-void accelerations(const PlantModel& model, const double (&q)[4], const double (&u)[4],
-                   const controllers::Demand<double>& demand, double (&du)[4]) {
+void accelerations(const PlantModel& model, const double (&q)[4], const double (&u)[4], const Step& step,
+                   double (&du)[4]) {
     const auto a = dynamics::attitude(model, q[2], q[3]);
+    const controllers::Demand<double>& demand = step.demand;
     const double force[4] = {demand.thrust_n * std::sin(q[2]), demand.thrust_n * std::cos(q[2]), demand.pitch_torque_nm,
-                             demand.joint_torque_nm};
+                             controllers::joint_torque(model, step, demand.thrust_n, demand.pitch_torque_nm)};
     dynamics::forward_dynamics(model, dynamics::equations_of_motion(model, a, u), force, du);
 }
 
@@ -101,7 +102,8 @@ TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and n
             model, robot.controller, q, u, controllers::rested_controller(0.0), hold(1, 2, arm), tick_s);
         const double gravity_torque_nm = -0.45 * 9.80665 * 0.72 * std::cos(arm);
         CHECK(step.demand.thrust_n == Approx(4.95 * 9.80665).epsilon(1e-14));
-        CHECK(step.demand.joint_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
+        CHECK(controllers::joint_torque(model, step, step.demand.thrust_n, step.demand.pitch_torque_nm) ==
+              Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
         CHECK(step.demand.pitch_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
         CHECK(step.integrated.pitch_reference_rad == Approx(0).margin(1e-15));
         CHECK(step.integrated.position_integral[0] == 0);
@@ -133,7 +135,7 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
             v5 += (rate_reference - c.memory.rate_reference) / tick_s;
         }
         double du[4];
-        accelerations(model, c.q, c.u, step.demand, du);
+        accelerations(model, c.q, c.u, step, du);
         worst = std::max({worst, std::abs(du[2] - v5) / std::max(1.0, std::abs(v5)),
                           std::abs(du[3] - wanted_arm_acceleration(g, c)) / 10});
         worst = std::max({worst, std::abs(step.integrated.pitch_reference_rate - filtered),
@@ -162,7 +164,7 @@ TEST_CASE("Once the vehicle has the pitch that is asked for, it accelerates exac
         }
         ++reached;
         double du[4];
-        accelerations(model, c.q, c.u, step.demand, du);
+        accelerations(model, c.q, c.u, step, du);
         for (int axis = 0; axis < 2; ++axis) {
             worst = std::max(worst, std::abs(du[axis] - wanted_acceleration(robot.controller, c, axis)));
         }

@@ -331,3 +331,32 @@ TEST_CASE("Saturation is one at either limit of a rotor and greater beyond") {
     CHECK(simulation::thrust_saturation(plant, 29.0) > 1);
     CHECK(simulation::thrust_saturation(plant, -1.0) > 1);
 }
+
+TEST_CASE("hover holds with rotor lag up to 30 ms, whatever the arm's direction") {
+    // The joint torque that answers a pitch torque must not come before it: a hanging arm would diverge.
+    for (const double lag_s : {0.01, 0.02, 0.03}) {
+        for (const double arm : {-1.5707963267948966, -0.8, 0.0, 0.8, 1.5707963267948966, 3.0}) {
+            CAPTURE(lag_s, arm);
+            auto robot = downwash::test::test_robot();
+            robot.rotors.time_constant_s = lag_s;
+            const simulation::TickModel model{make_plant_model(robot.multirotor, robot.arm, robot.rotors),
+                                              robot.controller, 0.01};
+            simulation::State<double> state{};
+            state.plant.q[3] = arm;
+            state.controller = controllers::rested_controller(0.0);
+            for (int i = 0; i < model.plant.rotor_count; ++i) {
+                state.plant.thrust_n[i] = model.plant.force_share[i] * 4.95 * 9.80665;
+            }
+            const controllers::Setpoint<double> reference{{0.2, 0.1, arm + 0.2}, {0, 0, 0}, {0, 0, 0}};
+            simulation::TickRecord<double> record{};
+            for (int i = 0; i < 1000; ++i) {
+                state = simulation::tick(
+                    model, state, reference, [](int, double, double) { return 1.0; }, record);
+            }
+            CHECK(std::abs(state.plant.q[0] - 0.2) < 0.02);
+            CHECK(std::abs(state.plant.q[1] - 0.1) < 0.02);
+            CHECK(std::abs(state.plant.q[2]) < 0.01);
+            CHECK(std::abs(state.plant.q[3] - arm - 0.2) < 0.01);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <stop_token>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+
+using namespace downwash;
+
+namespace {
+
+Problem with(Variant variant, Problem problem = test::ceiling_problem()) {
+    problem.planner.variant = variant;
+    return problem;
+}
+
+bool same_bytes(const Plan& a, const Plan& b) {
+    if (a.reference.size() != b.reference.size()) {
+        return false;
+    }
+    for (std::size_t i = 0; i < a.reference.size(); ++i) {
+        if (a.reference[i].tick != b.reference[i].tick || !(a.reference[i].point == b.reference[i].point)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool same_bytes(const Execution& a, const Execution& b) {
+    if (a.rows.size() != b.rows.size() || a.energy_j != b.energy_j) {
+        return false;
+    }
+    for (std::size_t i = 0; i < a.rows.size(); ++i) {
+        if (std::memcmp(a.rows[i].q, b.rows[i].q, sizeof(a.rows[i].q)) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("each variant solves an easy problem and its plan starts where the vehicle is") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        Problem problem = with(variant);
+        problem.planner.max_iterations = 1500;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        REQUIRE(solution.plan);
+        REQUIRE(solution.execution);
+        CHECK(solution.plan->waypoints.front().x_m == problem.start.x_m);
+        CHECK(solution.plan->waypoints.front().z_m == problem.start.z_m);
+        CHECK(solution.plan->reference.front().tick == 0);
+        CHECK(solution.plan->reference.size() == solution.plan->waypoints.size());
+        CHECK(solution.cost > 0);
+        CHECK(solution.planning.first_solution_wall_s);
+        CHECK(solution.planning.iterations <= 1500);
+    }
+}
+
+TEST_CASE("an aerodynamics-aware plan is reported only with a flight that held at the goal under direct aerodynamics") {
+    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+        Problem problem = with(Variant::mp_arm_ada);
+        problem.planner.seed = seed;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        CHECK(solution.execution->aero);
+        CHECK(solution.execution->outcome == Outcome::ok);
+        CHECK(solution.execution->min_clearance_m > 0);
+        CHECK(solution.execution->goal_error_m <= problem.goal.end_effector->tolerance_m);
+        CHECK(solution.execution->duration_s ==
+              Approx(solution.plan->duration_s() + problem.goal.hold_s).margin(0.011));
+        // The map is within 0.01 of the direct effect, so the flights differ little.
+        CHECK(solution.execution_cost == Approx(solution.cost).epsilon(0.01));
+    }
+}
+
+TEST_CASE("the same seed and iteration budget give the same bytes, whatever the threads") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        Problem problem = with(variant);
+        problem.planner.max_iterations = variant == Variant::mp_arm ? 800 : 80;
+        SolveOptions two_threads;
+        two_threads.threads = 2;
+        const Solution a = solve(problem);
+        const Solution b = solve(problem, two_threads);
+        REQUIRE(a.plan);
+        REQUIRE(b.plan);
+        CHECK(a.cost == b.cost);
+        CHECK(same_bytes(*a.plan, *b.plan));
+        CHECK(same_bytes(*a.execution, *b.execution));
+        CHECK(a.planning.edges_simulated == b.planning.edges_simulated);
+        CHECK(a.planning.states_checked == b.planning.states_checked);
+        CHECK(a.planning.rejected == b.planning.rejected);
+        problem.planner.seed = 2;
+        CHECK_FALSE(same_bytes(*a.plan, *solve(problem).plan));
+    }
+}
+
+TEST_CASE("improvements only ever get cheaper and the last one is the plan's cost") {
+    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+        CAPTURE(name_of(objective));
+        Problem problem = with(Variant::mp_arm_ada);
+        problem.planner.objective = objective;
+        problem.planner.max_iterations = 60;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        const auto& improvements = solution.planning.improvements;
+        REQUIRE(!improvements.empty());
+        for (std::size_t i = 1; i < improvements.size(); ++i) {
+            CHECK(improvements[i].cost < improvements[i - 1].cost);
+        }
+        CHECK(improvements.back().cost == solution.cost);
+        CHECK(solution.execution_cost == Approx(solution.cost).epsilon(0.01));
+    }
+}
+
+TEST_CASE("a goal behind a closed wall is never called solved") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        Problem problem = with(variant, test::walled_problem());
+        problem.planner.max_iterations = 60;
+        const Solution solution = solve(problem);
+        CHECK(solution.status != Status::solved);
+        CHECK_FALSE(solution.planning.first_solution_wall_s);
+        CHECK(solution.planning.improvements.empty());
+        if (solution.status == Status::approximate) {
+            REQUIRE(solution.execution);
+            CHECK(solution.execution->outcome != Outcome::ok);
+        }
+    }
+}
+
+TEST_CASE("a stop asked for before the search ends it at once") {
+    std::stop_source source;
+    source.request_stop();
+    SolveOptions options;
+    options.stop = source.get_token();
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da}) {
+        Problem problem = with(variant);
+        problem.planner.max_iterations.reset();
+        const Solution solution = solve(problem, options);
+        CHECK(solution.interrupted);
+        CHECK(solution.status != Status::solved);
+        CHECK(solution.planning.wall_s < 1);
+    }
+}
+
+TEST_CASE("a stop asked for in mid-search keeps the best plan so far") {
+    std::stop_source source;
+    SolveOptions options;
+    options.stop = source.get_token();
+    options.on_progress = [&](const Progress& progress) {
+        if (progress.best_cost) {
+            source.request_stop();
+        }
+    };
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 60;
+    const Solution solution = solve(problem, options);
+    CHECK(solution.interrupted);
+    CHECK(solution.status == Status::solved);
+    CHECK(solution.planning.wall_s < 30);
+}
+
+TEST_CASE("the search may end with the first accepted plan") {
+    SolveOptions options;
+    options.stop_at_first_solution = true;
+    const Solution solution = solve(with(Variant::mp_arm_ada), options);
+    CHECK(solution.status == Status::solved);
+    CHECK(solution.planning.improvements.size() == 1);
+}
+
+TEST_CASE("without surface effects the aware planner is the dynamics-aware one") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.aero.enabled = false;
+    problem.planner.max_iterations = 60;
+    const Solution aware = solve(problem);
+    problem.planner.variant = Variant::mp_arm_da;
+    const Solution dynamic = solve(problem);
+    REQUIRE(aware.plan);
+    REQUIRE(dynamic.plan);
+    CHECK_FALSE(aware.execution->aero);
+    CHECK(aware.planning.edges_simulated == dynamic.planning.edges_simulated);
+    CHECK(same_bytes(*aware.plan, *dynamic.plan));
+}
+
+TEST_CASE("a start that already meets the goal is solved by holding there") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.start.x_m = 3 - 0.6;
+    problem.start.z_m = 4.8 - 1.2 * std::sin(1.0471975511965976);
+    problem.start.arm_rad = -1.0471975511965976;
+    problem.planner.max_iterations = 0;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    CHECK(solution.plan->reference.size() == 1);
+    CHECK(solution.execution->outcome == Outcome::ok);
+    CHECK(solution.execution->duration_s == Approx(problem.goal.hold_s));
+}
+
+TEST_CASE("a flight may begin in motion") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.start.vx_m_s = 0.5;
+    problem.start.vz_m_s = 0.1;
+    problem.start.arm_rate_rad_s = 0.2;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    CHECK(solution.plan->reference.front().point.velocity[0] == 0.5);
+    CHECK(solution.execution->outcome == Outcome::ok);
+    CHECK(solution.execution->rows.front().u[0] == 0.5);
+}
+
+TEST_CASE("arm limits are kept in the plan and in the flight") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = -1.4;
+    problem.robot.arm.upper_limit_rad = 1.7;
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
+        problem.planner.variant = variant;
+        problem.planner.max_iterations = variant == Variant::mp_arm ? 1500 : 100;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        for (const Waypoint& waypoint : solution.plan->waypoints) {
+            CHECK(waypoint.arm_rad >= -1.4);
+            CHECK(waypoint.arm_rad <= 1.7);
+        }
+    }
+}
+
+TEST_CASE("a robot with rotor lag is planned for and flown") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.robot.rotors.time_constant_s = 0.03;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    CHECK(solution.execution->has_rotor_lag);
+    CHECK(solution.execution->outcome == Outcome::ok);
+}
+
+TEST_CASE("a problem that cannot be planned is refused with every fault") {
+    Problem problem = test::ceiling_problem();
+    problem.start.z_m = 5.4;
+    problem.robot.rotors.max_thrust_n = 5;
+    try {
+        static_cast<void>(solve(problem));
+        FAIL("expected an InputError");
+    } catch (const InputError& error) {
+        CHECK(error.faults().size() >= 2);
+    }
+}
+
+TEST_CASE("refusals are counted by cause") {
+    const Solution solution = solve(with(Variant::mp_arm_ada));
+    for (const char* cause : {"collision", "flyable_area", "saturation", "tracking", "unstable", "bounds",
+                              "goal_missed", "direct_flight"}) {
+        CHECK(solution.planning.rejected.count(cause) == 1);
+    }
+    CHECK(solution.planning.rejected.at("collision") > 0);
+}

@@ -1,0 +1,149 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/simulation/execution.hpp"
+
+using namespace downwash;
+
+namespace {
+
+ReferencePoint rest(double x_m, double z_m, double arm_rad) {
+    ReferencePoint point;
+    point.position[0] = x_m;
+    point.position[1] = z_m;
+    point.position[2] = arm_rad;
+    return point;
+}
+
+std::vector<ReferenceKnot> from_start(const Problem& problem, const ReferencePoint& to, std::int64_t ticks) {
+    return {{0, rest(problem.start.x_m, problem.start.z_m, problem.start.arm_rad)}, {ticks, to}};
+}
+
+Execution flown(const Problem& problem, const std::vector<ReferenceKnot>& knots, bool aero = true) {
+    const auto model = make_flight_model(problem);
+    return execute(*model, start_state(*model, problem.start), knots, problem.goal, aero);
+}
+
+Problem goal_at(double x_m, double z_m) {
+    Problem problem = test::ceiling_problem();
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = x_m;
+    problem.goal.configuration->z_m = z_m;
+    return problem;
+}
+
+}  // namespace
+
+TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, hold included") {
+    const Problem problem = goal_at(2, 2.5);
+    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    CHECK(e.outcome == Outcome::ok);
+    CHECK(e.goal_error_m < 0.02);
+    CHECK(e.rows.size() == 1300 + 500 + 1);
+    CHECK(e.duration_s == Approx(18.0));
+    CHECK(e.rows.back().t_s == e.duration_s);
+    CHECK(e.max_saturation < 1);
+    CHECK(e.max_tracking_error_m < 0.1);
+}
+
+TEST_CASE("the energy of a flight is the integral of its power") {
+    const Problem problem = goal_at(2, 2.5);
+    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    double integral_j = 0;
+    for (std::size_t i = 1; i < e.rows.size(); ++i) {
+        integral_j += e.rows[i - 1].power_w * 0.01;
+    }
+    CHECK(e.energy_j == Approx(integral_j).epsilon(1e-4));
+    CHECK(e.rows.back().energy_j == e.energy_j);
+}
+
+TEST_CASE("a reference through a wall ends in a collision and the log with the offending row") {
+    Problem problem = goal_at(2, 2);
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
+    const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300), false);
+    CHECK(e.outcome == Outcome::collision);
+    CHECK(e.rows.back().clearance_m <= 0);
+    for (std::size_t i = 0; i + 1 < e.rows.size(); ++i) {
+        REQUIRE(e.rows[i].clearance_m > 0);
+    }
+    CHECK(e.min_clearance_m == e.rows.back().clearance_m);
+    CHECK(e.duration_s < 18);
+}
+
+TEST_CASE("a rotor disc that comes too near a wall has left the flyable area before it touches") {
+    Problem problem = goal_at(2, 2);
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
+    const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300));
+    CHECK(e.outcome == Outcome::left_flyable_area);
+    CHECK(e.rows.back().clearance_m > 0);
+    CHECK(e.rows.back().clearance_m < 0.3 * problem.robot.rotors.radius_m + 0.01);
+}
+
+TEST_CASE("a plan that ends elsewhere misses the goal") {
+    const Problem problem = goal_at(2, 2.5);
+    const Execution e = flown(problem, from_start(problem, rest(1.5, 2.5, 1), 1300));
+    CHECK(e.outcome == Outcome::goal_missed);
+    CHECK(e.goal_error_m == Approx(0.5).margin(0.02));
+}
+
+TEST_CASE("a reference that nothing can follow is lost, not solved") {
+    const Problem problem = goal_at(2, 2.5);
+    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 60));
+    CHECK(e.outcome != Outcome::ok);
+    CHECK(e.max_saturation > 1);
+}
+
+TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without surface effects") {
+    Problem problem = goal_at(-4, 4.7);
+    problem.start.z_m = 4.7;
+    problem.goal.hold_s = 20;
+    const std::vector<ReferenceKnot> hover{{0, rest(-4, 4.7, problem.start.arm_rad)}};
+    const Execution blind = flown(problem, hover, false);
+    CHECK(blind.outcome == Outcome::ok);
+    CHECK_FALSE(blind.aero);
+    const Execution real = flown(problem, hover, true);
+    CHECK(real.outcome != Outcome::ok);
+    CHECK(real.rows.back().q[1] > 4.7);
+    CHECK(real.rows.front().rotor_factor[0] > 1.05);
+}
+
+TEST_CASE("surfaces save energy where the vehicle can hold near them") {
+    Problem problem = goal_at(-4, 0.7);
+    problem.start.z_m = 0.7;
+    problem.start.arm_rad = 0;
+    const std::vector<ReferenceKnot> hover{{0, rest(-4, 0.7, 0)}};
+    const Execution in_effect = flown(problem, hover, true);
+    const Execution out_of_effect = flown(problem, hover, false);
+    REQUIRE(in_effect.outcome == Outcome::ok);
+    CHECK(in_effect.energy_j < out_of_effect.energy_j);
+}
+
+TEST_CASE("without obstacles the clearance is infinite and nothing collides") {
+    Problem problem = goal_at(2, 2.5);
+    problem.obstacles.clear();
+    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    CHECK(e.outcome == Outcome::ok);
+    CHECK(e.min_clearance_m == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("the flight through the map stays beside the flight with direct aerodynamics") {
+    const Problem problem = goal_at(2, 4.0);
+    const auto model = make_flight_model(problem);
+    const auto map = model->make_map(problem.bounds);
+    FlightRules rules;
+    rules.bounds = problem.bounds;
+    FlightState state = start_state(*model, problem.start);
+    const ReferencePoint from = rest(problem.start.x_m, problem.start.z_m, problem.start.arm_rad);
+    const SegmentFlight flight =
+        fly(*model, map.get(), rules, ReferenceSegment(from, rest(2, 4.0, 1), 1500, 0.01), state);
+    CHECK(flight.fault == FlightFault::none);
+    CHECK(flight.ticks == 1500);
+    const Execution e = flown(problem, from_start(problem, rest(2, 4.0, 1), 1500));
+    for (int i = 0; i < 4; ++i) {
+        CHECK(state.plant.q[i] == Approx(e.rows[1500].q[i]).margin(2e-3));
+    }
+}
