@@ -1,0 +1,217 @@
+#include "downwash/base/parameter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "downwash/base/text.hpp"
+
+namespace downwash {
+namespace {
+
+/// Units as keys end in them and as people read them; a longer suffix stands before its own tail.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> our_units{{
+    {"_kg_m2", "kg m2"},
+    {"_w_n1p5", "W/N^1.5"},
+    {"_over_radius", "rotor radii"},
+    {"_radii", "rotor radii"},
+    {"_deg_s2", "deg/s2"},
+    {"_rad_s2", "rad/s2"},
+    {"_deg_s", "deg/s"},
+    {"_m_s2", "m/s2"},
+    {"_m_s", "m/s"},
+    {"_deg", "deg"},
+    {"_kg", "kg"},
+    {"_nm", "Nm"},
+    {"_hz", "Hz"},
+    {"_m", "m"},
+    {"_n", "N"},
+    {"_s", "s"},
+    {"_ratio", ""},
+    {"_factor", ""},
+}};
+
+/// Units that people write by mistake.
+constexpr std::array<std::string_view, 33> other_units{
+    "g",    "mm",  "cm",  "km",     "in",   "ft",   "lb",  "rad",    "rad_s", "rad_s2", "ms",
+    "us",   "min", "h",   "kmh",    "km_h", "mph",  "kn",  "knots",  "khz",   "rpm",    "degrees",
+    "rads", "mnm", "n_m", "newton", "g_m2", "kgm2", "nms", "meters", "s2",    "w",      "deg2"};
+
+std::string_view suffix_of(std::string_view name) {
+    for (const auto& [suffix, unit] : our_units) {
+        if (!unit.empty() && name.size() > suffix.size() && name.ends_with(suffix)) {
+            return suffix;
+        }
+    }
+    return {};
+}
+
+bool is_identifier(std::string_view text) {
+    return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    });
+}
+
+std::string range_text(const Range& range) {
+    std::string text;
+    if (range.low) {
+        text += (range.excludes_low ? "above " : "at least ") + to_text(*range.low);
+    }
+    if (range.high) {
+        text += text.empty() ? "" : " and ";
+        text += (range.excludes_high ? "below " : "at most ") + to_text(*range.high);
+    }
+    return text;
+}
+
+bool is_within(const Range& range, double value) {
+    const bool is_low = range.low && (range.excludes_low ? value <= *range.low : value < *range.low);
+    const bool is_high = range.high && (range.excludes_high ? value >= *range.high : value > *range.high);
+    return !is_low && !is_high;
+}
+
+std::string elements_text(const std::vector<std::string_view>& elements) {
+    std::string text = "[";
+    for (const std::string_view element : elements) {
+        text += (text.size() > 1 ? ", " : "") + std::string(element);
+    }
+    return text + "]";
+}
+
+std::optional<std::string> number_fault(const ParameterInfo& info, double value) {
+    const double written =
+        is_in_degrees(info.path)
+            ? static_cast<double>(static_cast<long double>(value) * 180 / std::numbers::pi_v<long double>)
+            : value;
+    if (!std::isfinite(value)) {
+        return "is not finite: expected " + expectation(info);
+    }
+    if (!is_within(info.range, written)) {
+        return "is " + to_text(written, 12) + ": expected " + expectation(info);
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> text_fault(const ParameterInfo& info, const std::string& text) {
+    if (info.kind == ParameterKind::identifier && !is_identifier(text)) {
+        return "is '" + text + "': expected " + expectation(info);
+    }
+    if (info.kind == ParameterKind::choice &&
+        std::find(info.names.begin(), info.names.end(), text) == info.names.end()) {
+        return "is '" + text + "': expected " + expectation(info) + did_you_mean(text, info.names);
+    }
+    return std::nullopt;
+}
+
+template <class Numbers>
+std::optional<std::string> first_fault(const ParameterInfo& info, const Numbers& numbers) {
+    for (const double number : numbers) {
+        if (auto fault = number_fault(info, number)) {
+            return fault;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view last_name(std::string_view path) {
+    return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
+}
+
+std::string_view parent_path(std::string_view path) {
+    const std::size_t dot = path.rfind('.');
+    return dot == std::string_view::npos ? std::string_view{} : path.substr(0, dot);
+}
+
+std::string_view unit_of(std::string_view path) {
+    const std::string_view suffix = suffix_of(last_name(path));
+    for (const auto& [known, unit] : our_units) {
+        if (known == suffix) {
+            return unit;
+        }
+    }
+    return {};
+}
+
+std::string_view without_unit(std::string_view name) {
+    return name.substr(0, name.size() - suffix_of(name).size());
+}
+
+bool is_stem_with_unit(std::string_view name, std::string_view stem) {
+    if (!name.starts_with(stem) || name.size() <= stem.size() + 1 || name[stem.size()] != '_') {
+        return false;
+    }
+    const std::string_view suffix = name.substr(stem.size());
+    return std::any_of(our_units.begin(), our_units.end(), [&](const auto& known) { return known.first == suffix; }) ||
+           std::find(other_units.begin(), other_units.end(), suffix.substr(1)) != other_units.end();
+}
+
+bool is_in_degrees(std::string_view path) {
+    return unit_of(path).starts_with("deg");
+}
+
+std::string expectation(const ParameterInfo& info) {
+    const std::string unit(unit_of(info.path));
+    const std::string in_unit = unit.empty() ? "" : " in " + unit;
+    const std::string range = range_text(info.range).empty() ? "" : ", " + range_text(info.range);
+    const std::string or_null = info.nullable ? " or null" : "";
+    switch (info.kind) {
+        case ParameterKind::group:
+            return std::string("a group of keys") + (info.can_be_none ? " or none" : "") +
+                   (info.can_be_file ? " or the path of a file" : "");
+        case ParameterKind::list:
+            return "a list";
+        case ParameterKind::number:
+            return "a number" + in_unit + range + or_null;
+        case ParameterKind::integer:
+            return "a whole number" + in_unit + range + or_null;
+        case ParameterKind::flag:
+            return "true or false";
+        case ParameterKind::text:
+            return "text";
+        case ParameterKind::identifier:
+            return "1 to 64 letters, digits, '_' or '-'";
+        case ParameterKind::choice:
+            return (info.names.size() > 1 ? "one of " : "") + joined_names(info.names);
+        case ParameterKind::numbers:
+            return elements_text(info.elements) + in_unit + range + or_null;
+        case ParameterKind::points:
+            return "a list of [x, y, z]" + in_unit + range;
+        case ParameterKind::planned:
+            break;
+    }
+    return "nothing yet";
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& names) {
+    const std::string_view nearest = nearest_name(word, names);
+    return nearest.empty() ? "" : "; did you mean '" + std::string(nearest) + "'?";
+}
+
+std::optional<std::string> value_fault(const ParameterInfo& info, const Value& value) {
+    if (const auto* number = std::get_if<double>(&value)) {
+        return number_fault(info, *number);
+    }
+    if (const auto* number = std::get_if<std::uint64_t>(&value)) {
+        return number_fault(info, static_cast<double>(*number));
+    }
+    if (const auto* text = std::get_if<std::string>(&value)) {
+        return text_fault(info, *text);
+    }
+    if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+        return first_fault(info, *numbers);
+    }
+    if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
+        for (const Vector3& point : *points) {
+            if (auto fault = first_fault(info, point)) {
+                return fault;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace downwash

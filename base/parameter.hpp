@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/vector3.hpp"
+
+namespace downwash {
+
+/// What a parameter can hold, in SI units and radians. Empty (monostate) stands for `null`.
+using Value =
+    std::variant<std::monostate, bool, double, std::uint64_t, std::string, std::vector<double>, std::vector<Vector3>>;
+
+/// What is written behind a key of a problem file.
+enum class ParameterKind {
+    group,       ///< further keys
+    list,        ///< a list of groups; their keys stand in the table below "path[]"
+    number,      ///< a finite number
+    integer,     ///< a whole number, not negative
+    flag,        ///< true or false
+    text,        ///< any text
+    identifier,  ///< text that may become part of a path: [A-Za-z0-9_-]{1,64}
+    choice,      ///< one of `names`
+    numbers,     ///< a list of as many numbers as `elements`
+    points,      ///< a list of [x, y, z]
+    planned,     ///< a key that a later version will understand
+};
+
+/// Values that make sense, in the unit of the file (degrees where the key says so). Empty: no limit.
+struct Range {
+    std::optional<double> low, high;
+    bool excludes_low = false;
+    bool excludes_high = false;
+};
+
+/// All that can be said of a parameter without touching its value: what --help, documentation and schemas are made of.
+struct ParameterInfo {
+    std::string path;  ///< "start.x_m" or "environment.obstacles[].name"
+    ParameterKind kind = ParameterKind::group;
+    std::string description;
+    bool required = false;
+    bool nullable = false;     ///< `null` may be written: the value is not set
+    bool exclusive = false;    ///< exactly one of the exclusive keys of a group must be there
+    bool can_be_none = false;  ///< a group that `none` switches off
+    bool can_be_file = false;  ///< a group that may be the path of a file instead
+    Range range;
+    std::vector<std::string_view> names;     ///< of a choice
+    std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
+    std::string condition;                   ///< when it applies, for people; empty: always
+};
+
+/// Last part of a key path: "x_m" of "start.x_m".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view last_name(std::string_view path);
+
+/// Key path of the group that holds a parameter: "start" of "start.x_m", "" at the top.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view parent_path(std::string_view path);
+
+/// Unit that the last name of a key path ends in, for example "m/s" of "vx_m_s"; empty when it has none.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view unit_of(std::string_view path);
+
+/// Whether a name is `stem` and a unit behind it ("mass_g" of the stem "mass").
+[[nodiscard]] DOWNWASH_EXPORT bool is_stem_with_unit(std::string_view name, std::string_view stem);
+
+/// The name without its unit: "mass" of "mass_kg".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view without_unit(std::string_view name);
+
+/// Whether the file holds degrees where the code holds radians.
+[[nodiscard]] DOWNWASH_EXPORT bool is_in_degrees(std::string_view path);
+
+/// What is expected, for people: "a number in m, above 0" or "one of mp-arm, mp-arm-da or mp-arm-ada".
+[[nodiscard]] DOWNWASH_EXPORT std::string expectation(const ParameterInfo& info);
+
+/// What is wrong with a value of the right type: not finite, out of range, not one of the names. Empty when it is fine.
+[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> value_fault(const ParameterInfo& info, const Value& value);
+
+/// The choice that a misspelt name most likely stands for, as a remedy: "; did you mean 'energy'?". May be empty.
+[[nodiscard]] DOWNWASH_EXPORT std::string did_you_mean(std::string_view word,
+                                                       const std::vector<std::string_view>& names);
+
+/// A parameter with access to where it lives in a Model. The index is that of the list element that it belongs to.
+template <class Model>
+struct Parameter : ParameterInfo {
+    std::function<Value(const Model&, std::size_t)> get;           ///< empty function for groups and lists
+    std::function<void(Model&, std::size_t, const Value&)> set;    ///< @pre the value is of the parameter's kind
+    std::function<std::size_t(const Model&, std::size_t)> count;   ///< elements of a list; 1 or 0 for a group
+    std::function<void(Model&, std::size_t, std::size_t)> resize;  ///< the third is the new count
+    std::function<bool(const Model&, std::size_t)> applies;        ///< empty function: always
+
+    Parameter above(double low) && { return range.low = low, range.excludes_low = true, std::move(*this); }
+    Parameter at_least(double low) && { return range.low = low, std::move(*this); }
+    Parameter below(double high) && { return range.high = high, range.excludes_high = true, std::move(*this); }
+    Parameter at_most(double high) && { return range.high = high, std::move(*this); }
+    Parameter is_required() && { return required = true, std::move(*this); }
+    Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
+    Parameter or_none() && { return can_be_none = true, std::move(*this); }
+    Parameter or_file() && { return can_be_file = true, std::move(*this); }
+    Parameter only(std::string when, std::function<bool(const Model&, std::size_t)> test) && {
+        return condition = std::move(when), applies = std::move(test), std::move(*this);
+    }
+};
+
+}  // namespace downwash

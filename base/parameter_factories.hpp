@@ -1,0 +1,270 @@
+#pragma once
+
+// How the rows of a parameter table are written. A member is named by a generic lambda that returns a reference to it,
+// [](auto& robot) -> auto& { return robot.arm.length_m; }, or, in a list, [](auto& problem, std::size_t i) -> auto&.
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "downwash/base/parameter.hpp"
+
+namespace downwash::parameters {
+
+/// The member that a lambda names.
+template <class Model, class Member>
+decltype(auto) at(const Member& member, Model& model, std::size_t index) {
+    if constexpr (std::is_invocable_v<const Member&, Model&, std::size_t>) {
+        return member(model, index);
+    } else {
+        return member(model);
+    }
+}
+
+template <class Model, class Member>
+using MemberType = std::remove_cvref_t<decltype(at(std::declval<const Member&>(), std::declval<Model&>(), 0))>;
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {
+    using Inner = T;
+};
+
+template <class Model>
+Parameter<Model> row(ParameterKind kind, std::string path, std::string description) {
+    Parameter<Model> parameter;
+    parameter.path = std::move(path);
+    parameter.kind = kind;
+    parameter.description = std::move(description);
+    return parameter;
+}
+
+/// A value that lives in one member; Stored is how a Value holds it.
+template <class Model, class Stored, class Member>
+Parameter<Model> member_row(ParameterKind kind, std::string path, std::string description, Member member) {
+    using Type = MemberType<Model, Member>;
+    auto parameter = row<Model>(kind, std::move(path), std::move(description));
+    if constexpr (IsOptional<Type>::value) {
+        parameter.nullable = true;
+        parameter.get = [member](const Model& model, std::size_t i) {
+            const auto& held = at(member, model, i);
+            return held ? Value(static_cast<Stored>(*held)) : Value();
+        };
+        parameter.set = [member](Model& model, std::size_t i, const Value& value) {
+            auto& held = at(member, model, i);
+            held.reset();
+            if (const auto* given = std::get_if<Stored>(&value)) {
+                held = static_cast<typename IsOptional<Type>::Inner>(*given);
+            }
+        };
+    } else {
+        parameter.get = [member](const Model& model, std::size_t i) {
+            return Value(static_cast<Stored>(at(member, model, i)));
+        };
+        parameter.set = [member](Model& model, std::size_t i, const Value& value) {
+            at(member, model, i) = static_cast<Type>(std::get<Stored>(value));
+        };
+    }
+    return parameter;
+}
+
+template <class Model, class Member>
+Parameter<Model> number(std::string path, std::string description, Member member) {
+    return member_row<Model, double>(ParameterKind::number, std::move(path), std::move(description), member);
+}
+template <class Model, class Member>
+Parameter<Model> integer(std::string path, std::string description, Member member) {
+    return member_row<Model, std::uint64_t>(ParameterKind::integer, std::move(path), std::move(description), member);
+}
+template <class Model, class Member>
+Parameter<Model> flag(std::string path, std::string description, Member member) {
+    return member_row<Model, bool>(ParameterKind::flag, std::move(path), std::move(description), member);
+}
+template <class Model, class Member>
+Parameter<Model> text(std::string path, std::string description, Member member) {
+    return member_row<Model, std::string>(ParameterKind::text, std::move(path), std::move(description), member);
+}
+template <class Model, class Member>
+Parameter<Model> identifier(std::string path, std::string description, Member member) {
+    return member_row<Model, std::string>(ParameterKind::identifier, std::move(path), std::move(description), member);
+}
+template <class Model, class Member>
+Parameter<Model> points(std::string path, std::string description, Member member) {
+    return member_row<Model, std::vector<Vector3>>(ParameterKind::points, std::move(path), std::move(description),
+                                                   member);
+}
+
+/// A text out of a list.
+template <class Model, class Member>
+Parameter<Model> choice(std::string path, std::string description, std::vector<std::string_view> names, Member member) {
+    auto parameter =
+        member_row<Model, std::string>(ParameterKind::choice, std::move(path), std::move(description), member);
+    parameter.names = std::move(names);
+    return parameter;
+}
+
+/// An enumeration whose values have names.
+template <class Model, class Enumeration, class Member>
+Parameter<Model> choice(std::string path, std::string description,
+                        std::vector<std::pair<Enumeration, std::string_view>> named, Member member) {
+    auto parameter = row<Model>(ParameterKind::choice, std::move(path), std::move(description));
+    for (const auto& entry : named) {
+        parameter.names.push_back(entry.second);
+    }
+    parameter.get = [member, named](const Model& model, std::size_t i) {
+        const auto value = at(member, model, i);
+        const auto found = std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.first == value; });
+        return Value(found == named.end() ? std::string() : std::string(found->second));
+    };
+    parameter.set = [member, named](Model& model, std::size_t i, const Value& value) {
+        const auto& name = std::get<std::string>(value);
+        const auto found = std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.second == name; });
+        if (found != named.end()) {
+            at(member, model, i) = found->first;
+        }
+    };
+    return parameter;
+}
+
+/// A list of numbers that are read and written together.
+/// @param get (const Model&, index) -> std::vector<double>, or a Value  @param set (Model&, index, const vector&)
+template <class Model, class Get, class Set>
+Parameter<Model> numbers(std::string path, std::string description, std::vector<std::string_view> elements, Get get,
+                         Set set) {
+    auto parameter = row<Model>(ParameterKind::numbers, std::move(path), std::move(description));
+    parameter.elements = std::move(elements);
+    parameter.get = [get](const Model& model, std::size_t i) { return Value(get(model, i)); };
+    parameter.set = [set](Model& model, std::size_t i, const Value& value) {
+        set(model, i, std::get<std::vector<double>>(value));
+    };
+    return parameter;
+}
+
+/// A Vector3 as [x, y, z] or other names of its elements.
+template <class Model, class Member>
+Parameter<Model> vector(std::string path, std::string description, std::vector<std::string_view> elements,
+                        Member member) {
+    return numbers<Model>(
+        std::move(path), std::move(description), std::move(elements),
+        [member](const Model& model, std::size_t i) {
+            const Vector3& v = at(member, model, i);
+            return std::vector<double>(v.begin(), v.end());
+        },
+        [member](Model& model, std::size_t i, const std::vector<double>& given) {
+            at(member, model, i) = {given[0], given[1], given[2]};
+        });
+}
+
+/// Two members as a list of two numbers.
+template <class Model, class First, class Second>
+Parameter<Model> pair(std::string path, std::string description, std::vector<std::string_view> elements, First first,
+                      Second second) {
+    return numbers<Model>(
+        std::move(path), std::move(description), std::move(elements),
+        [first, second](const Model& model, std::size_t i) {
+            return std::vector<double>{at(first, model, i), at(second, model, i)};
+        },
+        [first, second](Model& model, std::size_t i, const std::vector<double>& given) {
+            at(first, model, i) = given[0];
+            at(second, model, i) = given[1];
+        });
+}
+
+/// A text that can only be what it is.
+template <class Model>
+Parameter<Model> constant(std::string path, std::string description, std::string_view only) {
+    auto parameter = row<Model>(ParameterKind::choice, std::move(path), std::move(description));
+    parameter.names = {only};
+    parameter.get = [only](const Model&, std::size_t) { return Value(std::string(only)); };
+    parameter.set = [](Model&, std::size_t, const Value&) {};
+    return parameter;
+}
+
+/// Keys that are always there.
+template <class Model>
+Parameter<Model> group(std::string path, std::string description) {
+    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+    parameter.count = [](const Model&, std::size_t) { return std::size_t{1}; };
+    parameter.resize = [](Model&, std::size_t, std::size_t) {};
+    return parameter;
+}
+
+/// Keys of a member that may be absent.
+template <class Model, class Member>
+Parameter<Model> optional_group(std::string path, std::string description, Member member) {
+    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+    parameter.count = [member](const Model& model, std::size_t i) {
+        return at(member, model, i) ? std::size_t{1} : std::size_t{0};
+    };
+    parameter.resize = [member](Model& model, std::size_t i, std::size_t count) {
+        at(member, model, i).reset();
+        if (count > 0) {
+            at(member, model, i).emplace();
+        }
+    };
+    return parameter;
+}
+
+/// Keys of one alternative of a variant.
+template <class Alternative, class Model, class Member>
+Parameter<Model> alternative(std::string path, std::string description, Member member) {
+    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+    parameter.exclusive = true;
+    parameter.count = [member](const Model& model, std::size_t i) {
+        return std::holds_alternative<Alternative>(at(member, model, i)) ? std::size_t{1} : std::size_t{0};
+    };
+    parameter.resize = [member](Model& model, std::size_t i, std::size_t count) {
+        if (count > 0) {
+            at(member, model, i) = Alternative{};
+        }
+    };
+    return parameter;
+}
+
+/// A std::vector of groups.
+template <class Model, class Member>
+Parameter<Model> list(std::string path, std::string description, Member member) {
+    auto parameter = row<Model>(ParameterKind::list, std::move(path), std::move(description));
+    parameter.count = [member](const Model& model, std::size_t i) { return at(member, model, i).size(); };
+    parameter.resize = [member](Model& model, std::size_t i, std::size_t count) { at(member, model, i).resize(count); };
+    return parameter;
+}
+
+/// A key that comes with a later version; an alternative to its exclusive siblings.
+template <class Model>
+Parameter<Model> planned(std::string path, std::string description) {
+    auto parameter = row<Model>(ParameterKind::planned, std::move(path), std::move(description));
+    parameter.exclusive = true;
+    return parameter;
+}
+
+/// The parameter of a part, seen from the whole. `member` names the part in the whole.
+template <class Whole, class Part, class Member>
+Parameter<Whole> nested(const Parameter<Part>& inner, std::string_view prefix, Member member) {
+    Parameter<Whole> outer;
+    static_cast<ParameterInfo&>(outer) = inner;
+    outer.path = std::string(prefix) + inner.path;
+    if (inner.get) {
+        outer.get = [member, get = inner.get](const Whole& whole, std::size_t i) { return get(member(whole), i); };
+        outer.set = [member, set = inner.set](Whole& whole, std::size_t i, const Value& v) {
+            set(member(whole), i, v);
+        };
+    }
+    if (inner.count) {
+        outer.count = [member, count = inner.count](const Whole& whole, std::size_t i) {
+            return count(member(whole), i);
+        };
+        outer.resize = [member, resize = inner.resize](Whole& whole, std::size_t i, std::size_t n) {
+            resize(member(whole), i, n);
+        };
+    }
+    if (inner.applies) {
+        outer.applies = [member, applies = inner.applies](const Whole& whole, std::size_t i) {
+            return applies(member(whole), i);
+        };
+    }
+    return outer;
+}
+
+}  // namespace downwash::parameters

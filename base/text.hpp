@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+
+namespace downwash {
+
+/// The shortest decimal that reads back as the very same number, whatever the locale.
+[[nodiscard]] DOWNWASH_EXPORT std::string to_text(double value);
+
+/// A number for people to read, rounded to so many significant digits (1 to 17).
+[[nodiscard]] DOWNWASH_EXPORT std::string to_text(double value, int significant_digits);
+
+/// The candidate that a misspelt word most likely stands for; empty when none is near (more than a third of its
+/// letters would have to change).
+[[nodiscard]] DOWNWASH_EXPORT std::string_view nearest_name(std::string_view word,
+                                                            std::span<const std::string_view> candidates);
+
+/// "a, b or c". Empty without names.
+[[nodiscard]] DOWNWASH_EXPORT std::string joined_names(std::span<const std::string_view> names);
+
+}  // namespace downwash

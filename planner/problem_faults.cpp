@@ -1,0 +1,262 @@
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "downwash/base/text.hpp"
+#include "downwash/planner/goal_reach.hpp"
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/scene/collision_checker.hpp"
+#include "downwash/simulation/robot_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double largest_map_cells = 2e7;  ///< some hundred megabytes
+constexpr double degrees_per_radian = 57.29577951308232;
+
+std::string rounded(double value) {
+    return to_text(value, 4);
+}
+
+std::vector<Fault> reversed_bounds(const Problem& p) {
+    std::vector<Fault> faults;
+    if (p.bounds.x_low_m >= p.bounds.x_high_m) {
+        faults.push_back({"environment.bounds.x_m", "is [low, high]: expected low below high"});
+    }
+    if (p.bounds.z_low_m >= p.bounds.z_high_m) {
+        faults.push_back({"environment.bounds.z_m", "is [low, high]: expected low below high"});
+    }
+    return faults;
+}
+
+std::vector<Fault> repeated_names(const Problem& p) {
+    std::vector<Fault> faults;
+    std::set<std::string_view> names;
+    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+        const std::string& name = p.obstacles[i].name;
+        if (!name.empty() && !names.insert(name).second) {
+            faults.push_back({"environment.obstacles[" + std::to_string(i) + "].name",
+                              "is '" + name + "' like an obstacle before it: expected a name used once"});
+        }
+    }
+    return faults;
+}
+
+std::vector<Fault> shapeless_cylinders(const Problem& p) {
+    std::vector<Fault> faults;
+    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+        const auto* cylinder = std::get_if<Cylinder>(&p.obstacles[i].shape);
+        if (cylinder && cylinder->axis == Vector3{}) {
+            faults.push_back({"environment.obstacles[" + std::to_string(i) + "].cylinder.axis",
+                              "has no direction: expected a vector other than [0, 0, 0]"});
+        }
+    }
+    return faults;
+}
+
+std::vector<Fault> too_large_map(const Problem& p) {
+    const double columns = (p.bounds.x_high_m - p.bounds.x_low_m) / p.aero.grid_m;
+    const double rows = (p.bounds.z_high_m - p.bounds.z_low_m) / p.aero.grid_m;
+    if (!p.aero.enabled || columns * rows <= largest_map_cells) {
+        return {};
+    }
+    const double finest_m = p.aero.grid_m * std::sqrt(columns * rows / largest_map_cells);
+    return {{"aero.grid_m", "makes a map of " + rounded(columns * rows) + " cells over the bounds: expected at least " +
+                                rounded(std::ceil(finest_m * 1000) / 1000) + " m, or narrower bounds"}};
+}
+
+std::vector<Fault> start_outside_bounds(const Problem& p) {
+    std::vector<Fault> faults;
+    const auto check = [&faults](const char* key, double value, double low, double high) {
+        if (value < low || value > high) {
+            faults.push_back({key, "is " + to_text(value) + ", outside the bounds: expected " + to_text(low) + " to " +
+                                       to_text(high)});
+        }
+    };
+    check("start.x_m", p.start.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
+    check("start.z_m", p.start.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+    return faults;
+}
+
+std::vector<Fault> start_too_fast(const Problem& p) {
+    std::vector<Fault> faults;
+    const double speed = std::hypot(p.start.vx_m_s, p.start.vz_m_s);
+    if (speed > p.motion.max_speed_m_s) {
+        faults.push_back({p.start.vx_m_s == 0 ? "start.vz_m_s" : "start.vx_m_s",
+                          "makes a start speed of " + rounded(speed) + " m/s: expected at most motion.max_speed_m_s, " +
+                              to_text(p.motion.max_speed_m_s)});
+    }
+    if (std::abs(p.start.arm_rate_rad_s) > p.motion.max_arm_rate_rad_s) {
+        faults.push_back({"start.arm_rate_deg_s", "is faster than motion.max_arm_rate_deg_s: expected at most " +
+                                                      rounded(p.motion.max_arm_rate_rad_s * degrees_per_radian) +
+                                                      " in size"});
+    }
+    return faults;
+}
+
+bool is_beyond_limits(const ArmParameters& arm, double angle_rad, double tolerance_rad = 1e-9) {
+    return arm.is_limited &&
+           (angle_rad < arm.lower_limit_rad - tolerance_rad || angle_rad > arm.upper_limit_rad + tolerance_rad);
+}
+
+std::string limits_text(const ArmParameters& arm) {
+    return rounded(arm.lower_limit_rad * degrees_per_radian) + " to " +
+           rounded(arm.upper_limit_rad * degrees_per_radian);
+}
+
+std::vector<Fault> start_beyond_arm_limits(const Problem& p) {
+    if (!is_beyond_limits(p.robot.arm, p.start.arm_rad)) {
+        return {};
+    }
+    return {{"start.arm_deg", "is beyond the arm's limits: expected " + limits_text(p.robot.arm)}};
+}
+
+std::vector<Fault> start_in_collision(const Problem& p) {
+    const PlanarPose pose{p.start.x_m, p.start.z_m, p.start.pitch_rad, p.start.arm_rad};
+    const CollisionChecker checker(std::make_shared<const Scene>(p.obstacles), p.plane, p.robot.shape());
+    if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
+        return {};
+    }
+    const double clearance_m = checker.clearance_m(pose);
+    const std::string remedy = ": move the start or the obstacle";
+    if (clearance_m <= 0) {
+        return {{"start", "is in collision with an obstacle" + remedy}};
+    }
+    return {{"start", "is " + rounded(clearance_m) + " m from an obstacle, nearer than planner.safety_margin_m, " +
+                          to_text(p.planner.safety_margin_m) + remedy}};
+}
+
+/// World position of a rotor's hub (model 1: body axes b1 = (cos p, -sin p), b3 = (sin p, cos p)).
+Vector3 hub_m(const Problem& p, const Vector3& in_body_m) {
+    const double c = std::cos(p.start.pitch_rad);
+    const double s = std::sin(p.start.pitch_rad);
+    return p.plane.to_world(p.start.x_m + in_body_m[0] * c + in_body_m[2] * s, in_body_m[1],
+                            p.start.z_m - in_body_m[0] * s + in_body_m[2] * c);
+}
+
+std::vector<Fault> start_not_flyable(const Problem& p) {
+    if (!p.aero.enabled) {
+        return {};
+    }
+    const Scene scene(p.obstacles);
+    const double least_m = p.aero.min_distance_radii * p.robot.rotors.radius_m;
+    for (std::size_t i = 0; i < p.robot.rotors.positions_m.size(); ++i) {
+        const Vector3 hub = hub_m(p, p.robot.rotors.positions_m[i]);
+        if (!disc_is_clear(scene, hub, p.robot.rotors.radius_m, least_m)) {
+            return {{"start", "is outside the flyable area: the disc of rotor " + std::to_string(i + 1) + " is " +
+                                  rounded(disc_clearance_m(scene, hub, p.robot.rotors.radius_m)) +
+                                  " m from an obstacle; expected at least " + rounded(least_m) +
+                                  " m (aero.min_distance_radii times the rotor radius)"}};
+        }
+    }
+    return {};
+}
+
+std::vector<Fault> unclear_goal(const Problem& p) {
+    if (p.goal.end_effector.has_value() == p.goal.configuration.has_value()) {
+        return {{"goal", "needs exactly one of end_effector or configuration"}};
+    }
+    const auto& pose = p.goal.configuration;
+    if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
+        return {{"goal.configuration", "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
+    }
+    return {};
+}
+
+std::vector<Fault> configuration_outside_bounds(const Problem& p) {
+    std::vector<Fault> faults;
+    if (!p.goal.configuration) {
+        return faults;
+    }
+    const double tolerance_m = p.goal.configuration->tolerance_m;
+    const auto check = [&](const char* key, const std::optional<double>& value, double low, double high) {
+        if (value && (*value < low - tolerance_m || *value > high + tolerance_m)) {
+            faults.push_back({key, "is " + to_text(*value) + ", outside the bounds: expected " + to_text(low) + " to " +
+                                       to_text(high)});
+        }
+    };
+    check("goal.configuration.x_m", p.goal.configuration->x_m, p.bounds.x_low_m, p.bounds.x_high_m);
+    check("goal.configuration.z_m", p.goal.configuration->z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+    return faults;
+}
+
+std::vector<Fault> configuration_beyond_arm_limits(const Problem& p) {
+    if (!p.goal.configuration || !p.goal.configuration->arm_rad ||
+        arm_can_turn_to(p.robot.arm, *p.goal.configuration->arm_rad, p.goal.configuration->tolerance_rad)) {
+        return {};
+    }
+    return {{"goal.configuration.arm_deg", "is beyond the arm's limits: expected " + limits_text(p.robot.arm)}};
+}
+
+std::vector<Fault> configuration_in_collision(const Problem& p) {
+    if (!p.goal.configuration || has_clear_configuration(p)) {
+        return {};
+    }
+    return {{"goal.configuration",
+             "is in collision with an obstacle or nearer to it than planner.safety_margin_m, "
+             "anywhere within its tolerances: move the goal or the obstacle"}};
+}
+
+std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
+    if (!p.goal.end_effector) {
+        return {};
+    }
+    const double missing_m = missing_reach_m(p);
+    if (missing_m > 0) {
+        return {{"goal.end_effector", "is out of reach: from no place within the bounds does the arm of " +
+                                          to_text(p.robot.arm.length_m) + " m get nearer than " + rounded(missing_m) +
+                                          " m to its tolerance; widen environment.bounds or move the goal"}};
+    }
+    switch (reach_of_end_effector(p)) {
+        case Reach::clear:
+            return {};
+        case Reach::none:
+            return {{"goal.end_effector",
+                     "is out of reach: the limits of the arm, the wanted direction and the bounds "
+                     "leave no pose that gets there"}};
+        case Reach::blocked:
+            break;
+    }
+    return {{"goal.end_effector",
+             "is out of reach: in every pose that gets there the robot touches an obstacle or is "
+             "nearer to it than planner.safety_margin_m"}};
+}
+
+const std::array<Check<Problem>, 14> checks{{
+    {{"environment.bounds"}, reversed_bounds},
+    {{"environment.obstacles"}, repeated_names},
+    {{"environment.obstacles"}, shapeless_cylinders},
+    {{"environment.bounds", "aero"}, too_large_map},
+    {{"environment.bounds", "start"}, start_outside_bounds},
+    {{"start", "motion"}, start_too_fast},
+    {{"start.arm_deg", "robot.arm"}, start_beyond_arm_limits},
+    {{"environment.obstacles", "environment.plane", "start", "robot.multirotor.body", "robot.arm",
+      "planner.safety_margin_m"},
+     start_in_collision},
+    {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
+    {{"goal"}, unclear_goal},
+    {{"goal", "environment.bounds"}, configuration_outside_bounds},
+    {{"goal", "robot.arm"}, configuration_beyond_arm_limits},
+    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
+     configuration_in_collision},
+    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
+     end_effector_out_of_reach},
+}};
+
+}  // namespace
+
+std::vector<Fault> further_problem_faults(const Problem& problem, FaultyKeys faulty) {
+    std::vector<Fault> faults = value_faults(problem_parameters(), problem, "", faulty);
+    append(faults, further_robot_faults(problem.robot, faulty, "robot."));
+    append(faults, run_checks(std::span<const Check<Problem>>(checks), problem, "", faulty));
+    return faults;
+}
+
+std::vector<Fault> problem_faults(const Problem& problem) {
+    return further_problem_faults(problem, {});
+}
+
+}  // namespace downwash

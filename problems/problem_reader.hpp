@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/problem.hpp"
+
+namespace downwash {
+
+/// Something wrong in a problem or robot file.
+struct LocatedFault {
+    std::string file;     ///< as the caller or the problem file names it
+    int line = 1;         ///< counted from 1
+    int column = 1;       ///< in bytes, counted from 1
+    std::string message;  ///< what is wrong, what was expected, and the nearest valid name or another remedy
+};
+
+/// "file:line:column: message"
+[[nodiscard]] DOWNWASH_EXPORT std::string to_text(const LocatedFault& fault);
+
+/// A problem or robot file cannot be used; what() has one line for every fault.
+class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
+ public:
+    explicit ProblemFileError(std::vector<LocatedFault> faults);
+    [[nodiscard]] const std::vector<LocatedFault>& faults() const noexcept { return faults_; }
+
+ private:
+    std::vector<LocatedFault> faults_;
+};
+
+/// Reads a problem and the robot that it refers to, whose path is relative to the problem's file.
+/// The result is complete and sound: problem_faults() finds nothing in it.
+/// @throws ProblemFileError with every fault that can be found in one reading (a hundred at most)
+[[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file);
+
+/// Reads a robot from a file of its own. @throws ProblemFileError
+[[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file);
+
+/// Sets one value as a problem file would, for example ("planner.variant", "mp-arm") or ("planner.seed", "7").
+/// The problem is not checked as a whole.
+/// @throws InputError when there is no such key, or the text is not a value for it
+DOWNWASH_EXPORT void set_parameter(Problem& problem, std::string_view key, std::string_view text);
+
+}  // namespace downwash

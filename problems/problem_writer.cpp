@@ -1,0 +1,151 @@
+#include "downwash/problems/problem_writer.hpp"
+
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "downwash/base/sha256.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/number_text.hpp"
+
+namespace downwash {
+namespace {
+
+/// A text in double quotes, whatever is in it.
+std::string quoted(const std::string& text) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (c == '\n') {
+            out += "\\n";
+        } else if (byte < 0x20 || byte == 0x7f) {
+            out += "\\x";
+            out += digits[byte >> 4U];
+            out += digits[byte & 15U];
+        } else {
+            out += c;
+        }
+    }
+    return out + '"';
+}
+
+/// Writes the groups below a key path, two spaces a level.
+class Writer {
+ public:
+    explicit Writer(const Problem& problem) : problem_(problem) {}
+
+    [[nodiscard]] std::string written() {
+        write_keys("", 0, "");
+        return out_;
+    }
+
+ private:
+    using Row = Parameter<Problem>;
+
+    /// @param first_indent stands before the first key ("- " in a list), `indent` before the others
+    void write_keys(const std::string& path, std::size_t index, const std::string& indent,
+                    const std::string& first_indent) {
+        std::string before = first_indent;
+        for (const Row* row : problem_parameters().children(path)) {
+            const bool applies = !row->applies || row->applies(problem_, index);
+            if (applies && row->kind != ParameterKind::planned && (row->get || is_written(*row, index))) {
+                out_ += before + std::string(last_name(row->path)) + ":";
+                write_content(*row, index, indent);
+                before = indent;
+            }
+        }
+    }
+    void write_keys(const std::string& path, std::size_t index, const std::string& indent) {
+        write_keys(path, index, indent, indent);
+    }
+
+    /// Groups that are switched off are written as none, those of another alternative not at all.
+    bool is_written(const Row& row, std::size_t index) const {
+        return row.kind == ParameterKind::list || row.can_be_none || row.count(problem_, index) > 0;
+    }
+
+    void write_content(const Row& row, std::size_t index, const std::string& indent) {
+        if (row.get) {
+            out_ += " " + value_text(row, row.get(problem_, index)) + "\n";
+        } else if (row.kind == ParameterKind::list) {
+            write_list(row, index, indent);
+        } else if (row.count(problem_, index) == 0) {
+            out_ += " none\n";
+        } else {
+            out_ += "\n";
+            write_keys(row.path, index, indent + "  ");
+        }
+    }
+
+    void write_list(const Row& row, std::size_t index, const std::string& indent) {
+        const std::size_t count = row.count(problem_, index);
+        out_ += count == 0 ? " []\n" : "\n";
+        for (std::size_t i = 0; i < count; ++i) {
+            write_keys(row.path + "[]", i, indent + "    ", indent + "  - ");
+        }
+    }
+
+    static std::string number_text(const Row& row, double number) {
+        return is_in_degrees(row.path) ? problems::degrees_text(number) : to_text(number);
+    }
+
+    template <class Numbers>
+    static std::string list_text(const Row& row, const Numbers& numbers) {
+        std::string text;
+        for (const double number : numbers) {
+            text += (text.empty() ? "" : ", ") + number_text(row, number);
+        }
+        return "[" + text + "]";
+    }
+
+    static std::string points_text(const Row& row, const std::vector<Vector3>& points) {
+        std::string text;
+        for (const Vector3& point : points) {
+            text += (text.empty() ? "" : ", ") + list_text(row, point);
+        }
+        return "[" + text + "]";
+    }
+
+    static std::string value_text(const Row& row, const Value& value) {
+        if (const auto* flag = std::get_if<bool>(&value)) {
+            return *flag ? "true" : "false";
+        }
+        if (const auto* number = std::get_if<double>(&value)) {
+            return number_text(row, *number);
+        }
+        if (const auto* number = std::get_if<std::uint64_t>(&value)) {
+            return std::to_string(*number);
+        }
+        if (const auto* text = std::get_if<std::string>(&value)) {
+            return row.kind == ParameterKind::choice ? *text : quoted(*text);
+        }
+        if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+            return list_text(row, *numbers);
+        }
+        if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
+            return points_text(row, *points);
+        }
+        return "null";
+    }
+
+    const Problem& problem_;
+    std::string out_;
+};
+
+}  // namespace
+
+std::string effective_yaml(const Problem& problem) {
+    return Writer(problem).written();
+}
+
+std::string problem_sha256(const Problem& problem) {
+    return sha256_hex(effective_yaml(problem));
+}
+
+}  // namespace downwash

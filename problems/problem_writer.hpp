@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/problem.hpp"
+
+namespace downwash {
+
+/// The problem as a YAML document with every default filled in and the robot inline. Always the same bytes for the same
+/// problem; reading them gives the very same problem, to the last bit of every number in use (parameters of models
+/// that are switched off are not written).
+/// @pre problem_faults(problem) is empty
+[[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem);
+
+/// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits.
+[[nodiscard]] DOWNWASH_EXPORT std::string problem_sha256(const Problem& problem);
+
+}  // namespace downwash

@@ -1,0 +1,302 @@
+#include "downwash/problems/tree_reader.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "downwash/base/text.hpp"
+#include "downwash/problems/file_text.hpp"
+#include "downwash/problems/key_remedy.hpp"
+#include "downwash/problems/value_reader.hpp"
+
+namespace downwash::problems {
+namespace {
+
+constexpr std::size_t most_faults = 100;
+
+std::string joined(const std::string& key, std::string_view name) {
+    return key.empty() ? std::string(name) : key + "." + std::string(name);
+}
+
+/// Names of the keys of which exactly one must be there; empty when there are none.
+std::vector<std::string_view> alternatives_of(std::string_view path) {
+    std::vector<std::string_view> names;
+    for (const Parameter<Problem>* child : problem_parameters().children(path)) {
+        if (child->exclusive && child->kind != ParameterKind::planned) {
+            names.push_back(last_name(child->path));
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
+void TreeReader::read_problem_file(const std::filesystem::path& file) {
+    read_document(file, "", {});
+}
+
+void TreeReader::read_robot_file(const std::filesystem::path& file) {
+    read_document(file, "robot", {});
+}
+
+bool TreeReader::is_full() const noexcept {
+    return found_.size() >= most_faults;
+}
+
+/// Reads a file as the group `path`; what keeps it from being read at all is reported where it was referred from.
+void TreeReader::read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from) {
+    const std::size_t referring_file = file_;
+    std::string text;
+    try {
+        text = read_file_text(file);
+    } catch (const FileError& error) {
+        if (files_.empty()) {
+            files_.push_back({file, path});
+            fault(path, {}, error.what());
+        } else {
+            fault(path, referred_from, "'" + file.string() + "' " + error.what());
+        }
+        return;
+    }
+    files_.push_back({file, path});
+    file_ = files_.size() - 1;
+    places_[path] = {file_, {}};
+    try {
+        const YamlNode::Pointer root = parse_yaml(text);
+        if (root->kind != YamlNode::Kind::map) {
+            fault(path, root->mark, found_text(*root) + ": expected a file of keys and values");
+        } else if (has_supported_schema(*root, path)) {
+            read_keys({path, path, 0, {}, *root, {}, {}});
+        }
+    } catch (const YamlError& error) {
+        fault(path, error.mark, error.what());
+    }
+    file_ = referring_file;
+}
+
+/// Under another schema every key could mean something else: nothing more is read then.
+bool TreeReader::has_supported_schema(const YamlNode& root, const std::string& path) {
+    const Parameter<Problem>& schema = *problem_parameters().find(joined(path, "schema"));
+    const std::string expected(schema.names[0]);
+    for (const auto& [key, value] : root.entries) {
+        if (key->kind != YamlNode::Kind::scalar || key->text != "schema") {
+            continue;
+        }
+        if (value->kind == YamlNode::Kind::scalar && value->text == expected) {
+            return true;
+        }
+        fault(path, value->mark, "schema " + found_text(*value) + ": expected " + expected + ", no other is read");
+        return false;
+    }
+    if (!schema.required) {
+        fault(schema.path, {}, "is missing: expected 'schema: " + expected + "' at the top");
+    }
+    return true;
+}
+
+void TreeReader::read_keys(Group group) {
+    find_entries(group);
+    check_alternatives(group);
+    for (const Parameter<Problem>* parameter : problem_parameters().children(group.path)) {
+        const std::string name(last_name(parameter->path));
+        if (group.entries.contains(name)) {
+            read_parameter(group, *parameter);
+        } else if (parameter->required && std::count(group.meant.begin(), group.meant.end(), name) == 0) {
+            fault(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
+        }
+    }
+}
+
+void TreeReader::find_entries(Group& group) {
+    for (std::size_t i = 0; i < group.node.entries.size() && !is_full(); ++i) {
+        const YamlNode& key = *group.node.entries[i].first;
+        if (key.kind != YamlNode::Kind::scalar) {
+            report(key.mark, "a key of " + shown(group.key) + " is no word: expected 'name: value'");
+            continue;
+        }
+        if (problem_parameters().find(joined(group.path, key.text)) == nullptr) {
+            report_unknown(group, key.text, key.mark);
+            continue;
+        }
+        const auto [first, is_new] = group.entries.emplace(key.text, i);
+        if (!is_new) {
+            const int line = group.node.entries[first->second].first->mark.line;
+            fault(joined(group.key, key.text), key.mark,
+                  "is written twice: expected once, as in line " + std::to_string(line));
+        }
+    }
+}
+
+void TreeReader::report_unknown(Group& group, const std::string& name, const Mark& mark) {
+    std::vector<std::string_view> valid;
+    for (const Parameter<Problem>* child : problem_parameters().children(group.path)) {
+        valid.push_back(last_name(child->path));
+    }
+    const KeyRemedy remedy = remedy_for_key(name, valid);
+    const std::string where = shown(group.key);
+    report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
+                     remedy.text);
+    for (const std::string_view meant : remedy.meant) {
+        group.meant.emplace_back(meant);
+        faulty_.add(joined(group.key, meant));
+    }
+}
+
+void TreeReader::check_alternatives(const Group& group) {
+    const std::vector<std::string_view> names = alternatives_of(group.path);
+    if (names.empty()) {
+        return;
+    }
+    std::vector<std::size_t> given;
+    for (const Parameter<Problem>* child : problem_parameters().children(group.path)) {
+        const auto entry = group.entries.find(last_name(child->path));
+        if (child->exclusive && entry != group.entries.end()) {
+            given.push_back(entry->second);
+        }
+    }
+    std::sort(given.begin(), given.end());
+    if (given.empty() && group.meant.empty()) {
+        fault(group.key, group.mark, "needs exactly one of " + joined_names(names));
+    } else if (given.size() > 1) {
+        const YamlNode& first = *group.node.entries[given[0]].first;
+        const YamlNode& second = *group.node.entries[given[1]].first;
+        fault(group.key, second.mark,
+              "has both " + first.text + " and " + second.text + ": expected exactly one of " + joined_names(names));
+    } else if (given.empty()) {
+        faulty_.add(group.key);
+    }
+}
+
+void TreeReader::read_parameter(const Group& group, const Parameter<Problem>& parameter) {
+    const std::string name(last_name(parameter.path));
+    const auto& [key_node, value] = group.node.entries[group.entries.at(name)];
+    const std::string key = joined(group.key, name);
+    if (is_full()) {
+        return;
+    }
+    if (parameter.applies && !parameter.applies(problem_, group.index)) {
+        fault(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        return;
+    }
+    switch (parameter.kind) {
+        case ParameterKind::group:
+            places_[key] = {file_, key_node->mark};
+            read_group(parameter, *value, key, key_node->mark, group.index);
+            break;
+        case ParameterKind::list:
+            places_[key] = {file_, key_node->mark};
+            read_list(parameter, *value, key);
+            break;
+        case ParameterKind::planned:
+            fault(group.key, key_node->mark,
+                  "is made of " + parameter.description + ", which comes with a later version: expected " +
+                      joined_names(alternatives_of(group.path)) + " for now");
+            break;
+        default:
+            places_[key] = {file_, value->mark};
+            read_single(parameter, *value, key, group.index);
+    }
+}
+
+void TreeReader::read_group(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+                            const Mark& key_mark, std::size_t index) {
+    const bool is_text = node.kind == YamlNode::Kind::scalar;
+    if (node.kind == YamlNode::Kind::map) {
+        parameter.resize(problem_, index, 1);
+        read_keys({parameter.path, key, index, key_mark, node, {}, {}});
+    } else if (is_text && parameter.can_be_none && node.text == "none") {
+        parameter.resize(problem_, index, 0);
+    } else if (is_text && parameter.can_be_file && !node.text.empty()) {
+        read_document((files_[file_].path.parent_path() / node.text).lexically_normal(), parameter.path, node.mark);
+    } else {
+        fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter));
+    }
+}
+
+void TreeReader::read_list(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key) {
+    if (node.kind != YamlNode::Kind::list) {
+        const std::string remedy = node.kind == YamlNode::Kind::null ? "; write [] for none" : "";
+        fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
+        return;
+    }
+    parameter.resize(problem_, 0, node.items.size());
+    for (std::size_t i = 0; i < node.items.size() && !is_full(); ++i) {
+        const YamlNode& item = *node.items[i];
+        const std::string item_key = key + "[" + std::to_string(i) + "]";
+        places_[item_key] = {file_, item.mark};
+        if (item.kind == YamlNode::Kind::map) {
+            read_keys({parameter.path + "[]", item_key, i, item.mark, item, {}, {}});
+        } else {
+            fault(item_key, item.mark, found_text(item) + ": expected a group of keys");
+        }
+    }
+}
+
+void TreeReader::read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+                             std::size_t index) {
+    try {
+        parameter.set(problem_, index, read_value(parameter, node));
+    } catch (const YamlError& error) {
+        fault(key, error.mark, error.what());
+    }
+}
+
+void TreeReader::fault(const std::string& key, const Mark& mark, const std::string& message) {
+    if (is_full()) {
+        return;
+    }
+    faulty_.add(key);
+    const std::string subject = shown(key);
+    report(mark, subject.empty() ? message : subject + " " + message);
+}
+
+void TreeReader::report(const Mark& mark, const std::string& message) {
+    if (!is_full()) {
+        found_.push_back({{file_, mark}, message});
+    }
+}
+
+/// A key as the file that is read now would write it.
+std::string TreeReader::shown(const std::string& key) const {
+    const std::string& root = files_[file_].root;
+    if (root.empty() || !key.starts_with(root)) {
+        return key;
+    }
+    return key.size() == root.size() ? "" : key.substr(root.size() + 1);
+}
+
+TreeReader::Place TreeReader::place_of(std::string_view key) const {
+    while (!key.empty()) {
+        const auto found = places_.find(key);
+        if (found != places_.end()) {
+            return found->second;
+        }
+        const std::size_t cut = key.find_last_of(".[");
+        key = cut == std::string_view::npos ? std::string_view{} : key.substr(0, cut);
+    }
+    return {0, {}};
+}
+
+void TreeReader::add(const std::vector<Fault>& faults) {
+    for (const Fault& later : faults) {
+        const Place place = place_of(later.key);
+        file_ = place.file;
+        fault(later.key, place.mark, later.message);
+    }
+    file_ = 0;
+}
+
+std::vector<LocatedFault> TreeReader::faults() const {
+    std::vector<Found> ordered = found_;
+    std::stable_sort(ordered.begin(), ordered.end(), [](const Found& a, const Found& b) {
+        return std::tie(a.place.file, a.place.mark.line, a.place.mark.column) <
+               std::tie(b.place.file, b.place.mark.line, b.place.mark.column);
+    });
+    std::vector<LocatedFault> located;
+    for (const Found& found : ordered) {
+        located.push_back(
+            {files_[found.place.file].path.string(), found.place.mark.line, found.place.mark.column, found.message});
+    }
+    return located;
+}
+
+}  // namespace downwash::problems

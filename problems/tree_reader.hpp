@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "downwash/base/checks.hpp"
+#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/yaml_document.hpp"
+
+namespace downwash::problems {
+
+/// Fills a problem from YAML trees along the parameter table and remembers where every key stands.
+class TreeReader {
+ public:
+    /// Reads a whole problem, and its robot where that is. Faults are collected, never thrown.
+    void read_problem_file(const std::filesystem::path& file);
+    /// Reads a robot file into the problem's robot.
+    void read_robot_file(const std::filesystem::path& file);
+
+    [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
+    /// Keys of which the problem has no trustworthy value.
+    [[nodiscard]] const FaultyKeys& faulty_keys() const noexcept { return faulty_; }
+    /// More faults are not worth reading.
+    [[nodiscard]] bool is_full() const noexcept;
+    /// Adds faults that were found later, each at its key or the nearest key around it.
+    void add(const std::vector<Fault>& faults);
+    /// All faults, ordered by file and place; every call gives the same.
+    [[nodiscard]] std::vector<LocatedFault> faults() const;
+
+ private:
+    struct Place {
+        std::size_t file;
+        Mark mark;
+    };
+    /// A group that is being read.
+    struct Group {
+        std::string path;   ///< in the table; "path[]" within a list
+        std::string key;    ///< in the problem
+        std::size_t index;  ///< of the list element that it is in
+        Mark mark;
+        const YamlNode& node;
+        std::map<std::string, std::size_t, std::less<>> entries;  ///< first entry of every name
+        std::vector<std::string> meant;                           ///< names that misspelt keys stand for
+    };
+
+    void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
+    bool has_supported_schema(const YamlNode& root, const std::string& path);
+    void read_keys(Group group);
+    void find_entries(Group& group);
+    void report_unknown(Group& group, const std::string& name, const Mark& mark);
+    void check_alternatives(const Group& group);
+    void read_parameter(const Group& group, const Parameter<Problem>& parameter);
+    void read_group(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+                    const Mark& key_mark, std::size_t index);
+    void read_list(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key);
+    void read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+                     std::size_t index);
+
+    /// Records a fault of a key; its value is not trusted from now on.
+    void fault(const std::string& key, const Mark& mark, const std::string& message);
+    void report(const Mark& mark, const std::string& message);
+    [[nodiscard]] std::string shown(const std::string& key) const;
+    [[nodiscard]] Place place_of(std::string_view key) const;
+
+    Problem problem_;
+    FaultyKeys faulty_;
+    struct File {
+        std::filesystem::path path;
+        std::string root;  ///< key of the group that the file is
+    };
+    std::vector<File> files_;
+    std::size_t file_ = 0;  ///< the one that is read now
+    std::map<std::string, Place, std::less<>> places_;
+    struct Found {
+        Place place;
+        std::string message;
+    };
+    std::vector<Found> found_;
+};
+
+}  // namespace downwash::problems

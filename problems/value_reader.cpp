@@ -1,0 +1,170 @@
+#include "downwash/problems/value_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "downwash/problems/number_text.hpp"
+
+namespace downwash::problems {
+namespace {
+
+[[noreturn]] void refuse(const ParameterInfo& info, const YamlNode& node) {
+    throw YamlError(node.mark, found_text(node) + ": expected " + expectation(info));
+}
+
+bool is_not_finite(std::string_view text) {
+    constexpr std::array<std::string_view, 5> words{"inf", ".inf", "nan", ".nan", "infinity"};
+    std::string word(text.substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0));
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The text of something that is not quoted, as numbers and flags have to be.
+const std::string& bare_text(const ParameterInfo& info, const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::scalar) {
+        refuse(info, node);
+    }
+    if (node.is_quoted) {
+        throw YamlError(
+            node.mark, "is the text \"" + excerpt(node.text) + "\": expected " + expectation(info) + " without quotes");
+    }
+    return node.text;
+}
+
+double read_number(const ParameterInfo& info, const YamlNode& node) {
+    const std::string& text = bare_text(info, node);
+    const auto number = is_in_degrees(info.path) ? parse_degrees(text) : parse_number(text);
+    if (number) {
+        return *number;
+    }
+    if (is_not_finite(text)) {
+        throw YamlError(node.mark, "is not finite: expected " + expectation(info));
+    }
+    refuse(info, node);
+}
+
+std::uint64_t read_integer(const ParameterInfo& info, const YamlNode& node) {
+    const auto number = parse_integer(bare_text(info, node));
+    if (!number) {
+        refuse(info, node);
+    }
+    return *number;
+}
+
+bool read_flag(const ParameterInfo& info, const YamlNode& node) {
+    const std::string& text = bare_text(info, node);
+    if (text != "true" && text != "false") {
+        refuse(info, node);
+    }
+    return text == "true";
+}
+
+const std::string& read_text(const ParameterInfo& info, const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::scalar) {
+        refuse(info, node);
+    }
+    return node.text;
+}
+
+std::vector<double> read_numbers(const ParameterInfo& info, const YamlNode& node, std::size_t count) {
+    if (node.kind != YamlNode::Kind::list) {
+        refuse(info, node);
+    }
+    if (node.items.size() != count) {
+        throw YamlError(node.mark, "has " + std::to_string(node.items.size()) +
+                                       (node.items.size() == 1 ? " element" : " elements") + ": expected " +
+                                       expectation(info));
+    }
+    std::vector<double> numbers;
+    for (const YamlNode::Pointer& item : node.items) {
+        numbers.push_back(read_number(info, *item));
+    }
+    return numbers;
+}
+
+std::vector<Vector3> read_points(const ParameterInfo& info, const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::list) {
+        refuse(info, node);
+    }
+    std::vector<Vector3> points;
+    for (const YamlNode::Pointer& item : node.items) {
+        const std::vector<double> numbers = read_numbers(info, *item, 3);
+        points.push_back({numbers[0], numbers[1], numbers[2]});
+    }
+    return points;
+}
+
+std::string read_choice(const ParameterInfo& info, const YamlNode& node) {
+    const std::string& text = read_text(info, node);
+    if (const auto fault = value_fault(info, excerpt(text))) {
+        throw YamlError(node.mark, *fault);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string excerpt(std::string_view text) {
+    constexpr std::size_t longest = 48;
+    std::string shown;
+    for (const char c : text.substr(0, longest)) {
+        shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    if (text.size() <= longest) {
+        return shown;
+    }
+    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0xC0U) == 0x80U) {
+        shown.pop_back();  // the rest of a character that was cut
+    }
+    if (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0xC0U) {
+        shown.pop_back();
+    }
+    return shown + "...";
+}
+
+std::string found_text(const YamlNode& node) {
+    switch (node.kind) {
+        case YamlNode::Kind::null:
+            return "has no value";
+        case YamlNode::Kind::list:
+            return "is a list";
+        case YamlNode::Kind::map:
+            return "is a group of keys";
+        case YamlNode::Kind::scalar:
+            break;
+    }
+    return "is '" + excerpt(node.text) + "'";
+}
+
+Value read_value(const ParameterInfo& info, const YamlNode& node) {
+    if (info.nullable && node.kind == YamlNode::Kind::null) {
+        return {};
+    }
+    switch (info.kind) {
+        case ParameterKind::number:
+            return read_number(info, node);
+        case ParameterKind::integer:
+            return read_integer(info, node);
+        case ParameterKind::flag:
+            return read_flag(info, node);
+        case ParameterKind::text:
+        case ParameterKind::identifier:
+            return read_text(info, node);
+        case ParameterKind::choice:
+            return read_choice(info, node);
+        case ParameterKind::numbers:
+            return read_numbers(info, node, info.elements.size());
+        case ParameterKind::points:
+            return read_points(info, node);
+        case ParameterKind::group:
+        case ParameterKind::list:
+        case ParameterKind::planned:
+            break;
+    }
+    refuse(info, node);
+}
+
+}  // namespace downwash::problems
