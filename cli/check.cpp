@@ -1,0 +1,65 @@
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/commands.hpp"
+#include "downwash/problems/problem_reader.hpp"
+
+namespace downwash::cli {
+namespace {
+
+struct CheckArguments {
+    std::vector<std::string> problems;
+    bool as_json = false;
+};
+
+std::vector<LocatedFault> faults_of(const std::string& path) {
+    try {
+        static_cast<void>(read_problem(path));
+    } catch (const ProblemFileError& error) {
+        return error.faults();
+    }
+    return {};
+}
+
+void print_json(const std::vector<LocatedFault>& faults) {
+    auto list = nlohmann::ordered_json::array();
+    for (const LocatedFault& fault : faults) {
+        list.push_back(
+            {{"file", fault.file}, {"line", fault.line}, {"column", fault.column}, {"message", fault.message}});
+    }
+    const nlohmann::ordered_json document{{"faults", std::move(list)}};
+    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+ExitCode run(const CheckArguments& arguments) {
+    std::vector<LocatedFault> all;
+    for (const std::string& path : arguments.problems) {
+        const std::vector<LocatedFault> faults = faults_of(path);
+        for (const LocatedFault& fault : faults) {
+            fmt::print(stderr, "{}\n", to_text(fault));
+        }
+        if (faults.empty() && !arguments.as_json) {
+            fmt::print("{}: ok\n", path);
+        }
+        all.insert(all.end(), faults.begin(), faults.end());
+    }
+    if (arguments.as_json) {
+        print_json(all);
+    }
+    return all.empty() ? ExitCode::done : ExitCode::bad_input;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+    const auto arguments = std::make_shared<CheckArguments>();
+    CLI::App* command = program.add_subcommand("check", "Say whether problem files are sound, and every fault if not");
+    command->add_option("PROBLEM", arguments->problems, "problem files")->required();
+    command->add_flag("--json", arguments->as_json, "print the faults as JSON on standard output");
+    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace downwash::cli

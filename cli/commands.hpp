@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "downwash/cli/exit_code.hpp"
+
+namespace downwash::cli {
+
+/// What a parsed command line asks for.
+using Action = std::function<ExitCode()>;
+
+/// Each adds its command to the program; a command that is given stores what it does in `action`.
+void add_check(CLI::App& program, Action& action);
+void add_solve(CLI::App& program, Action& action);
+void add_execute(CLI::App& program, Action& action);
+void add_aeromap(CLI::App& program, Action& action);
+void add_planners(CLI::App& program, Action& action);
+
+}  // namespace downwash::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "downwash/planner/solve.hpp"
+
+namespace downwash::cli {
+
+/// Tells on standard error how a search goes: on a terminal in one line that is written anew, elsewhere in log lines,
+/// not more than one a second.
+class ProgressDisplay {
+ public:
+    explicit ProgressDisplay(bool is_quiet);
+    ~ProgressDisplay();
+    ProgressDisplay(const ProgressDisplay&) = delete;
+    ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+    /// Says something once.
+    void say(const std::string& text);
+
+    void show(const Progress& progress);
+
+ private:
+    void clear_line();
+
+    using Clock = std::chrono::steady_clock;
+
+    bool is_quiet_;
+    bool is_live_;
+    bool has_line_ = false;
+    Clock::time_point next_log_ = Clock::now();
+};
+
+}  // namespace downwash::cli

@@ -1,0 +1,143 @@
+#include "downwash/cli/results.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/solution_file.hpp"
+#include "downwash/problems/trajectory_csv.hpp"
+
+namespace downwash::cli {
+namespace {
+
+/// A flight that was not flown, for the header of its file.
+Execution no_flight(const Robot& robot) {
+    Execution execution;
+    execution.rotor_count = static_cast<int>(robot.rotors.positions_m.size());
+    execution.has_rotor_lag = robot.rotors.time_constant_s > 0;
+    return execution;
+}
+
+std::string verdict_on_flight(const Execution& flight) {
+    const std::string air = flight.aero ? "with direct aerodynamics" : "in free air";
+    switch (flight.outcome) {
+        case Outcome::ok:
+            return "its flight " + air + " reaches the goal and holds there.";
+        case Outcome::collision:
+            return "its flight " + air + " ends in a collision.";
+        case Outcome::unstable:
+            return "its flight " + air + " becomes unstable.";
+        case Outcome::left_flyable_area:
+            return "its flight " + air + " leaves the flyable area.";
+        case Outcome::goal_missed:
+            break;
+    }
+    return "its flight " + air + " misses the goal.";
+}
+
+std::string verdict_of(const Solution& solution) {
+    const std::string stopped = solution.interrupted ? "Interrupted: " : "";
+    if (solution.status == Status::solved && solution.execution) {
+        const bool is_good = solution.execution->outcome == Outcome::ok;
+        return stopped + (is_good ? "A plan was found, and " : "A plan was found, but ") +
+               verdict_on_flight(*solution.execution);
+    }
+    if (solution.status == Status::approximate) {
+        return stopped + "No solution within the limits; the nearest approach to the goal is reported.";
+    }
+    return stopped + "No solution within the limits.";
+}
+
+/// Lines of a table with two columns.
+class Table {
+ public:
+    void add(std::string_view name, const std::string& value) {
+        if (!value.empty()) {
+            text_ += fmt::format("  {:<16}  {}\n", name, value);
+        }
+    }
+    [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+    std::string text_;
+};
+
+std::string_view unit_of(Objective objective) {
+    switch (objective) {
+        case Objective::energy:
+            return "J";
+        case Objective::time:
+            return "s";
+        case Objective::length:
+            return "m";
+        case Objective::clearance:
+            break;
+    }
+    return "s/m";
+}
+
+std::string refusals(const SearchRecord& record) {
+    std::string text;
+    for (const auto& [cause, count] : record.rejected) {
+        if (count > 0) {
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cause, count);
+        }
+    }
+    return text.empty() ? "none" : text;
+}
+
+void add_flight(Table& table, const Solution& solution, const Execution& flight) {
+    const std::string_view unit = unit_of(solution.objective);
+    table.add("flight", fmt::format("{}, {}", name_of(flight.outcome),
+                                    flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
+    table.add("cost",
+              fmt::format("{:.6g} {} planned, {:.6g} {} flown", solution.cost, unit, solution.execution_cost, unit));
+    table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
+    table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
+    table.add("goal error", fmt::format("{:.3f} m", flight.goal_error_m));
+    table.add("least clearance",
+              std::isfinite(flight.min_clearance_m) ? fmt::format("{:.3f} m", flight.min_clearance_m) : "no obstacles");
+}
+
+}  // namespace
+
+std::filesystem::path default_folder(const Problem& problem) {
+    return std::filesystem::path("downwash-out") /
+           fmt::format("{}-{}-{}", problem.name, name_of(problem.planner.variant), problem.planner.seed);
+}
+
+std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+                          const Solution& solution) {
+    const std::string effective = effective_yaml(problem);
+    const std::string json = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
+    folder.write("effective.yaml", effective);
+    folder.write("trajectory.csv", trajectory_csv(solution.execution.value_or(no_flight(problem.robot))));
+    folder.write("solution.json", json);
+    return json;
+}
+
+std::string summary_of(const Solution& solution, const std::filesystem::path& folder) {
+    Table table;
+    table.add("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
+                                    solution.algorithm, name_of(solution.objective), solution.seed));
+    if (solution.execution) {
+        add_flight(table, solution, *solution.execution);
+    }
+    const SearchRecord& record = solution.planning;
+    table.add("first solution",
+              record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
+    table.add("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
+    table.add("refused", refusals(record));
+    table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, effective.yaml}");
+    return verdict_of(solution) + "\n\n" + table.text();
+}
+
+ExitCode exit_code_of(const Solution& solution) {
+    if (solution.status != Status::solved || !solution.execution) {
+        return ExitCode::no_solution;
+    }
+    return solution.execution->outcome == Outcome::ok ? ExitCode::done : ExitCode::flight_failed;
+}
+
+}  // namespace downwash::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "downwash/cli/exit_code.hpp"
+#include "downwash/cli/output_folder.hpp"
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/solution.hpp"
+
+namespace downwash::cli {
+
+/// Where results go unless --out says otherwise: downwash-out/NAME-VARIANT-SEED.
+[[nodiscard]] std::filesystem::path default_folder(const Problem& problem);
+
+/// Writes effective.yaml, trajectory.csv and, last, solution.json.
+/// @param problem_file as the user gave it
+/// @return the text of solution.json
+std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+                          const Solution& solution);
+
+/// What a person wants to know of a solution: the verdict, then a table.
+[[nodiscard]] std::string summary_of(const Solution& solution, const std::filesystem::path& folder);
+
+/// The exit code that a solution deserves if no signal ended the search.
+[[nodiscard]] ExitCode exit_code_of(const Solution& solution);
+
+}  // namespace downwash::cli

@@ -1,0 +1,269 @@
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "downwash/base/text.hpp"
+#include "downwash/problems/json_place.hpp"
+#include "downwash/problems/json_reader.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/solution_file.hpp"
+
+namespace downwash {
+namespace {
+
+using problems::Json;
+using problems::JsonReader;
+using problems::Node;
+
+constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
+constexpr std::size_t deepest_nesting = 32;
+constexpr std::int64_t most_ticks = 1'000'000;  // nearly three hours at 100 Hz
+constexpr double tolerance = 1e-9;              // of numbers that should be equal
+
+/// The control tick at which a knot stands; nothing when it stands between two.
+std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
+    const double ticks = std::round(t_s / tick_s);
+    if (!(ticks >= 0 && ticks <= static_cast<double>(most_ticks)) ||
+        std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
+        return std::nullopt;
+    }
+    return static_cast<std::int64_t>(ticks);
+}
+
+ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
+    ReferenceKnot knot;
+    const double t_s = reader.required_number(node, "t_s");
+    if (const auto tick = tick_of(t_s, tick_s)) {
+        knot.tick = *tick;
+    } else {
+        reader.refuse(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
+                                to_text(tick_s) + " s, from 0 to " + std::to_string(most_ticks) + " of them");
+    }
+    constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
+                               std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        knot.point.position[axis] = reader.required_number(node, names[0][axis]);
+        knot.point.velocity[axis] = reader.required_number(node, names[1][axis]);
+        knot.point.acceleration[axis] = reader.required_number(node, names[2][axis]);
+    }
+    return knot;
+}
+
+void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
+    for (const Node& node : reader.groups(list)) {
+        if (reader.has_enough()) {
+            return;
+        }
+        const ReferenceKnot knot = read_knot(reader, node, plan.tick_s);
+        if (plan.reference.empty() ? knot.tick != 0 : knot.tick <= plan.reference.back().tick) {
+            reader.refuse(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
+                                                       : "t_s must be greater than that of the knot before");
+        }
+        plan.reference.push_back(knot);
+    }
+}
+
+void read_waypoints(JsonReader& reader, const Node& list, Plan& plan) {
+    for (const Node& node : reader.groups(list)) {
+        if (reader.has_enough()) {
+            return;
+        }
+        plan.waypoints.push_back({reader.required_number(node, "x_m"), reader.required_number(node, "z_m"),
+                                  reader.required_number(node, "arm_rad")});
+    }
+}
+
+bool is_near(double a, double b) {
+    return std::abs(a - b) <= tolerance * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+bool is_at(const Waypoint& waypoint, const double (&position)[3]) {
+    return is_near(waypoint.x_m, position[0]) && is_near(waypoint.z_m, position[1]) &&
+           is_near(waypoint.arm_rad, position[2]);
+}
+
+/// Waypoints and reference must tell the same story.
+void compare_waypoints(JsonReader& reader, const Node& waypoints, const Plan& plan) {
+    if (plan.waypoints.size() != plan.reference.size()) {
+        reader.refuse(waypoints, "there are " + std::to_string(plan.waypoints.size()) + " waypoints, but " +
+                                     std::to_string(plan.reference.size()) + " knots of the reference");
+        return;
+    }
+    for (std::size_t i = 0; i < plan.waypoints.size(); ++i) {
+        if (!is_at(plan.waypoints[i], plan.reference[i].point.position)) {
+            reader.refuse(waypoints.at(i), "this waypoint is not where plan.reference[" + std::to_string(i) + "] is");
+        }
+    }
+}
+
+void check_start(JsonReader& reader, const Node& reference, const Plan& plan, const Start& start) {
+    const double(&first)[3] = plan.reference.front().point.position;
+    if (!is_at({start.x_m, start.z_m, start.arm_rad}, first)) {
+        const auto place = [](double x_m, double z_m, double arm_rad) {
+            return "x_m " + to_text(x_m) + ", z_m " + to_text(z_m) + ", arm_rad " + to_text(arm_rad);
+        };
+        reader.refuse(reference.at(0), "the plan begins at " + place(first[0], first[1], first[2]) +
+                                           ", but the problem starts at " + place(start.x_m, start.z_m, start.arm_rad) +
+                                           "; is it the plan of another problem?");
+    }
+}
+
+void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Solution& solution) {
+    const auto node = reader.required(root, "plan");
+    if (!node) {
+        return;
+    }
+    if (!node->json->is_object()) {
+        reader.refuse(*node, node->json->is_null() ? "the file holds no plan: the search found none"
+                                                   : "expected a group with `waypoints` and `reference`");
+        return;
+    }
+    const auto waypoints = reader.required(*node, "waypoints");
+    const auto reference = reader.required(*node, "reference");
+    Plan plan;
+    plan.tick_s = 1 / problem.robot.controller.rate_hz;
+    if (waypoints && reference) {
+        read_reference(reader, *reference, plan);
+        read_waypoints(reader, *waypoints, plan);
+    }
+    if (reader.faults().empty() && plan.reference.empty()) {
+        reader.refuse(*reference, "expected at least one knot");
+    }
+    if (reader.faults().empty()) {
+        compare_waypoints(reader, *waypoints, plan);
+        check_start(reader, *reference, plan, problem.start);
+    }
+    solution.plan = std::move(plan);
+}
+
+void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
+    const auto planning = JsonReader::member(root, "planning");
+    if (!planning || planning->json->is_null()) {
+        return;
+    }
+    if (!planning->json->is_object()) {
+        reader.refuse(*planning, "expected a group of keys");
+        return;
+    }
+    record.wall_s = reader.amount(*planning, "wall_s", 0);
+    record.map_wall_s = reader.amount(*planning, "map_wall_s", 0);
+    record.flight_wall_s = reader.amount(*planning, "flight_wall_s", 0);
+    const double first_s = reader.amount(*planning, "first_solution_wall_s", -1);
+    record.first_solution_wall_s = first_s < 0 ? std::nullopt : std::optional(first_s);
+    record.simulated_s = reader.amount(*planning, "simulated_s", 0);
+    reader.read_count(*planning, "iterations", record.iterations);
+    reader.read_count(*planning, "edges_simulated", record.edges_simulated);
+    reader.read_count(*planning, "states_checked", record.states_checked);
+    for (const Node& node : reader.groups(JsonReader::member(*planning, "improvements"))) {
+        Improvement improvement{reader.amount(node, "wall_s", 0), 0, reader.amount(node, "cost", 0)};
+        reader.read_count(node, "iteration", improvement.iteration);
+        record.improvements.push_back(improvement);
+    }
+    if (const auto rejected = JsonReader::member(*planning, "rejected"); rejected && rejected->json->is_object()) {
+        for (const auto& [cause, value] : rejected->json->items()) {
+            record.rejected[cause] = reader.count({&value, rejected->key + "." + cause});
+        }
+    }
+}
+
+void read_head(JsonReader& reader, const Node& root, Solution& solution) {
+    reader.read_choice(root, "status", std::array{Status::none, Status::approximate, Status::solved}, solution.status);
+    reader.read_flag(root, "interrupted", solution.interrupted);
+    reader.read_choice(root, "variant", std::array{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada},
+                       solution.variant);
+    reader.read_choice(root, "objective",
+                       std::array{Objective::energy, Objective::time, Objective::length, Objective::clearance},
+                       solution.objective);
+    if (const auto algorithm = JsonReader::member(root, "algorithm")) {
+        if (algorithm->json->is_string()) {
+            solution.algorithm = algorithm->json->get<std::string>();
+        } else {
+            reader.refuse(*algorithm, "expected the name of an algorithm");
+        }
+    }
+    std::uint64_t seed = solution.seed;
+    reader.read_count(root, "seed", seed);
+    if (seed > std::numeric_limits<std::uint32_t>::max()) {
+        reader.refuse({nullptr, "seed"}, "expected a whole number below 2^32");
+    }
+    solution.seed = static_cast<std::uint32_t>(seed);
+    solution.cost = reader.amount(root, "cost", 0);
+}
+
+/// A solution with nothing in it but what the problem asks for.
+Solution blank_solution(const Problem& problem) {
+    Solution solution;
+    solution.status = Status::solved;
+    solution.variant = problem.planner.variant;
+    solution.algorithm = problem.planner.algorithm;
+    solution.objective = problem.planner.objective;
+    solution.seed = problem.planner.seed;
+    return solution;
+}
+
+[[noreturn]] void refuse_file(const std::string& path, problems::TextPlace place, const std::string& message) {
+    throw ProblemFileError({{path, place.line, place.column, message}});
+}
+
+std::string read_text(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string text;
+    // A folder opens like a file and fails at the first byte.
+    if (!stream || (stream.peek(), stream.bad())) {
+        refuse_file(path, {}, "cannot be read; expected a solution.json that `solve` wrote");
+    }
+    char block[65536];
+    while (stream.read(block, sizeof block), stream.gcount() > 0) {
+        text.append(block, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > largest_file) {
+            refuse_file(path, {}, "is larger than 256 MiB and hardly the file of a plan");
+        }
+    }
+    return text;
+}
+
+Json parse(const std::string& path, const std::string& text) {
+    if (problems::json_depth(text) > deepest_nesting) {
+        refuse_file(path, {}, "nests deeper than the file of a plan does");
+    }
+    try {
+        return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+        refuse_file(path, problems::place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
+                    text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
+    } catch (const Json::exception&) {
+        refuse_file(path, {}, "holds a number that is too large");
+    }
+}
+
+}  // namespace
+
+Solution read_solution(const std::string& path, const Problem& problem) {
+    const std::string text = read_text(path);
+    const Json document = parse(path, text);
+    const Node root{&document, ""};
+    JsonReader reader;
+    Solution solution = blank_solution(problem);
+    if (!document.is_object()) {
+        reader.refuse(root, "expected a group of keys as `solve` writes it");
+    } else if (const auto schema = reader.required(root, "schema"); schema && *schema->json != solution_schema) {
+        reader.refuse(*schema, "unsupported schema; expected " + std::string(solution_schema));
+    } else if (schema) {
+        read_head(reader, root, solution);
+        read_planning(reader, root, solution.planning);
+        read_plan(reader, root, problem, solution);
+    }
+    if (!reader.faults().empty()) {
+        std::vector<LocatedFault> faults;
+        for (const Fault& fault : reader.faults()) {
+            const auto place = problems::json_place(text, fault.key);
+            faults.push_back(
+                {path, place.line, place.column, fault.key.empty() ? fault.message : fault.key + ": " + fault.message});
+        }
+        throw ProblemFileError(std::move(faults));
+    }
+    return solution;
+}
+
+}  // namespace downwash
