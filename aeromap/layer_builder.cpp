@@ -201,8 +201,8 @@ CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) 
 double longest_cell_side_m(const AeroSettings& settings, double rotor_radius_m) {
     const double slope = std::max(steepest(settings.ground, settings), steepest(settings.ceiling, settings));
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
-    const double side_radii = slope > 0 ? most_steps * 4 * 0.004 / slope : std::numeric_limits<double>::infinity();
-    return rotor_radius_m * std::max(side_radii, 0.02);
+    const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);
+    return rotor_radius_m * std::clamp(resolved_radii, 0.02, 0.4);
 }
 
 }  // namespace downwash

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "../support/random.hpp"
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/scene/scene.hpp"
+
+namespace downwash::test {
+
+/// Any shape in any attitude, a good part of them level, about half a metre to one and a half large.
+Obstacle any_obstacle(Random& random, const Vector3& center_m);
+
+/// Ground, deck with girders, pier, pipes, a ball and a tilted block, over 24 m by 12 m.
+std::vector<Obstacle> bridge();
+
+/// The disc average of k by 10^6 rays on a square grid (fewer for a smaller `side`), from vertical extents only.
+DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, int side = 1128);
+
+std::shared_ptr<const Scene> scene_of(std::vector<Obstacle> obstacles);
+
+}  // namespace downwash::test

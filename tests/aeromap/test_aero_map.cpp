@@ -1,0 +1,174 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/base/fault.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+
+namespace {
+
+struct Comparison {
+    double worst = 0;
+    int points = 0;
+    int near_surfaces = 0;
+};
+
+/// Map against direct evaluation at random flyable positions, half of them where the effect is felt.
+Comparison compare(const AeroMap& map, int points, unsigned seed) {
+    test::Random random(seed);
+    Comparison result;
+    const MapExtent& extent = map.extent();
+    for (long tries = 0; result.points < points && tries < 400L * points; ++tries) {
+        const double x = random.uniform(extent.x_low_m, extent.x_high_m);
+        const double z = random.uniform(extent.z_low_m, extent.z_high_m);
+        const auto layer =
+            static_cast<std::size_t>(random.integer(0, static_cast<int>(map.lateral_offsets_m().size()) - 1));
+        const bool wants_effect = tries % 40 != 0;
+        if (wants_effect && map.factor(layer, x, z) < 1.05) {
+            continue;
+        }
+        const Vector3 hub = map.plane().to_world(x, map.lateral_offsets_m()[layer], z);
+        REQUIRE(map.is_flyable(layer, x, z) == map.effect().is_flyable(hub));
+        if (map.is_flyable(layer, x, z)) {
+            result.worst = std::max(result.worst, std::abs(map.factor(layer, x, z) - map.effect().factor(hub)));
+            ++result.points;
+            result.near_surfaces += wants_effect;
+        }
+    }
+    return result;
+}
+
+std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius, double grid_m = 0.05) {
+    AeroSettings settings;
+    settings.grid_m = grid_m;
+    return std::make_shared<const DirectEffect>(scene_of(std::move(obstacles)), settings, radius);
+}
+
+std::vector<Obstacle> random_obstacles(test::Random& random, int count) {
+    std::vector<Obstacle> obstacles;
+    for (int i = 0; i < count; ++i) {
+        obstacles.push_back(
+            test::any_obstacle(random, {random.uniform(-2, 2), random.uniform(-0.6, 0.6), random.uniform(-1.5, 1.5)}));
+    }
+    return obstacles;
+}
+
+}  // namespace
+
+TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever one may fly") {
+    test::Random random(11);
+    for (int scene = 0; scene < 8; ++scene) {
+        const double radius = random.uniform(0.06, 0.25);
+        const double grid_m = scene % 4 == 3 ? 0.3 : 0.05;
+        const AeroMap map(effect_in(random_obstacles(random, 6), radius, grid_m),
+                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, {-0.2, 0.1}, 2);
+        const Comparison found = compare(map, 20000, 100U + static_cast<unsigned>(scene));
+        CAPTURE(scene, radius, grid_m, found.worst);
+        CHECK(found.points == 20000);
+        CHECK(found.worst <= 0.01);
+    }
+}
+
+TEST_CASE("A map of a bridge is within 0.01 of the direct effect wherever one may fly") {
+    const AeroMap map(effect_in(test::bridge(), 0.15), {}, {-12, 12, 0, 12}, {-0.18, 0.18}, 2);
+    const Comparison found = compare(map, 40000, 21);
+    CAPTURE(found.worst);
+    CHECK(found.points == 40000);
+    CHECK(found.near_surfaces > 10000);
+    CHECK(found.worst <= 0.01);
+    CHECK(map.memory_bytes() < 64U << 20U);
+}
+
+TEST_CASE("Another cap and another distance are met as well") {
+    AeroSettings settings;
+    settings.max_factor = 3;
+    settings.min_distance_radii = 0.2;
+    const auto effect = std::make_shared<const DirectEffect>(
+        scene_of({{"", Box{{4, 4, 1}}, {0, 0, -0.5}, {}}, {"", Cylinder{0.2, 2, {0, 1, 0}}, {0, 0, 1}, {}}}), settings,
+        0.12);
+    const AeroMap map(effect, {}, {-1, 1, 0, 2}, {0}, 1);
+    const Comparison found = compare(map, 20000, 31);
+    CAPTURE(found.worst);
+    CHECK(found.worst <= 0.01);
+}
+
+TEST_CASE("A map is the same to the bit for any number of threads") {
+    test::Random random(12);
+    const auto effect = effect_in(random_obstacles(random, 5), 0.15);
+    const AeroMap one(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 1);
+    const AeroMap two(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 2);
+    const AeroMap five(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 5);
+    CHECK(one.memory_bytes() == two.memory_bytes());
+    for (int i = 0; i < 200000; ++i) {
+        const double x = random.uniform(-2, 2);
+        const double z = random.uniform(-1.5, 1.5);
+        const std::size_t layer = i % 2 == 0 ? 0 : 1;
+        const double expected = one.factor(layer, x, z);
+        const double with_two = two.factor(layer, x, z);
+        const double with_five = five.factor(layer, x, z);
+        REQUIRE(std::memcmp(&expected, &with_two, sizeof expected) == 0);
+        REQUIRE(std::memcmp(&expected, &with_five, sizeof expected) == 0);
+    }
+}
+
+TEST_CASE("Outside its extent a map evaluates directly") {
+    const auto effect = effect_in(test::bridge(), 0.15);
+    const PlaneOfMotion plane({0, 0, 0}, 0.2);
+    const AeroMap map(effect, plane, {-1, 1, 1, 2}, {0.18}, 1);
+    for (const double x : {-7.0, -1.001, 1.06, 3.0}) {
+        for (const double z : {0.1, 0.4, 2.06, 8.0}) {
+            CHECK(map.factor(0, x, z) == effect->factor(plane.to_world(x, 0.18, z)));
+            CHECK(map.is_flyable(0, x, z) == effect->is_flyable(plane.to_world(x, 0.18, z)));
+        }
+    }
+    CHECK(map.factor(0, 0, 0.06) > 1.6);
+}
+
+TEST_CASE("A position that is not finite has the factor 1 in a map and is not flyable") {
+    const AeroMap map(effect_in(test::bridge(), 0.15), {}, {-1, 1, 0, 1}, {0}, 1);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinity, -infinity}) {
+        CHECK(map.factor(0, bad, 0.5) == 1);
+        CHECK(map.factor(0, 0.5, bad) == 1);
+        CHECK(!map.is_flyable(0, bad, 0.5));
+    }
+}
+
+TEST_CASE("Map borders belong to the map and stay inside its memory") {
+    const auto effect = effect_in(test::bridge(), 0.15, 0.07);
+    const AeroMap map(effect, {}, {-1, 1, 0.06, 1}, {0}, 1);
+    for (const double x : {-1.0, std::nextafter(1.0, 0.0), 1.0}) {
+        for (const double z : {0.06, 0.2, std::nextafter(1.0, 0.0), 1.0}) {
+            CHECK(map.factor(0, x, z) == Approx(effect->factor({x, 0, z})).margin(0.01));
+        }
+    }
+}
+
+TEST_CASE("With the effects disabled a map is 1 and flyable throughout") {
+    AeroSettings settings;
+    settings.enabled = false;
+    const AeroMap map(std::make_shared<const DirectEffect>(scene_of(test::bridge()), settings, 0.15), {},
+                      {-12, 12, 0, 12}, {0}, 1);
+    CHECK(map.factor(0, 3, 5) == 1);
+    CHECK(map.is_flyable(0, 3, 5));
+}
+
+TEST_CASE("Maps that make no sense are refused") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto effect = effect_in({}, 0.15);
+    CHECK_THROWS_AS(AeroMap(effect, {}, {1, 1, 0, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect, {}, {1, -1, 0, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1, nan, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1, 0, 1}, {nan}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1e6, 0, 1e6}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, 0), {}, {0, 1, 0, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, -0.05), {}, {0, 1, 0, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, nan), {}, {0, 1, 0, 1}, {0}, 1), InputError);
+}

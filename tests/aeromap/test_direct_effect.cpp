@@ -1,0 +1,172 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/collision_checker.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+
+namespace {
+
+constexpr double radius = 0.2;
+const Obstacle floor_slab{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}};
+
+Obstacle roof_at(double z) {
+    return {"roof", Box{{40, 40, 1}}, {0, 0, z + 0.5}, {}};
+}
+
+}  // namespace
+
+TEST_CASE("Over a wide floor the model itself acts, and falls with distance to 1") {
+    const AeroSettings settings;
+    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    double last = 2;
+    for (double z = 0.01; z < 20; z += 0.01) {
+        const double factor = effect.factor({1, 2, z});
+        REQUIRE(factor == surface_factor(settings.ground, z / radius, settings.max_factor));
+        REQUIRE(factor <= last);
+        last = factor;
+    }
+    CHECK(effect.factor({0, 0, 1000 * radius}) == Approx(1).margin(1e-6));
+    CHECK(effect.factor({100, 0, 0.1}) == 1);
+}
+
+TEST_CASE("An obstacle behind another changes nothing") {
+    const std::vector<Obstacle> shade{{"table", Box{{2, 2, 0.1}}, {0, 0, 1}, {}}};
+    std::vector<Obstacle> both = shade;
+    both.push_back(floor_slab);
+    both.push_back({"ball", Sphere{0.3}, {0.1, 0, 0.5}, {}});
+    both.push_back({"rod", Cylinder{0.05, 1, {1, 1, 0.2}}, {0, 0.1, 0.7}, {}});
+    const DirectEffect alone(scene_of(shade), {}, radius);
+    const DirectEffect with_more(scene_of(both), {}, radius);
+    for (const double z : {1.12, 1.2, 1.5, 3.0}) {
+        CHECK(with_more.factor({0.2, -0.3, z}) == alone.factor({0.2, -0.3, z}));
+    }
+}
+
+TEST_CASE("Only the part of an obstacle that no other hides has an effect") {
+    // Half of the disc sees the table, the other half the floor.
+    const AeroSettings settings;
+    const DirectEffect effect(scene_of({floor_slab, {"table", Box{{2, 4, 0.1}}, {1, 0, 0.45}, {}}}), settings, radius);
+    const double table = surface_factor(settings.ground, 0.2 / radius, 2);
+    const double floor = surface_factor(settings.ground, 0.7 / radius, 2);
+    CHECK(effect.factor({0, 0, 0.7}) == Approx(0.5 * (table + floor)).margin(1e-6));
+}
+
+TEST_CASE("Effects from below and above add up to the cap") {
+    const AeroSettings settings;
+    const DirectEffect effect(scene_of({floor_slab, roof_at(0.5)}), settings, radius);
+    const double below = surface_factor(settings.ground, 0.3 / radius, 2);
+    const double above = surface_factor(settings.ceiling, 0.2 / radius, 2);
+    const DirectEffect::Factors factors = effect.factors({0, 0, 0.3});
+    CHECK(factors.ground == below);
+    CHECK(factors.ceiling == above);
+    CHECK(factors.total == Approx(below + above - 1).epsilon(1e-14));
+    const DirectEffect tight(scene_of({floor_slab, roof_at(0.14)}), settings, radius);
+    CHECK(tight.factor({0, 0, 0.075}) == 2);
+}
+
+TEST_CASE("A vertical wall beside the disc has no effect") {
+    const DirectEffect effect(scene_of({{"wall", Box{{1, 40, 40}}, {1, 0, 0}, {}}}), {}, radius);
+    CHECK(effect.factor({0.5 - radius, 0, 0}) == 1);
+    CHECK(effect.factor({0.4 - radius, 3, 1}) == 1);
+    CHECK(effect.factor({0.45 - radius, 3, -2}) == 1);
+}
+
+TEST_CASE("Moving and turning scene and rotor together changes nothing") {
+    test::Random random(5);
+    for (int i = 0; i < 300; ++i) {
+        std::vector<Obstacle> here;
+        for (int k = 0; k < 3; ++k) {
+            here.push_back(test::any_obstacle(
+                random, {random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-1, 1)}));
+        }
+        const double turn = random.uniform(-3, 3);
+        const Vector3 shift{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
+        const auto moved = [&](const Vector3& p) {
+            return Vector3{shift[0] + std::cos(turn) * p[0] - std::sin(turn) * p[1],
+                           shift[1] + std::sin(turn) * p[0] + std::cos(turn) * p[1], shift[2] + p[2]};
+        };
+        std::vector<Obstacle> there = here;
+        for (Obstacle& obstacle : there) {
+            obstacle.center_m = moved(obstacle.center_m);
+            obstacle.rpy_rad[2] += turn;
+        }
+        const Vector3 hub{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6)};
+        const DirectEffect first(scene_of(here), {}, radius);
+        if (first.is_flyable(hub)) {
+            const DirectEffect second(scene_of(there), {}, radius);
+            REQUIRE(second.factor(moved(hub)) == Approx(first.factor(hub)).margin(1e-3));
+        }
+    }
+}
+
+TEST_CASE("Far from everything the factor is 1") {
+    test::Random random(6);
+    std::vector<Obstacle> obstacles;
+    for (int k = 0; k < 6; ++k) {
+        obstacles.push_back(test::any_obstacle(random, {random.uniform(-1, 1), random.uniform(-1, 1), 0}));
+    }
+    const DirectEffect effect(scene_of(obstacles), {}, radius);
+    CHECK(effect.factor({0, 0, 60}) == Approx(1).margin(2e-5));
+    CHECK(effect.factor({0, 0, -60}) == Approx(1).margin(2e-5));
+    CHECK(effect.factor({30, 0, 0}) == 1);
+}
+
+TEST_CASE("The flyable area keeps the least distance from every obstacle") {
+    AeroSettings settings;
+    settings.min_distance_radii = 0.5;
+    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    CHECK(effect.is_flyable({0, 0, 0.1001}));
+    CHECK(!effect.is_flyable({0, 0, 0.0999}));
+    CHECK(effect.is_flyable({20.1001 + radius, 0, -0.5}));
+    CHECK(!effect.is_flyable({20.0999 + radius, 0, -0.5}));
+    CHECK(!effect.is_flyable({std::numeric_limits<double>::quiet_NaN(), 0, 3}));
+}
+
+TEST_CASE("Disabled effects leave the free air everywhere") {
+    AeroSettings settings;
+    settings.enabled = false;
+    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    CHECK(effect.factor({0, 0, 0.1}) == 1);
+    CHECK(effect.is_flyable({0, 0, 0.01}));
+}
+
+TEST_CASE("A side without a model has no effect") {
+    AeroSettings settings;
+    settings.ground.model = EffectModel::none;
+    const DirectEffect effect(scene_of({floor_slab, roof_at(0.5)}), settings, radius);
+    CHECK(effect.factors({0, 0, 0.2}).ground == 1);
+    CHECK(effect.factors({0, 0, 0.2}).ceiling > 1);
+}
+
+TEST_CASE("A position that is not finite has the factor 1") {
+    const DirectEffect effect(scene_of(test::bridge()), {}, radius);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinity, -infinity}) {
+        CHECK(effect.factor({bad, 0, 1}) == 1);
+        CHECK(effect.factor({0, bad, 1}) == 1);
+        CHECK(effect.factor({0, 0, bad}) == 1);
+    }
+}
+
+TEST_CASE("Settings out of their range are refused with every fault") {
+    AeroSettings settings;
+    settings.max_factor = 0.5;
+    settings.min_distance_radii = -1;
+    settings.ceiling.k1 = 0;
+    settings.ground.k2_over_radius = std::numeric_limits<double>::quiet_NaN();
+    try {
+        const DirectEffect effect(scene_of({}), settings, 0);
+        FAIL("nothing was thrown");
+    } catch (const InputError& error) {
+        CHECK(error.faults().size() == 5);
+    }
+}

@@ -1,0 +1,94 @@
+// The quadrature over the disc against closed forms and against counting rays.
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/base/fault.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double radius = 0.2;
+
+}  // namespace
+
+TEST_CASE("The edge of a half plane covers a circular segment, whatever its direction, below and above") {
+    const AeroSettings settings;
+    for (int turn = 0; turn < 32; ++turn) {
+        const double angle = turn < 8 ? turn * pi / 4 : 0.37 * turn;
+        const Vector3 along{std::cos(angle), std::sin(angle), 0};
+        // A large slab whose edge runs through the origin, its inside in the direction `along`; top at 0, bottom at -1.
+        const DirectEffect effect(
+            scene_of({{"", Box{{40, 60, 1}}, {20 * along[0], 20 * along[1], -0.5}, {0, 0, angle}}}), settings, radius);
+        for (double s = -1.25; s <= 1.25; s += 0.0625) {
+            const double inside = std::min(1.0, std::max(-1.0, s));
+            const double covered = 0.5 + (std::asin(inside) + inside * std::sqrt(1 - inside * inside)) / pi;
+            const double x = s * radius * along[0];
+            const double y = s * radius * along[1];
+            const double over = 1 + covered * (surface_factor(settings.ground, 0.8, 2) - 1);
+            const double under = 1 + covered * (surface_factor(settings.ceiling, 0.8, 2) - 1);
+            REQUIRE(effect.factors({x, y, 0.8 * radius}).ground == Approx(over).margin(1e-4));
+            REQUIRE(effect.factors({x, y, -1 - 0.8 * radius}).ceiling == Approx(under).margin(1e-4));
+            // Where the rotor plane cuts the slab the covered part counts as touching, on both sides.
+            REQUIRE(effect.factors({x, y, -0.5}).ground == Approx(1 + covered).margin(1e-3));
+            REQUIRE(effect.factors({x, y, -0.5}).ceiling == Approx(1 + covered).margin(1e-3));
+        }
+    }
+}
+
+TEST_CASE("A pipe under the rotor agrees with a million rays") {
+    const AeroSettings settings;
+    for (const double pipe_radius : {0.03, 0.1, 0.25}) {
+        const DirectEffect effect(scene_of({{"", Cylinder{pipe_radius, 6, {1, 2, 0}}, {}, {}}}), settings, radius);
+        for (const double sideways : {0.0, 0.07, 0.21}) {
+            const Vector3 hub{sideways, 0, pipe_radius + 0.4 * radius};
+            const Vector3 under{sideways, 0, -hub[2]};
+            CHECK(effect.factors(hub).ground == Approx(test::by_rays(effect, hub).ground).margin(1e-3));
+            CHECK(effect.factors(under).ceiling == Approx(test::by_rays(effect, under).ceiling).margin(1e-3));
+        }
+    }
+}
+
+TEST_CASE("Anywhere flyable among random obstacles the effect agrees with counted rays") {
+    test::Random random(3);
+    int compared = 0;
+    double worst = 0;
+    while (compared < 150) {
+        std::vector<Obstacle> obstacles;
+        for (int i = 0; i < 4; ++i) {
+            obstacles.push_back(test::any_obstacle(
+                random, {random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-1, 1)}));
+        }
+        const DirectEffect effect(scene_of(obstacles), {}, random.uniform(0.08, 0.2));
+        const Vector3 hub{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6)};
+        const DirectEffect::Factors factors = effect.factors(hub);
+        if (factors.total < 1.01 || !effect.is_flyable(hub)) {
+            continue;
+        }
+        const DirectEffect::Factors counted = test::by_rays(effect, hub, 400);
+        worst =
+            std::max({worst, std::abs(factors.ground - counted.ground), std::abs(factors.ceiling - counted.ceiling)});
+        ++compared;
+    }
+    CAPTURE(worst);
+    CHECK(worst < 2e-3);
+}
+
+TEST_CASE("Many obstacles over one disc are all counted") {
+    std::vector<Obstacle> lattice;
+    for (int i = 0; i < 60; ++i) {
+        lattice.push_back({"", Box{{0.003, 2, 0.1}}, {0.006 * (i - 30), 0, -0.2 - 0.001 * i}, {}});
+        lattice.push_back({"", Cylinder{0.002, 2, {1, 0, 0}}, {0, 0.006 * (i - 30), 0.3}, {}});
+    }
+    const DirectEffect effect(scene_of(lattice), {}, radius);
+    const DirectEffect::Factors counted = test::by_rays(effect, {0.001, 0, 0});
+    CHECK(effect.factors({0.001, 0, 0}).ground == Approx(counted.ground).margin(3e-3));
+    CHECK(effect.factors({0.001, 0, 0}).ceiling == Approx(counted.ceiling).margin(3e-3));
+}
