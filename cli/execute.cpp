@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <optional>
 
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/interruption.hpp"
@@ -21,7 +22,7 @@ struct ExecuteArguments {
     std::string problem;
     std::string plan;
     std::string aero = "on";
-    std::string out;
+    std::optional<std::string> out;
     bool as_json = false;
 };
 
@@ -41,14 +42,14 @@ bool holds_plan(const fs::path& folder, const std::string& plan) {
 }
 
 fs::path folder_for(const ExecuteArguments& arguments, const Problem& problem) {
-    if (arguments.out.empty()) {
+    if (!arguments.out) {
         const fs::path folder = default_folder(problem);
         return holds_plan(folder, arguments.plan) ? fs::path(folder.string() + "-executed") : folder;
     }
-    if (holds_plan(arguments.out, arguments.plan)) {
-        throw UsageError("--out " + arguments.out + " holds the plan itself, which would be replaced; choose another");
+    if (holds_plan(*arguments.out, arguments.plan)) {
+        throw UsageError("--out " + *arguments.out + " holds the plan itself, which would be replaced; choose another");
     }
-    return arguments.out;
+    return *arguments.out;
 }
 
 void fly(const Problem& problem, bool aero, Solution& solution) {
@@ -68,7 +69,8 @@ ExitCode run(const ExecuteArguments& arguments) {
     const OutputFolder folder(folder_for(arguments, problem));
     fly(problem, arguments.aero == "on", solution);
     const std::string json = write_results(folder, problem, arguments.problem, solution);
-    fmt::print("{}", arguments.as_json ? json : summary_of(solution, folder.path()));
+    fmt::print("{}",
+               arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
         return interruption.code();
     }

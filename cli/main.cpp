@@ -1,9 +1,13 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
+#include <string_view>
+#include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -28,6 +32,29 @@ std::optional<ExitCode> parse(CLI::App& program, int argc, char** argv) {
     return std::nullopt;
 }
 
+/// What is wrong with a command line, and where help is.
+std::string usage_fault(const CLI::App* program, const CLI::Error& error) {
+    std::string command = program->get_name();
+    for (auto given = program->get_subcommands(); !given.empty(); given = given.front()->get_subcommands()) {
+        command += " " + given.front()->get_name();
+    }
+    return fmt::format("{}: {}\nSee {} --help.\n", program->get_name(), error.what(), command);
+}
+
+/// CLI11 would only say that a command is missing.
+void refuse_unknown_command(const CLI::App& program, std::string_view word) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) {
+        return;
+    }
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    throw UsageError(
+        fmt::format("there is no command '{}': expected {}{}", word, joined_names(views), did_you_mean(word, views)));
+}
+
 /// Results that did not reach standard output are no results.
 ExitCode checked_output(ExitCode code) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -41,15 +68,16 @@ ExitCode run(int argc, char** argv) {
     program.set_version_flag("--version", "downwash " + std::string(version()));
     program.require_subcommand(1);
     program.footer(exit_codes);
-    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
-        return fmt::format("downwash: {}\nSee {} --help.\n", error.what(), app->get_name());
-    });
+    program.failure_message(usage_fault);
     Action action;
     add_check(program, action);
     add_solve(program, action);
     add_execute(program, action);
     add_aeromap(program, action);
     add_planners(program, action);
+    if (argc > 1) {
+        refuse_unknown_command(program, argv[1]);
+    }
     if (const auto code = parse(program, argc, argv)) {
         return *code;
     }

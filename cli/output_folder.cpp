@@ -75,7 +75,7 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
     fs::create_directories(path_, error);
     if (!fs::is_directory(path_)) {
         throw UsageError("--out " + path_.string() +
-                         " cannot be made a folder: " + (error ? error.message() : "something else has that name"));
+                         " cannot be made a folder: " + (error ? error.message() : "it is not one"));
     }
     try {
         const UnfinishedFile trial(path_ / "solution.json");

@@ -19,36 +19,6 @@ Execution no_flight(const Robot& robot) {
     return execution;
 }
 
-std::string verdict_on_flight(const Execution& flight) {
-    const std::string air = flight.aero ? "with direct aerodynamics" : "in free air";
-    switch (flight.outcome) {
-        case Outcome::ok:
-            return "its flight " + air + " reaches the goal and holds there.";
-        case Outcome::collision:
-            return "its flight " + air + " ends in a collision.";
-        case Outcome::unstable:
-            return "its flight " + air + " becomes unstable.";
-        case Outcome::left_flyable_area:
-            return "its flight " + air + " leaves the flyable area.";
-        case Outcome::goal_missed:
-            break;
-    }
-    return "its flight " + air + " misses the goal.";
-}
-
-std::string verdict_of(const Solution& solution) {
-    const std::string stopped = solution.interrupted ? "Interrupted: " : "";
-    if (solution.status == Status::solved && solution.execution) {
-        const bool is_good = solution.execution->outcome == Outcome::ok;
-        return stopped + (is_good ? "A plan was found, and " : "A plan was found, but ") +
-               verdict_on_flight(*solution.execution);
-    }
-    if (solution.status == Status::approximate) {
-        return stopped + "No solution within the limits; the nearest approach to the goal is reported.";
-    }
-    return stopped + "No solution within the limits.";
-}
-
 /// Lines of a table with two columns.
 class Table {
  public:
@@ -117,7 +87,37 @@ std::string write_results(const OutputFolder& folder, const Problem& problem, co
     return json;
 }
 
-std::string summary_of(const Solution& solution, const std::filesystem::path& folder) {
+std::string verdict_on_flight(const Execution& flight) {
+    const std::string name = flight.aero ? "The flight with direct aerodynamics " : "The flight in free air ";
+    switch (flight.outcome) {
+        case Outcome::ok:
+            return name + "reaches the goal and holds there.";
+        case Outcome::collision:
+            return name + "ends in a collision.";
+        case Outcome::unstable:
+            return name + "becomes unstable.";
+        case Outcome::left_flyable_area:
+            return name + "leaves the flyable area.";
+        case Outcome::goal_missed:
+            break;
+    }
+    return name + "misses the goal.";
+}
+
+std::string verdict_on_search(const Solution& solution) {
+    const std::string stopped = solution.interrupted ? "Interrupted. " : "";
+    if (solution.status == Status::solved && solution.execution) {
+        const bool is_good = solution.execution->outcome == Outcome::ok;
+        return stopped + (is_good ? "Solved. " : "A plan was found, but it does not fly. ") +
+               verdict_on_flight(*solution.execution);
+    }
+    if (solution.status == Status::approximate) {
+        return stopped + "No solution within the limits; the nearest approach to the goal is reported.";
+    }
+    return stopped + "No solution within the limits.";
+}
+
+std::string summary_of(const std::string& verdict, const Solution& solution, const std::filesystem::path& folder) {
     Table table;
     table.add("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
                                     solution.algorithm, name_of(solution.objective), solution.seed));
@@ -130,7 +130,7 @@ std::string summary_of(const Solution& solution, const std::filesystem::path& fo
     table.add("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     table.add("refused", refusals(record));
     table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, effective.yaml}");
-    return verdict_of(solution) + "\n\n" + table.text();
+    return verdict + "\n\n" + table.text();
 }
 
 ExitCode exit_code_of(const Solution& solution) {

@@ -7,6 +7,7 @@
 #include "downwash/cli/output_folder.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/solution.hpp"
+#include "downwash/simulation/execution.hpp"
 
 namespace downwash::cli {
 
@@ -19,8 +20,15 @@ namespace downwash::cli {
 std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
                           const Solution& solution);
 
+/// What a search came to, in one sentence.
+[[nodiscard]] std::string verdict_on_search(const Solution& solution);
+
+/// How a flight ended, in one sentence.
+[[nodiscard]] std::string verdict_on_flight(const Execution& flight);
+
 /// What a person wants to know of a solution: the verdict, then a table.
-[[nodiscard]] std::string summary_of(const Solution& solution, const std::filesystem::path& folder);
+[[nodiscard]] std::string summary_of(const std::string& verdict, const Solution& solution,
+                                     const std::filesystem::path& folder);
 
 /// The exit code that a solution deserves if no signal ended the search.
 [[nodiscard]] ExitCode exit_code_of(const Solution& solution);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "downwash/cli/commands.hpp"
@@ -21,7 +22,7 @@ struct SolveArguments {
     std::string problem;
     PlannerOptions planner;
     int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
-    std::string out;
+    std::optional<std::string> out;
     bool stop_at_first = false;
     bool no_cache = false;
     bool is_quiet = false;
@@ -38,7 +39,7 @@ ExitCode run(const SolveArguments& arguments) {
     const Interruption interruption;
     Problem problem = read_problem(arguments.problem);
     arguments.planner.apply(problem);
-    const OutputFolder folder(arguments.out.empty() ? default_folder(problem) : std::filesystem::path(arguments.out));
+    const OutputFolder folder(arguments.out ? std::filesystem::path(*arguments.out) : default_folder(problem));
 
     SolveOptions options;
     options.threads = arguments.threads;
@@ -52,7 +53,7 @@ ExitCode run(const SolveArguments& arguments) {
         solution = solve(problem, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
-    fmt::print("{}", arguments.as_json ? json : summary_of(solution, folder.path()));
+    fmt::print("{}", arguments.as_json ? json : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -93,17 +94,22 @@ class JsonReader {
         return value;
     }
 
-    std::uint64_t count(const Node& node) {
-        if (!node.json->is_number_unsigned()) {
-            refuse(node, "expected a whole number that is not negative");
-            return 0;
+    /// A whole number >= 0 that the type of `value` can hold.
+    template <class Integer>
+    void read_count(const Node& node, Integer& value) {
+        constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<Integer>::max());
+        if (node.json->is_number_unsigned() && node.json->get<std::uint64_t>() <= most) {
+            value = node.json->get<Integer>();
+        } else {
+            refuse(node, "expected a whole number from 0 to " + std::to_string(most));
         }
-        return node.json->get<std::uint64_t>();
     }
 
-    void read_count(const Node& group, const char* name, std::uint64_t& value) {
+    /// The same for a member of a group, left as it is when that is missing.
+    template <class Integer>
+    void read_count(const Node& group, const char* name, Integer& value) {
         if (const auto node = member(group, name)) {
-            value = count(*node);
+            read_count(*node, value);
         }
     }
 

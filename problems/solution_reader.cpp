@@ -1,9 +1,9 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 #include "downwash/base/text.hpp"
+#include "downwash/planner/solve.hpp"
 #include "downwash/problems/json_place.hpp"
 #include "downwash/problems/json_reader.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -162,9 +162,25 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
     }
     if (const auto rejected = JsonReader::member(*planning, "rejected"); rejected && rejected->json->is_object()) {
         for (const auto& [cause, value] : rejected->json->items()) {
-            record.rejected[cause] = reader.count({&value, rejected->key + "." + cause});
+            reader.read_count({&value, rejected->key + "." + cause}, record.rejected[cause]);
         }
     }
+}
+
+void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
+    const auto node = JsonReader::member(root, "algorithm");
+    if (!node) {
+        return;
+    }
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& known : algorithms()) {
+        names.push_back(known.name);
+        if (*node->json == known.name) {
+            solution.algorithm = known.name;
+            return;
+        }
+    }
+    reader.refuse(*node, "expected " + std::string(names.size() > 1 ? "one of " : "") + joined_names(names));
 }
 
 void read_head(JsonReader& reader, const Node& root, Solution& solution) {
@@ -175,19 +191,9 @@ void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     reader.read_choice(root, "objective",
                        std::array{Objective::energy, Objective::time, Objective::length, Objective::clearance},
                        solution.objective);
-    if (const auto algorithm = JsonReader::member(root, "algorithm")) {
-        if (algorithm->json->is_string()) {
-            solution.algorithm = algorithm->json->get<std::string>();
-        } else {
-            reader.refuse(*algorithm, "expected the name of an algorithm");
-        }
-    }
-    std::uint64_t seed = solution.seed;
-    reader.read_count(root, "seed", seed);
-    if (seed > std::numeric_limits<std::uint32_t>::max()) {
-        reader.refuse({nullptr, "seed"}, "expected a whole number below 2^32");
-    }
-    solution.seed = static_cast<std::uint32_t>(seed);
+    read_algorithm(reader, root, solution);
+    reader.read_count(root, "seed", solution.seed);
+    reader.read_count(root, "threads", solution.threads);
     solution.cost = reader.amount(root, "cost", 0);
 }
 
