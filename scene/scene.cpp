@@ -88,6 +88,7 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
         const Convex convex = convex_of(obstacle.shape, obstacle.center_m, placement);
         solids->placements.push_back(placement);
         solids->convexes.push_back(convex);
+        solids->seen_from_above.push_back(seen_from_above(obstacle.shape, placement));
         solids->bounds.push_back(bounds_of(convex));
     }
     solids->obstacles = std::move(obstacles);

@@ -8,14 +8,16 @@
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/convex.hpp"
 #include "downwash/scene/scene.hpp"
+#include "downwash/scene/seen_from_above.hpp"
 
 namespace downwash {
 
-/// Four lists of equal length, one entry per obstacle, in the world frame N.
+/// Five lists of equal length, one entry per obstacle, in the world frame N.
 struct Scene::Solids {
     std::vector<Obstacle> obstacles;
     std::vector<Placement> placements;  ///< rotation = Rz(yaw) Ry(pitch) Rx(roll)
     std::vector<Convex> convexes;
+    std::vector<SeenFromAbove> seen_from_above;
     std::vector<Bounds> bounds;  ///< tight
 };
 
