@@ -55,6 +55,9 @@ bool is_identifier(std::string_view text) {
 }
 
 std::string range_text(const Range& range) {
+    if (range.low && range.high && !range.excludes_low && !range.excludes_high) {
+        return "from " + to_text(*range.low) + " to " + to_text(*range.high);
+    }
     std::string text;
     if (range.low) {
         text += (range.excludes_low ? "above " : "at least ") + to_text(*range.low);
@@ -96,11 +99,11 @@ std::optional<std::string> number_fault(const ParameterInfo& info, double value)
 
 std::optional<std::string> text_fault(const ParameterInfo& info, const std::string& text) {
     if (info.kind == ParameterKind::identifier && !is_identifier(text)) {
-        return "is '" + text + "': expected " + expectation(info);
+        return "is '" + excerpt(text) + "': expected " + expectation(info);
     }
     if (info.kind == ParameterKind::choice &&
         std::find(info.names.begin(), info.names.end(), text) == info.names.end()) {
-        return "is '" + text + "': expected " + expectation(info) + did_you_mean(text, info.names);
+        return "is '" + excerpt(text) + "': expected " + expectation(info) + did_you_mean(text, info.names);
     }
     return std::nullopt;
 }
@@ -156,8 +159,8 @@ bool is_in_degrees(std::string_view path) {
 std::string expectation(const ParameterInfo& info) {
     const std::string unit(unit_of(info.path));
     const std::string in_unit = unit.empty() ? "" : " in " + unit;
-    const std::string range = range_text(info.range).empty() ? "" : ", " + range_text(info.range);
-    const std::string or_null = info.nullable ? " or null" : "";
+    const std::string range = range_text(info.range).empty() ? "" : " " + range_text(info.range);
+    const std::string or_null = info.nullable ? ", or null" : "";
     switch (info.kind) {
         case ParameterKind::group:
             return std::string("a group of keys") + (info.can_be_none ? " or none" : "") +

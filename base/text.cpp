@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <vector>
 
 namespace downwash {
@@ -36,7 +37,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string to_text(double value) {
     std::array<char, 32> text;
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    const double size = std::abs(value);
+    const auto format = size >= 1e-4 && size < 1e15 ? std::chars_format::fixed : std::chars_format::general;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value, format).ptr;
     return {text.data(), end};
 }
 
@@ -62,6 +65,24 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
         }
     }
     return nearest;
+}
+
+std::string excerpt(std::string_view text) {
+    constexpr std::size_t longest = 48;
+    std::string shown;
+    for (const char c : text.substr(0, longest)) {
+        shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    if (text.size() <= longest) {
+        return shown;
+    }
+    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0xC0U) == 0x80U) {
+        shown.pop_back();  // the rest of a character that was cut
+    }
+    if (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0xC0U) {
+        shown.pop_back();
+    }
+    return shown + "...";
 }
 
 std::string joined_names(std::span<const std::string_view> names) {

@@ -19,6 +19,9 @@ namespace downwash {
 [[nodiscard]] DOWNWASH_EXPORT std::string_view nearest_name(std::string_view word,
                                                             std::span<const std::string_view> candidates);
 
+/// A user's text as it may stand in a message: on one line, cut after some fifty bytes but never within a character.
+[[nodiscard]] DOWNWASH_EXPORT std::string excerpt(std::string_view text);
+
 /// "a, b or c". Empty without names.
 [[nodiscard]] DOWNWASH_EXPORT std::string joined_names(std::span<const std::string_view> names);
 

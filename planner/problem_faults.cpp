@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/planner/goal_reach.hpp"
 #include "downwash/planner/problem.hpp"
@@ -39,7 +40,7 @@ std::vector<Fault> repeated_names(const Problem& p) {
         const std::string& name = p.obstacles[i].name;
         if (!name.empty() && !names.insert(name).second) {
             faults.push_back({"environment.obstacles[" + std::to_string(i) + "].name",
-                              "is '" + name + "' like an obstacle before it: expected a name used once"});
+                              "is '" + excerpt(name) + "' like an obstacle before it: expected a name used once"});
         }
     }
     return faults;
@@ -141,14 +142,15 @@ std::vector<Fault> start_not_flyable(const Problem& p) {
     if (!p.aero.enabled) {
         return {};
     }
-    const Scene scene(p.obstacles);
-    const double least_m = p.aero.min_distance_radii * p.robot.rotors.radius_m;
+    const auto scene = std::make_shared<const Scene>(p.obstacles);
+    const DirectEffect effect(scene, p.aero, p.robot.rotors.radius_m);
     for (std::size_t i = 0; i < p.robot.rotors.positions_m.size(); ++i) {
         const Vector3 hub = hub_m(p, p.robot.rotors.positions_m[i]);
-        if (!disc_is_clear(scene, hub, p.robot.rotors.radius_m, least_m)) {
+        if (!effect.is_flyable(hub)) {
             return {{"start", "is outside the flyable area: the disc of rotor " + std::to_string(i + 1) + " is " +
-                                  rounded(disc_clearance_m(scene, hub, p.robot.rotors.radius_m)) +
-                                  " m from an obstacle; expected at least " + rounded(least_m) +
+                                  rounded(disc_clearance_m(*scene, hub, p.robot.rotors.radius_m)) +
+                                  " m from an obstacle; expected at least " +
+                                  rounded(p.aero.min_distance_radii * p.robot.rotors.radius_m) +
                                   " m (aero.min_distance_radii times the rotor radius)"}};
         }
     }
@@ -206,9 +208,9 @@ std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
     }
     const double missing_m = missing_reach_m(p);
     if (missing_m > 0) {
-        return {{"goal.end_effector", "is out of reach: from no place within the bounds does the arm of " +
-                                          to_text(p.robot.arm.length_m) + " m get nearer than " + rounded(missing_m) +
-                                          " m to its tolerance; widen environment.bounds or move the goal"}};
+        return {{"goal.end_effector", "is out of reach: from anywhere within the bounds the arm of " +
+                                          to_text(p.robot.arm.length_m) + " m misses it by " + rounded(missing_m) +
+                                          " m; widen environment.bounds or move the goal"}};
     }
     switch (reach_of_end_effector(p)) {
         case Reach::clear:

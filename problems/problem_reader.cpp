@@ -62,11 +62,7 @@ void set_parameter(Problem& problem, std::string_view key, std::string_view text
     node.kind = text == "null" ? problems::YamlNode::Kind::null : problems::YamlNode::Kind::scalar;
     node.text = text;
     try {
-        const Value value = problems::read_value(*parameter, node);
-        if (const auto fault = value_fault(*parameter, value)) {
-            throw InputError({{std::string(key), *fault}});
-        }
-        parameter->set(problem, 0, value);
+        parameter->set(problem, 0, problems::read_value(*parameter, node));
     } catch (const problems::YamlError& error) {
         throw InputError({{std::string(key), error.what()}});
     }

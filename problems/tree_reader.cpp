@@ -95,6 +95,11 @@ bool TreeReader::has_supported_schema(const YamlNode& root, const std::string& p
 
 void TreeReader::read_keys(Group group) {
     find_entries(group);
+    for (const std::string& name : group.meant) {
+        if (!group.entries.contains(name)) {
+            faulty_.add(joined(group.key, name));
+        }
+    }
     check_alternatives(group);
     for (const Parameter<Problem>* parameter : problem_parameters().children(group.path)) {
         const std::string name(last_name(parameter->path));
@@ -135,10 +140,7 @@ void TreeReader::report_unknown(Group& group, const std::string& name, const Mar
     const std::string where = shown(group.key);
     report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
                      remedy.text);
-    for (const std::string_view meant : remedy.meant) {
-        group.meant.emplace_back(meant);
-        faulty_.add(joined(group.key, meant));
-    }
+    group.meant.insert(group.meant.end(), remedy.meant.begin(), remedy.meant.end());
 }
 
 void TreeReader::check_alternatives(const Group& group) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "downwash/base/text.hpp"
 #include "downwash/problems/number_text.hpp"
 
 namespace downwash::problems {
@@ -28,8 +29,7 @@ const std::string& bare_text(const ParameterInfo& info, const YamlNode& node) {
         refuse(info, node);
     }
     if (node.is_quoted) {
-        throw YamlError(
-            node.mark, "is the text \"" + excerpt(node.text) + "\": expected " + expectation(info) + " without quotes");
+        throw YamlError(node.mark, "is text in quotes, \"" + excerpt(node.text) + "\": expected " + expectation(info));
     }
     return node.text;
 }
@@ -97,33 +97,34 @@ std::vector<Vector3> read_points(const ParameterInfo& info, const YamlNode& node
     return points;
 }
 
-std::string read_choice(const ParameterInfo& info, const YamlNode& node) {
-    const std::string& text = read_text(info, node);
-    if (const auto fault = value_fault(info, excerpt(text))) {
-        throw YamlError(node.mark, *fault);
+Value read_typed(const ParameterInfo& info, const YamlNode& node) {
+    if (info.nullable && node.kind == YamlNode::Kind::null) {
+        return {};
     }
-    return text;
+    switch (info.kind) {
+        case ParameterKind::number:
+            return read_number(info, node);
+        case ParameterKind::integer:
+            return read_integer(info, node);
+        case ParameterKind::flag:
+            return read_flag(info, node);
+        case ParameterKind::text:
+        case ParameterKind::identifier:
+        case ParameterKind::choice:
+            return read_text(info, node);
+        case ParameterKind::numbers:
+            return read_numbers(info, node, info.elements.size());
+        case ParameterKind::points:
+            return read_points(info, node);
+        case ParameterKind::group:
+        case ParameterKind::list:
+        case ParameterKind::planned:
+            break;
+    }
+    refuse(info, node);
 }
 
 }  // namespace
-
-std::string excerpt(std::string_view text) {
-    constexpr std::size_t longest = 48;
-    std::string shown;
-    for (const char c : text.substr(0, longest)) {
-        shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    if (text.size() <= longest) {
-        return shown;
-    }
-    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0xC0U) == 0x80U) {
-        shown.pop_back();  // the rest of a character that was cut
-    }
-    if (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0xC0U) {
-        shown.pop_back();
-    }
-    return shown + "...";
-}
 
 std::string found_text(const YamlNode& node) {
     switch (node.kind) {
@@ -140,31 +141,11 @@ std::string found_text(const YamlNode& node) {
 }
 
 Value read_value(const ParameterInfo& info, const YamlNode& node) {
-    if (info.nullable && node.kind == YamlNode::Kind::null) {
-        return {};
+    Value value = read_typed(info, node);
+    if (const auto fault = value_fault(info, value)) {
+        throw YamlError(node.mark, *fault);
     }
-    switch (info.kind) {
-        case ParameterKind::number:
-            return read_number(info, node);
-        case ParameterKind::integer:
-            return read_integer(info, node);
-        case ParameterKind::flag:
-            return read_flag(info, node);
-        case ParameterKind::text:
-        case ParameterKind::identifier:
-            return read_text(info, node);
-        case ParameterKind::choice:
-            return read_choice(info, node);
-        case ParameterKind::numbers:
-            return read_numbers(info, node, info.elements.size());
-        case ParameterKind::points:
-            return read_points(info, node);
-        case ParameterKind::group:
-        case ParameterKind::list:
-        case ParameterKind::planned:
-            break;
-    }
-    refuse(info, node);
+    return value;
 }
 
 }  // namespace downwash::problems

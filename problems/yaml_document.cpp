@@ -69,7 +69,7 @@ class TreeBuilder : public YAML::EventHandler {
 
     void count_event(const YAML::Mark& mark) {
         if (events_left_ == 0) {
-            throw YamlError(mark_of(mark), "cannot be read as YAML");
+            throw YamlError(mark_of(mark), "cannot be read as YAML: expected keys and values");
         }
         --events_left_;
     }
@@ -140,7 +140,9 @@ class TreeBuilder : public YAML::EventHandler {
 
 YamlNode::Pointer parse_yaml(const std::string& text) {
     check_text(text);
-    std::istringstream stream(text);
+    // The library takes a quote that is never closed for closed when the text ends in a line break: let it end
+    // otherwise.
+    std::istringstream stream(text + "\n# end");
     try {
         YAML::Parser parser(stream);
         TreeBuilder builder(4 * text.size() + 16);
@@ -153,7 +155,9 @@ YamlNode::Pointer parse_yaml(const std::string& text) {
         }
         return builder.root();
     } catch (const YAML::Exception& error) {
-        throw YamlError(mark_of(error.mark), "cannot be read as YAML: " + error.msg);
+        throw YamlError(mark_of(error.mark),
+                        "cannot be read as YAML (" + error.msg +
+                            "): expected 'key: value' with matching brackets, quotes and indentation");
     }
 }
 

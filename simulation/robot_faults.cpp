@@ -42,8 +42,9 @@ std::vector<Fault> shapeless_cylinders(const Robot& robot) {
 std::vector<Fault> unusable_rotor_layout(const Robot& robot) {
     const auto& hubs = robot.rotors.positions_m;
     if (hubs.size() < 2 || hubs.size() > max_rotors) {
-        return {{"rotors.positions_m",
-                 "has " + std::to_string(hubs.size()) + " rotors: expected 2 to " + std::to_string(max_rotors)}};
+        return {{"rotors.positions_m", "has " + std::to_string(hubs.size()) +
+                                           (hubs.size() == 1 ? " rotor" : " rotors") + ": expected 2 to " +
+                                           std::to_string(max_rotors)}};
     }
     const auto [rear, front] =
         std::minmax_element(hubs.begin(), hubs.end(), [](const Vector3& a, const Vector3& b) { return a[0] < b[0]; });

@@ -1,0 +1,106 @@
+#include <limits>
+#include <vector>
+
+#include "downwash/planner/problem.hpp"
+#include "edits.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+const Edit edits[] = {
+    {"x_m: -4", "x_m: -7", "problem.yaml:12:14: start.x_m is -7, outside the bounds: expected -6 to 6"},
+    {"z_m: 2, arm_deg", "z_m: 5.5, arm_deg",
+     "problem.yaml:12:23: start.z_m is 5.5, outside the bounds: expected 0.5 to 5"},
+    {"z_m: 2, arm_deg", "z_m: 1, arm_deg",
+     "problem.yaml:12:1: start is in collision with an obstacle: move the start or the obstacle"},
+    {"z_m: 2, arm_deg", "z_m: 1.25, arm_deg",
+     "problem.yaml:12:1: start is 0.02 m from an obstacle, nearer than planner.safety_margin_m, 0.05: move the start "
+     "or the obstacle"},
+    {"k1: 6.9}", "k1: 6.9}\n  min_distance_radii: 12",
+     "problem.yaml:13:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at "
+     "least 2.28 m (aero.min_distance_radii times the rotor radius)"},
+    {"ceiling: {model: sanchez-cuevas, k1: 6.9}", "min_distance_radii: 100",
+     "problem.yaml:12:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at "
+     "least 19 m (aero.min_distance_radii times the rotor radius)"},
+    {"arm_deg: 90", "arm_deg: 90, pitch_deg: 20, vx_m_s: 1.2, arm_rate_deg_s: -60",
+     "problem.yaml:12:62: start.vx_m_s makes a start speed of 1.2 m/s: expected at most motion.max_speed_m_s, 1\n"
+     "problem.yaml:12:83: start.arm_rate_deg_s is faster than motion.max_arm_rate_deg_s: expected at most 45 in size"},
+    {"x_m: [-6, 6]", "x_m: [6, -6]",
+     "problem.yaml:5:17: environment.bounds.x_m is [low, high]: expected low below high"},
+    {"z_m: [0.5, 5]", "z_m: [5, 5]",
+     "problem.yaml:5:31: environment.bounds.z_m is [low, high]: expected low below high"},
+    {"x_m: [-6, 6], z_m: [0.5, 5]", "x_m: [-6000, 6000], z_m: [0.5, 50]",
+     "problem.yaml:9:1: aero.grid_m makes a map of 2.376e+08 cells over the bounds: expected at least 0.173 m, or "
+     "narrower bounds"},
+    {"x_m: 3, z_m: 2.5", "x_m: 9, z_m: 2.5",
+     "problem.yaml:14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it "
+     "by 1.7 m; widen environment.bounds or move the goal"},
+    {"x_m: 3, z_m: 2.5", "x_m: 3, z_m: -2",
+     "problem.yaml:14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it "
+     "by 1.2 m; widen environment.bounds or move the goal"},
+    {"x_m: 3, z_m: 2.5", "x_m: 3, z_m: -0.4",
+     "problem.yaml:14:3: goal.end_effector is out of reach: in every pose that gets there the robot touches an "
+     "obstacle or is nearer to it than planner.safety_margin_m"},
+    {"x_m: 3, z_m: 2.5, tolerance_m: 0.1", "x_m: 3, z_m: 6, tolerance_m: 0.1, direction_deg: 90",
+     "problem.yaml:14:3: goal.end_effector is out of reach: the limits of the arm, the wanted direction and the bounds "
+     "leave no pose that gets there"},
+    {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 7, z_m: 0.1",
+     "problem.yaml:14:24: goal.configuration.x_m is 7, outside the bounds: expected -6 to 6\n"
+     "problem.yaml:14:32: goal.configuration.z_m is 0.1, outside the bounds: expected 0.5 to 5"},
+    {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1, arm_deg: 90",
+     "problem.yaml:14:3: goal.configuration is in collision with an obstacle or nearer to it than "
+     "planner.safety_margin_m, anywhere within its tolerances: move the goal or the obstacle"},
+    {"seed: 1", "seed: 1, safety_margin_m: 1",
+     "problem.yaml:12:1: start is 0.77 m from an obstacle, nearer than planner.safety_margin_m, 1: move the start or "
+     "the obstacle"},
+};
+
+}  // namespace
+
+TEST_CASE("an impossible problem is refused where it is posed") {
+    const TestFolder folder;
+    for (const Edit& edit : edits) {
+        CAPTURE(edit.from, edit.to);
+        CHECK(faults_after(folder, edit) == edit.faults);
+    }
+}
+
+TEST_CASE("a narrow but possible goal is accepted") {
+    const TestFolder folder;
+    CHECK(faults_after(folder, {"tolerance_m: 0.1", "tolerance_m: 0.1, direction_deg: 90, direction_tolerance_deg: 0.1",
+                                ""}) == "sound");
+    CHECK(faults_after(folder, {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1", ""}) == "sound");
+}
+
+TEST_CASE("without surface effects the flyable area does not matter") {
+    const TestFolder folder;
+    CHECK(faults_after(folder, {"  ceiling: {model: sanchez-cuevas, k1: 6.9}\n", "  min_distance_radii: 12\n", ""}) !=
+          "sound");
+    CHECK(faults_after(folder, {"aero:\n  ground: {model: cheeseman-bennett}\n  ceiling: {model: sanchez-cuevas, k1: "
+                                "6.9}\n",
+                                "aero: none\n", ""}) == "sound");
+}
+
+TEST_CASE("a problem built in code is judged by the same ranges as a file") {
+    const TestFolder folder;
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", good_robot);
+    Problem problem = read_problem(folder / "problem.yaml");
+    CHECK(problem_faults(problem).empty());
+    problem.start.x_m = std::numeric_limits<double>::quiet_NaN();
+    problem.robot.arm.length_m = -1;
+    problem.planner.algorithm = "rrt";
+    const std::vector<Fault> faults = problem_faults(problem);
+    REQUIRE(faults.size() == 3);
+    CHECK(faults[0].key == "robot.arm.length_m");
+    CHECK(faults[0].message == "is -1: expected a number in m above 0 and at most 100");
+    CHECK(faults[1].key == "start.x_m");
+    CHECK(faults[1].message == "is not finite: expected a number in m from -100000 to 100000");
+    CHECK(faults[2].key == "planner.algorithm");
+}
+
+TEST_CASE("a robot built in code is judged alone") {
+    CHECK(robot_faults(Robot{}).size() >= 10);
+}

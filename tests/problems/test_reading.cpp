@@ -1,0 +1,97 @@
+#include "downwash/planner/problem_parameters.hpp"
+#include "edits.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+Problem good() {
+    const TestFolder folder;
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", good_robot);
+    return read_problem(folder / "problem.yaml");
+}
+
+}  // namespace
+
+TEST_CASE("a problem is read as it is written, angles in radians") {
+    const Problem problem = good();
+    CHECK(problem.name == "test");
+    CHECK(problem.robot.name == "tester");
+    CHECK(problem.robot.rotors.positions_m.size() == 4);
+    CHECK(problem.robot.rotors.positions_m[1] == Vector3{0.3, -0.3, 0});
+    CHECK(problem.robot.controller.max_tilt_rad == 0.6108652381980153);
+    CHECK(problem.bounds.x_low_m == -6);
+    CHECK(problem.bounds.z_high_m == 5);
+    REQUIRE(problem.obstacles.size() == 2);
+    CHECK(std::get<Cylinder>(problem.obstacles[1].shape).length_m == 5);
+    CHECK(problem.obstacles[1].center_m == Vector3{4, 3, 2.5});
+    CHECK(problem.aero.ceiling.k1 == 6.9);
+    CHECK(problem.start.arm_rad == 1.5707963267948966);
+    CHECK(problem.goal.end_effector.has_value());
+    CHECK_FALSE(problem.goal.configuration.has_value());
+}
+
+TEST_CASE("what a file leaves out has the default of its member") {
+    const Problem problem = good();
+    const Problem fresh;
+    CHECK(problem.aero.grid_m == fresh.aero.grid_m);
+    CHECK(problem.aero.ceiling.k2_over_radius == fresh.aero.ceiling.k2_over_radius);
+    CHECK(problem.motion.max_arm_rate_rad_s == fresh.motion.max_arm_rate_rad_s);
+    CHECK(problem.planner.safety_margin_m == fresh.planner.safety_margin_m);
+    CHECK_FALSE(problem.planner.max_iterations.has_value());
+    CHECK_FALSE(problem.robot.arm.is_limited);
+}
+
+TEST_CASE("faults of several kinds and files are reported in one run, in the order of the files") {
+    const TestFolder folder;
+    folder.write("problem.yaml", edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"));
+    folder.write("robot.yaml", edited(good_robot, "max_thrust_n: 28", "max_thrust_n: 10"));
+    CHECK(folder.faults_of("problem.yaml") ==
+          "problem.yaml:12:14: start.x_m is -40, outside the bounds: expected -6 to 6\n"
+          "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?\n"
+          "robot.yaml:11:17: rotors.max_thrust_n gives 40 N with 4 rotors, which cannot lift the weight of 48.54 N: "
+          "8.543 N are missing; expected more than 12.14 N a rotor");
+}
+
+TEST_CASE("every shipped problem is sound") {
+    for (const auto& entry : std::filesystem::directory_iterator(DOWNWASH_PROBLEMS)) {
+        if (entry.path().extension() == ".yaml") {
+            CAPTURE(entry.path());
+            CHECK_NOTHROW(read_problem(entry.path()));
+        }
+    }
+    CHECK(read_robot(std::filesystem::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml").name == "ars_lrm");
+}
+
+TEST_CASE("single values are set as a file would set them") {
+    Problem problem = good();
+    set_parameter(problem, "planner.variant", "mp-arm");
+    CHECK(problem.planner.variant == Variant::mp_arm);
+    set_parameter(problem, "planner.max_iterations", "500");
+    CHECK(problem.planner.max_iterations == 500U);
+    set_parameter(problem, "start.arm_deg", "180");
+    CHECK(problem.start.arm_rad == 3.141592653589793);
+    CHECK_THROWS_WITH(set_parameter(problem, "planner.variant", "mparm"),
+                      "planner.variant: is 'mparm': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you mean "
+                      "'mp-arm'?");
+    CHECK_THROWS_AS(set_parameter(problem, "planner.seed", "-3"), InputError);
+    CHECK_THROWS_AS(set_parameter(problem, "planner", "none"), InputError);
+    CHECK_THROWS_AS(set_parameter(problem, "environment.obstacles[].name", "x"), InputError);
+}
+
+TEST_CASE("every parameter is described, stands in a group and has a sound default unless it must be given") {
+    for (const Parameter<Problem>& row : problem_parameters().rows()) {
+        CAPTURE(row.path);
+        CHECK_FALSE(row.description.empty());
+        const std::string parent(parent_path(row.path));
+        const std::string group = parent.ends_with("[]") ? parent.substr(0, parent.size() - 2) : parent;
+        CHECK((group.empty() || problem_parameters().find(group) != nullptr));
+        CHECK(problem_parameters().find(row.path) == &row);
+        const bool is_always_there = row.get && parent.find("[]") == std::string::npos && !parent.starts_with("goal.");
+        if (is_always_there && !row.required) {
+            CHECK_FALSE(value_fault(row, row.get(Problem{}, 0)).has_value());
+        }
+    }
+}

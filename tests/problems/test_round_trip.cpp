@@ -1,0 +1,151 @@
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "edits.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+/// Draws sound problems with numbers of many digits.
+class ProblemMaker {
+ public:
+    explicit ProblemMaker(std::uint64_t seed) : engine_(seed) {}
+
+    /// A sound problem with what may be varied without making it impossible varied a little.
+    Problem varied(Problem problem) {
+        problem.bounds.x_low_m -= uniform();
+        problem.bounds.z_high_m += uniform();
+        problem.start.x_m += 0.1 * uniform();
+        problem.start.z_m += 0.1 * uniform();
+        problem.start.arm_rad += 0.2 * uniform();
+        problem.start.pitch_rate_rad_s = uniform() - 0.5;
+        problem.plane = PlaneOfMotion({0.01 * uniform(), 0, 0}, 1e-3 * uniform());
+        for (Obstacle& obstacle : problem.obstacles) {
+            obstacle.rpy_rad = {1e-3 * uniform(), 1e-5 * uniform(), uniform()};
+            obstacle.center_m[1] += uniform();
+        }
+        Obstacle ball;
+        ball.name = "ball \"quoted\" \\ \n\t \xc3\xa4 # : - [";
+        ball.shape = Sphere{0.1 + uniform()};
+        ball.center_m = {0, 30 + uniform(), 2};
+        problem.obstacles.push_back(ball);
+        problem.description = "two\nlines: {and} \"more\"";
+        problem.robot.controller.max_tilt_rad = 0.1 + uniform();
+        problem.robot.controller.position_kp = std::exp(uniform());
+        problem.robot.rotors.time_constant_s = coin() ? 0 : 1e-3 * uniform();
+        problem.robot.rotors.positions_m[0][1] += 1e-7 * uniform();
+        problem.robot.arm.is_limited = coin();
+        problem.robot.arm.lower_limit_rad = problem.robot.arm.is_limited ? -3 - uniform() : 0;
+        problem.robot.arm.upper_limit_rad = problem.robot.arm.is_limited ? 3 + uniform() : 0;
+        problem.goal.end_effector->direction_tolerance_rad = 3 + 0.1 * uniform();
+        if (coin()) {
+            problem.goal.end_effector->direction_rad = 7 * uniform();
+        }
+        if (coin()) {
+            problem.goal.end_effector.reset();
+            problem.goal.configuration.emplace();
+            problem.goal.configuration->arm_rad = 20 * uniform();
+            problem.goal.configuration->tolerance_rad = uniform();
+            problem.robot.arm.is_limited = false;
+            problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = 0;
+        }
+        problem.motion.max_arm_rate_rad_s = 1 + uniform();
+        problem.planner.variant = coin() ? Variant::mp_arm : Variant::mp_arm_da;
+        problem.planner.objective = coin() ? Objective::length : Objective::clearance;
+        problem.planner.seed = static_cast<std::uint32_t>(engine_());
+        problem.planner.max_iterations = coin() ? std::optional<std::uint64_t>{} : 1 + engine_() % 1000000;
+        problem.aero.ceiling.model = coin() ? EffectModel::sanchez_cuevas : EffectModel::none;
+        problem.aero.ceiling.k1 = problem.aero.ceiling.model == EffectModel::none ? SurfaceEffect{}.k1 : 1 + uniform();
+        problem.aero.max_factor = 1 + uniform();
+        return problem;
+    }
+
+ private:
+    double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+    bool coin() { return engine_() % 2 == 0; }
+
+    std::mt19937_64 engine_;
+};
+
+/// A value down to its bits.
+std::string bits(const Value& value) {
+    std::string text = std::to_string(value.index()) + ":";
+    const auto add = [&text](double number) { text += std::to_string(std::bit_cast<std::uint64_t>(number)) + " "; };
+    if (const auto* number = std::get_if<double>(&value)) {
+        add(*number);
+    } else if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+        for (const double each : *numbers) {
+            add(each);
+        }
+    } else if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
+        for (const Vector3& point : *points) {
+            for (const double each : point) {
+                add(each);
+            }
+        }
+    } else if (const auto* flag = std::get_if<bool>(&value)) {
+        text += *flag ? "true" : "false";
+    } else if (const auto* whole = std::get_if<std::uint64_t>(&value)) {
+        text += std::to_string(*whole);
+    } else if (const auto* words = std::get_if<std::string>(&value)) {
+        text += *words;
+    }
+    return text;
+}
+
+/// Every value of a problem that is in use, by key and bit by bit.
+std::string bits(const Problem& problem) {
+    std::string text;
+    for_each_value(problem_parameters(), problem,
+                   [&](const Parameter<Problem>& row, const std::string& key, std::size_t index) {
+                       text += key + " " + bits(row.get(problem, index)) + "\n";
+                   });
+    return text;
+}
+
+Problem good(const TestFolder& folder) {
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", good_robot);
+    return read_problem(folder / "problem.yaml");
+}
+
+}  // namespace
+
+TEST_CASE("what is written is read again to the last bit") {
+    const TestFolder folder;
+    const Problem sound = good(folder);
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const Problem problem = ProblemMaker(seed).varied(sound);
+        const std::string yaml = effective_yaml(problem);
+        folder.write("effective.yaml", yaml);
+        CAPTURE(seed, yaml);
+        REQUIRE(folder.faults_of("effective.yaml") == "sound");
+        const Problem again = read_problem(folder / "effective.yaml");
+        REQUIRE(bits(again) == bits(problem));
+        REQUIRE(effective_yaml(again) == yaml);
+    }
+}
+
+TEST_CASE("switched off surface effects stay off") {
+    const TestFolder folder;
+    Problem problem = good(folder);
+    problem.aero.enabled = false;
+    folder.write("effective.yaml", effective_yaml(problem));
+    CHECK_FALSE(read_problem(folder / "effective.yaml").aero.enabled);
+}
+
+TEST_CASE("the hash of a problem depends on its meaning, not on how it is written") {
+    const TestFolder folder;
+    const Problem problem = good(folder);
+    folder.write("problem.yaml", edited(edited(good_problem, "arm_deg: 90", "arm_deg: 9.0e1"), "goal:", "# a\ngoal:"));
+    CHECK(problem_sha256(read_problem(folder / "problem.yaml")) == problem_sha256(problem));
+    folder.write("problem.yaml", edited(good_problem, "arm_deg: 90", "arm_deg: 90.00000000000001"));
+    CHECK(problem_sha256(read_problem(folder / "problem.yaml")) != problem_sha256(problem));
+    CHECK(problem_sha256(problem).size() == 64);
+}
