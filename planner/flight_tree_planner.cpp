@@ -163,7 +163,13 @@ FlightNode* FlightTreePlanner::connect(const Configuration& to, const std::vecto
     return &tree_.add(*best_parent, *best);
 }
 
-void FlightTreePlanner::rewire_through(FlightNode& node, const std::vector<FlightNode*>& neighbours) {
+void FlightTreePlanner::rewire_through(FlightNode& node, std::vector<FlightNode*> neighbours) {
+    // A better corner pays only when the next corner of the best plan, far away as a rule, is reached from it.
+    for (FlightNode* n = best_hold_ != nullptr ? best_hold_->parent : nullptr; n != nullptr; n = n->parent) {
+        if (n != &node && std::find(neighbours.begin(), neighbours.end(), n) == neighbours.end()) {
+            neighbours.push_back(n);
+        }
+    }
     for (FlightNode* neighbour : neighbours) {
         if (neighbour == &tree_.root() || neighbour == node.parent) {
             continue;
@@ -194,6 +200,7 @@ void FlightTreePlanner::review_holds() {
         if (accept_(candidate)) {
             tree_.verify(*best);
             incumbent_ = std::move(candidate);
+            best_hold_ = best;
             return;
         }
         best->is_discarded = true;

@@ -44,7 +44,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::optional<Configuration> target();
     [[nodiscard]] std::optional<Configuration> target_beside_incumbent();
     FlightNode* connect(const Configuration& to, const std::vector<FlightNode*>& neighbours);
-    void rewire_through(FlightNode& node, const std::vector<FlightNode*>& neighbours);
+    void rewire_through(FlightNode& node, std::vector<FlightNode*> neighbours);
     void try_hold(FlightNode& node);
     void review_holds();
     [[nodiscard]] std::size_t neighbour_count() const;
@@ -57,6 +57,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::optional<std::uint64_t> max_iterations_;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> incumbent_;
+    const FlightNode* best_hold_ = nullptr;  ///< where the incumbent came from; may have become cheaper since
     const FlightNode* nearest_to_goal_;
     double nearest_distance_m_;
     double range_m_;

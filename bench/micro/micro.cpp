@@ -1,0 +1,176 @@
+// What one core does per second on the shipped bridge: ticks, look-ups, collision checks, edges. Compare ratios of one
+// run, not figures of different machines or days; see README.md.
+
+#include <benchmark/benchmark.h>
+
+#include <random>
+#include <vector>
+
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/flight_loop.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// The bridge with its map, made once.
+struct Bridge {
+    Problem problem = read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
+    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+
+    static const Bridge& get() {
+        static const Bridge bridge;
+        return bridge;
+    }
+};
+
+ReferencePoint rest(double x_m, double z_m, double arm_rad) {
+    ReferencePoint point;
+    point.position[0] = x_m;
+    point.position[1] = z_m;
+    point.position[2] = arm_rad;
+    return point;
+}
+
+/// A flight along the slot under the deck, where the surface effect is at work.
+const ReferenceSegment& slot_segment() {
+    static const ReferenceSegment segment(rest(-6, 9.0, -0.6), rest(0, 9.3, -0.2), 1200, 0.01);
+    return segment;
+}
+
+FlightState slot_start(const Bridge& bridge) {
+    const double q[4] = {-6, 9.0, 0, -0.6};
+    const double u[4] = {};
+    return bridge.model->state_at(q, u);
+}
+
+template <class Factor>
+void fly_ticks(benchmark::State& state, const Factor& factor) {
+    const Bridge& bridge = Bridge::get();
+    std::int64_t ticks = 0;
+    for (auto _ : state) {
+        FlightState vehicle = slot_start(bridge);
+        simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, vehicle,
+                              [](const auto&...) { return FlightFault::none; });
+        benchmark::DoNotOptimize(vehicle);
+        ticks += slot_segment().ticks();
+    }
+    state.SetItemsProcessed(ticks);
+}
+
+void tick_without_effect(benchmark::State& state) {
+    fly_ticks(state, simulation::NoEffect{});
+}
+BENCHMARK(tick_without_effect);
+
+void tick_with_map(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    fly_ticks(state, simulation::MapEffect{*bridge.model, *bridge.map});
+}
+BENCHMARK(tick_with_map);
+
+void tick_with_direct_effect(benchmark::State& state) {
+    fly_ticks(state, simulation::DirectFactor{*Bridge::get().model});
+}
+BENCHMARK(tick_with_direct_effect);
+
+struct Query {
+    double x_m, z_m, pitch_rad, arm_rad;
+};
+
+std::vector<Query> random_queries(const Bounds& bounds) {
+    std::mt19937_64 engine(1);
+    const auto uniform = [&engine](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    };
+    std::vector<Query> queries(4096);
+    for (Query& q : queries) {
+        q = {uniform(bounds.x_low_m, bounds.x_high_m), uniform(bounds.z_low_m, bounds.z_high_m), uniform(-0.2, 0.2),
+             uniform(-3, 3)};
+    }
+    return queries;
+}
+
+void map_look_up(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    for (auto _ : state) {
+        for (const Query& q : queries) {
+            benchmark::DoNotOptimize(bridge.map->factor(0, q.x_m, q.z_m));
+        }
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+BENCHMARK(map_look_up);
+
+void direct_effect(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    for (auto _ : state) {
+        for (const Query& q : queries) {
+            benchmark::DoNotOptimize(bridge.model->direct().factor({q.x_m, 0.32, q.z_m}));
+        }
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+BENCHMARK(direct_effect);
+
+void collision_check(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    for (auto _ : state) {
+        for (const Query& q : queries) {
+            benchmark::DoNotOptimize(
+                bridge.model->collisions().is_nearer_than({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}, 0.05));
+        }
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+BENCHMARK(collision_check);
+
+void clearance(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    for (auto _ : state) {
+        for (const Query& q : queries) {
+            benchmark::DoNotOptimize(bridge.model->collisions().clearance_m({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}));
+        }
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+BENCHMARK(clearance);
+
+void map_build(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(bridge.model->make_map(bridge.problem.bounds));
+    }
+    state.counters["MB"] = static_cast<double>(bridge.map->memory_bytes()) * 1e-6;
+}
+BENCHMARK(map_build)->Unit(benchmark::kMillisecond);
+
+/// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
+void edge(benchmark::State& state, bool is_aware) {
+    const Bridge& bridge = Bridge::get();
+    FlightRules rules;
+    rules.bounds = bridge.problem.bounds;
+    std::int64_t ticks = 0;
+    for (auto _ : state) {
+        FlightState vehicle = slot_start(bridge);
+        const SegmentFlight flight =
+            fly(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, slot_segment(), vehicle);
+        if (flight.fault != FlightFault::none) {
+            state.SkipWithError("the edge was refused");
+            break;
+        }
+        ticks += flight.ticks;
+    }
+    state.SetItemsProcessed(state.iterations());
+    state.counters["ticks"] = benchmark::Counter(static_cast<double>(ticks), benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(edge, dynamics_aware, false);
+BENCHMARK_CAPTURE(edge, aerodynamics_aware, true);
+
+}  // namespace
