@@ -1,0 +1,57 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+
+#include "program.hpp"
+
+using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
+
+namespace {
+
+const std::vector<std::string> long_search{"solve", problem_file("open_air"), "--time-limit", "600", "--out", "x"};
+
+}  // namespace
+
+TEST_CASE("A signal in the middle of a search writes the best plan so far") {
+    const auto [signal, code] = GENERATE(std::pair(SIGINT, 130), std::pair(SIGTERM, 143));
+    const ScratchFolder folder;
+    const Program program(folder, long_search);
+    REQUIRE(program.has_said("best cost"));
+    program.send(signal);
+    const Result result = program.wait();
+    CHECK(result.code == code);
+    CHECK(result.out.starts_with("Interrupted. Solved. "));
+
+    const auto files = files_in(folder.path() / "run/x");
+    REQUIRE(files.size() == 3);
+    const auto solution = nlohmann::json::parse(files.at("solution.json"));
+    CHECK(solution.at("interrupted") == true);
+    CHECK(solution.at("status") == "solved");
+    CHECK(solution.at("execution").at("outcome") == "ok");
+    CHECK(files.at("trajectory.csv").ends_with("\n"));
+}
+
+TEST_CASE("A signal at the very beginning leaves valid files too") {
+    const ScratchFolder folder;
+    const Program program(folder, long_search);
+    REQUIRE(program.has_said("planning"));
+    program.send(SIGINT);
+    const Result result = program.wait();
+    CHECK(result.code == 130);
+    const auto files = files_in(folder.path() / "run/x");
+    REQUIRE(files.size() == 3);
+    CHECK(nlohmann::json::parse(files.at("solution.json")).at("interrupted") == true);
+}
+
+TEST_CASE("Two signals end the program at once and leave no half file") {
+    const ScratchFolder folder;
+    const Program program(folder, long_search);
+    REQUIRE(program.has_said("planning"));
+    program.send(SIGINT);
+    program.send(SIGTERM);
+    const Result result = program.wait();
+    CHECK((result.code == 130 || result.code == 143));
+    for (const auto& [name, text] : files_in(folder.path() / "run")) {
+        CHECK_FALSE(name.ends_with("solution.json"));
+    }
+}
