@@ -23,8 +23,8 @@ enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
 /// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
-/// flyable area (model 4.5). A cell is `grid_m` wide, or a whole part of it that is at most 0.4 R and fine enough for 512
-/// steps of refinement to resolve the models. Values are kept as float (relative error 2^-24). Immutable after
+/// flyable area (model 4.5). A cell is `grid_m` wide, or a whole part of it that is at most 0.45 R and fine enough for
+/// 512 steps of refinement to resolve the models. Values are kept as float (relative error 2^-24). Immutable after
 /// construction.
 ///
 /// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.016 K over R / 25600

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double allowed_error = 0.0065;
 /// Below this an interval is not looked into further: twice of it still leaves the other axis most of the allowance.
-constexpr double negligible_error = 0.0015;
+constexpr double negligible_error = 0.0025;
 constexpr std::size_t levels = 10;  // 2^0 to 2^9 steps
 static_assert(1 << (levels - 1) == most_steps);
 /// Largest error seen of linear interpolation with 2^level steps.
@@ -27,7 +27,7 @@ double deviation(const Values& v) {
 
 /// Whether the curve could have bent one way before the middle and the other way after it.
 bool may_hide_a_turn(const Values& v) {
-    return std::abs(v[2] - v[0]) > 10 * negligible_error;
+    return std::abs(v[2] - v[0]) > 6 * negligible_error;
 }
 
 /// Finds the errors along one line by halving it where it is not straight.

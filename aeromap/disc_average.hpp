@@ -7,10 +7,9 @@
 
 #include "downwash/aeromap/effect_models.hpp"
 #include "downwash/aeromap/footprint.hpp"
+#include "downwash/aeromap/outline_crossings.hpp"
 
 namespace downwash {
-
-enum class Side { below, above };
 
 /// A rotor's level disc and what it asks of one side.
 struct DiscQuery {

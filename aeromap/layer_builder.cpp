@@ -202,7 +202,7 @@ double longest_cell_side_m(const AeroSettings& settings, double rotor_radius_m) 
     const double slope = std::max(steepest(settings.ground, settings), steepest(settings.ceiling, settings));
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
     const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);
-    return rotor_radius_m * std::clamp(resolved_radii, 0.02, 0.4);
+    return rotor_radius_m * std::clamp(resolved_radii, 0.02, 0.45);
 }
 
 }  // namespace downwash

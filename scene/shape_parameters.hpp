@@ -14,7 +14,9 @@ namespace downwash {
 /// @param shape a lambda (model, index) -> Shape&
 template <class Model, class ShapeOf, class AddPlace>
 void add_shape_rows(std::vector<Parameter<Model>>& rows, const std::string& path, ShapeOf shape, AddPlace add_place) {
-    using namespace parameters;
+    using parameters::alternative;
+    using parameters::number;
+    using parameters::vector;
     const auto box = [shape](auto& m, std::size_t i) -> auto& {
         return std::get<Box>(shape(m, i));
     };
