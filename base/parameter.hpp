@@ -101,8 +101,8 @@ struct Parameter : ParameterInfo {
     Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
     Parameter or_none() && { return can_be_none = true, std::move(*this); }
     Parameter or_file() && { return can_be_file = true, std::move(*this); }
-    Parameter only(std::string when, std::function<bool(const Model&, std::size_t)> test) && {
-        return condition = std::move(when), applies = std::move(test), std::move(*this);
+    Parameter only(std::string_view when, std::function<bool(const Model&, std::size_t)> test) && {
+        return condition = when, applies = std::move(test), std::move(*this);
     }
 };
 

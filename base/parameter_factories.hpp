@@ -32,19 +32,19 @@ struct IsOptional<std::optional<T>> : std::true_type {
 };
 
 template <class Model>
-Parameter<Model> row(ParameterKind kind, std::string path, std::string description) {
+Parameter<Model> row(ParameterKind kind, std::string_view path, std::string_view description) {
     Parameter<Model> parameter;
-    parameter.path = std::move(path);
+    parameter.path = path;
     parameter.kind = kind;
-    parameter.description = std::move(description);
+    parameter.description = description;
     return parameter;
 }
 
 /// A value that lives in one member; Stored is how a Value holds it.
 template <class Model, class Stored, class Member>
-Parameter<Model> member_row(ParameterKind kind, std::string path, std::string description, Member member) {
+Parameter<Model> member_row(ParameterKind kind, std::string_view path, std::string_view description, Member member) {
     using Type = MemberType<Model, Member>;
-    auto parameter = row<Model>(kind, std::move(path), std::move(description));
+    auto parameter = row<Model>(kind, path, description);
     if constexpr (IsOptional<Type>::value) {
         parameter.nullable = true;
         parameter.get = [member](const Model& model, std::size_t i) {
@@ -70,45 +70,44 @@ Parameter<Model> member_row(ParameterKind kind, std::string path, std::string de
 }
 
 template <class Model, class Member>
-Parameter<Model> number(std::string path, std::string description, Member member) {
-    return member_row<Model, double>(ParameterKind::number, std::move(path), std::move(description), member);
+Parameter<Model> number(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, double>(ParameterKind::number, path, description, member);
 }
 template <class Model, class Member>
-Parameter<Model> integer(std::string path, std::string description, Member member) {
-    return member_row<Model, std::uint64_t>(ParameterKind::integer, std::move(path), std::move(description), member);
+Parameter<Model> integer(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::uint64_t>(ParameterKind::integer, path, description, member);
 }
 template <class Model, class Member>
-Parameter<Model> flag(std::string path, std::string description, Member member) {
-    return member_row<Model, bool>(ParameterKind::flag, std::move(path), std::move(description), member);
+Parameter<Model> flag(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, bool>(ParameterKind::flag, path, description, member);
 }
 template <class Model, class Member>
-Parameter<Model> text(std::string path, std::string description, Member member) {
-    return member_row<Model, std::string>(ParameterKind::text, std::move(path), std::move(description), member);
+Parameter<Model> text(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::string>(ParameterKind::text, path, description, member);
 }
 template <class Model, class Member>
-Parameter<Model> identifier(std::string path, std::string description, Member member) {
-    return member_row<Model, std::string>(ParameterKind::identifier, std::move(path), std::move(description), member);
+Parameter<Model> identifier(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::string>(ParameterKind::identifier, path, description, member);
 }
 template <class Model, class Member>
-Parameter<Model> points(std::string path, std::string description, Member member) {
-    return member_row<Model, std::vector<Vector3>>(ParameterKind::points, std::move(path), std::move(description),
-                                                   member);
+Parameter<Model> points(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::vector<Vector3>>(ParameterKind::points, path, description, member);
 }
 
 /// A text out of a list.
 template <class Model, class Member>
-Parameter<Model> choice(std::string path, std::string description, std::vector<std::string_view> names, Member member) {
-    auto parameter =
-        member_row<Model, std::string>(ParameterKind::choice, std::move(path), std::move(description), member);
-    parameter.names = std::move(names);
+Parameter<Model> choice(std::string_view path, std::string_view description, const std::vector<std::string_view>& names,
+                        Member member) {
+    auto parameter = member_row<Model, std::string>(ParameterKind::choice, path, description, member);
+    parameter.names = names;
     return parameter;
 }
 
 /// An enumeration whose values have names.
 template <class Model, class Enumeration, class Member>
-Parameter<Model> choice(std::string path, std::string description,
+Parameter<Model> choice(std::string_view path, std::string_view description,
                         std::vector<std::pair<Enumeration, std::string_view>> named, Member member) {
-    auto parameter = row<Model>(ParameterKind::choice, std::move(path), std::move(description));
+    auto parameter = row<Model>(ParameterKind::choice, path, description);
     for (const auto& entry : named) {
         parameter.names.push_back(entry.second);
     }
@@ -130,10 +129,10 @@ Parameter<Model> choice(std::string path, std::string description,
 /// A list of numbers that are read and written together.
 /// @param get (const Model&, index) -> std::vector<double>, or a Value  @param set (Model&, index, const vector&)
 template <class Model, class Get, class Set>
-Parameter<Model> numbers(std::string path, std::string description, std::vector<std::string_view> elements, Get get,
-                         Set set) {
-    auto parameter = row<Model>(ParameterKind::numbers, std::move(path), std::move(description));
-    parameter.elements = std::move(elements);
+Parameter<Model> numbers(std::string_view path, std::string_view description,
+                         const std::vector<std::string_view>& elements, Get get, Set set) {
+    auto parameter = row<Model>(ParameterKind::numbers, path, description);
+    parameter.elements = elements;
     parameter.get = [get](const Model& model, std::size_t i) { return Value(get(model, i)); };
     parameter.set = [set](Model& model, std::size_t i, const Value& value) {
         set(model, i, std::get<std::vector<double>>(value));
@@ -143,10 +142,10 @@ Parameter<Model> numbers(std::string path, std::string description, std::vector<
 
 /// A Vector3 as [x, y, z] or other names of its elements.
 template <class Model, class Member>
-Parameter<Model> vector(std::string path, std::string description, std::vector<std::string_view> elements,
-                        Member member) {
+Parameter<Model> vector(std::string_view path, std::string_view description,
+                        const std::vector<std::string_view>& elements, Member member) {
     return numbers<Model>(
-        std::move(path), std::move(description), std::move(elements),
+        path, description, elements,
         [member](const Model& model, std::size_t i) {
             const Vector3& v = at(member, model, i);
             return std::vector<double>(v.begin(), v.end());
@@ -158,10 +157,10 @@ Parameter<Model> vector(std::string path, std::string description, std::vector<s
 
 /// Two members as a list of two numbers.
 template <class Model, class First, class Second>
-Parameter<Model> pair(std::string path, std::string description, std::vector<std::string_view> elements, First first,
-                      Second second) {
+Parameter<Model> pair(std::string_view path, std::string_view description,
+                      const std::vector<std::string_view>& elements, First first, Second second) {
     return numbers<Model>(
-        std::move(path), std::move(description), std::move(elements),
+        path, description, elements,
         [first, second](const Model& model, std::size_t i) {
             return std::vector<double>{at(first, model, i), at(second, model, i)};
         },
@@ -173,8 +172,8 @@ Parameter<Model> pair(std::string path, std::string description, std::vector<std
 
 /// A text that can only be what it is.
 template <class Model>
-Parameter<Model> constant(std::string path, std::string description, std::string_view only) {
-    auto parameter = row<Model>(ParameterKind::choice, std::move(path), std::move(description));
+Parameter<Model> constant(std::string_view path, std::string_view description, std::string_view only) {
+    auto parameter = row<Model>(ParameterKind::choice, path, description);
     parameter.names = {only};
     parameter.get = [only](const Model&, std::size_t) { return Value(std::string(only)); };
     parameter.set = [](Model&, std::size_t, const Value&) {};
@@ -183,8 +182,8 @@ Parameter<Model> constant(std::string path, std::string description, std::string
 
 /// Keys that are always there.
 template <class Model>
-Parameter<Model> group(std::string path, std::string description) {
-    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+Parameter<Model> group(std::string_view path, std::string_view description) {
+    auto parameter = row<Model>(ParameterKind::group, path, description);
     parameter.count = [](const Model&, std::size_t) { return std::size_t{1}; };
     parameter.resize = [](Model&, std::size_t, std::size_t) {};
     return parameter;
@@ -192,8 +191,8 @@ Parameter<Model> group(std::string path, std::string description) {
 
 /// Keys of a member that may be absent.
 template <class Model, class Member>
-Parameter<Model> optional_group(std::string path, std::string description, Member member) {
-    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+Parameter<Model> optional_group(std::string_view path, std::string_view description, Member member) {
+    auto parameter = row<Model>(ParameterKind::group, path, description);
     parameter.count = [member](const Model& model, std::size_t i) {
         return at(member, model, i) ? std::size_t{1} : std::size_t{0};
     };
@@ -208,8 +207,8 @@ Parameter<Model> optional_group(std::string path, std::string description, Membe
 
 /// Keys of one alternative of a variant.
 template <class Alternative, class Model, class Member>
-Parameter<Model> alternative(std::string path, std::string description, Member member) {
-    auto parameter = row<Model>(ParameterKind::group, std::move(path), std::move(description));
+Parameter<Model> alternative(std::string_view path, std::string_view description, Member member) {
+    auto parameter = row<Model>(ParameterKind::group, path, description);
     parameter.exclusive = true;
     parameter.count = [member](const Model& model, std::size_t i) {
         return std::holds_alternative<Alternative>(at(member, model, i)) ? std::size_t{1} : std::size_t{0};
@@ -224,8 +223,8 @@ Parameter<Model> alternative(std::string path, std::string description, Member m
 
 /// A std::vector of groups.
 template <class Model, class Member>
-Parameter<Model> list(std::string path, std::string description, Member member) {
-    auto parameter = row<Model>(ParameterKind::list, std::move(path), std::move(description));
+Parameter<Model> list(std::string_view path, std::string_view description, Member member) {
+    auto parameter = row<Model>(ParameterKind::list, path, description);
     parameter.count = [member](const Model& model, std::size_t i) { return at(member, model, i).size(); };
     parameter.resize = [member](Model& model, std::size_t i, std::size_t count) { at(member, model, i).resize(count); };
     return parameter;
@@ -233,8 +232,8 @@ Parameter<Model> list(std::string path, std::string description, Member member) 
 
 /// A key that comes with a later version; an alternative to its exclusive siblings.
 template <class Model>
-Parameter<Model> planned(std::string path, std::string description) {
-    auto parameter = row<Model>(ParameterKind::planned, std::move(path), std::move(description));
+Parameter<Model> planned(std::string_view path, std::string_view description) {
+    auto parameter = row<Model>(ParameterKind::planned, path, description);
     parameter.exclusive = true;
     return parameter;
 }
@@ -243,7 +242,8 @@ Parameter<Model> planned(std::string path, std::string description) {
 template <class Whole, class Part, class Member>
 Parameter<Whole> nested(const Parameter<Part>& inner, std::string_view prefix, Member member) {
     Parameter<Whole> outer;
-    static_cast<ParameterInfo&>(outer) = inner;
+    const ParameterInfo& info = inner;
+    static_cast<ParameterInfo&>(outer) = info;
     outer.path = std::string(prefix) + inner.path;
     if (inner.get) {
         outer.get = [member, get = inner.get](const Whole& whole, std::size_t i) { return get(member(whole), i); };

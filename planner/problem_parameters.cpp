@@ -19,23 +19,23 @@ constexpr double farthest_m = 1e5;  ///< from the origin; farther out, positions
 
 // The factories for this table's Model; the members are named by lambdas.
 template <class Member>
-Parameter<Problem> number(std::string path, std::string description, Member member) {
-    return parameters::number<Problem>(std::move(path), std::move(description), member);
+Parameter<Problem> number(std::string_view path, std::string_view description, Member member) {
+    return parameters::number<Problem>(path, description, member);
 }
-Parameter<Problem> group(std::string path, std::string description) {
-    return parameters::group<Problem>(std::move(path), std::move(description));
-}
-template <class Member>
-Parameter<Problem> position(std::string path, std::string description, Member member) {
-    return number(std::move(path), std::move(description), member).at_least(-farthest_m).at_most(farthest_m);
+Parameter<Problem> group(std::string_view path, std::string_view description) {
+    return parameters::group<Problem>(path, description);
 }
 template <class Member>
-Parameter<Problem> angle(std::string path, std::string description, double most_deg, Member member) {
-    return number(std::move(path), std::move(description), member).at_least(-most_deg).at_most(most_deg);
+Parameter<Problem> position(std::string_view path, std::string_view description, Member member) {
+    return number(path, description, member).at_least(-farthest_m).at_most(farthest_m);
 }
 template <class Member>
-Parameter<Problem> positive(std::string path, std::string description, double most, Member member) {
-    return number(std::move(path), std::move(description), member).above(0).at_most(most);
+Parameter<Problem> angle(std::string_view path, std::string_view description, double most_deg, Member member) {
+    return number(path, description, member).at_least(-most_deg).at_most(most_deg);
+}
+template <class Member>
+Parameter<Problem> positive(std::string_view path, std::string_view description, double most, Member member) {
+    return number(path, description, member).above(0).at_most(most);
 }
 
 void add_robot(Rows& rows) {

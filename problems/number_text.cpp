@@ -63,7 +63,7 @@ std::string degrees_text(double angle_rad) {
     for (int digits = 1; digits < most_digits; ++digits) {
         const std::string_view written = rounded(text, degrees, digits);
         // As a double 90 is written "90" where one digit is "9e+01".
-        const std::string plain = digits <= 17 ? to_text(parse_number(written).value_or(0)) : std::string(written);
+        std::string plain = digits <= 17 ? to_text(parse_number(written).value_or(0)) : std::string(written);
         if (parse_degrees(plain) == angle_rad) {
             return plain;
         }

@@ -294,6 +294,7 @@ std::vector<LocatedFault> TreeReader::faults() const {
                std::tie(b.place.file, b.place.mark.line, b.place.mark.column);
     });
     std::vector<LocatedFault> located;
+    located.reserve(ordered.size());
     for (const Found& found : ordered) {
         located.push_back(
             {files_[found.place.file].path.string(), found.place.mark.line, found.place.mark.column, found.message});

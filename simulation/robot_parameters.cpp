@@ -13,11 +13,11 @@ using Rows = std::vector<Parameter<Robot>>;
 
 // The factories for this table's Model; the members are named by lambdas.
 template <class Member>
-Parameter<Robot> number(std::string path, std::string description, Member member) {
-    return parameters::number<Robot>(std::move(path), std::move(description), member);
+Parameter<Robot> number(std::string_view path, std::string_view description, Member member) {
+    return parameters::number<Robot>(path, description, member);
 }
-Parameter<Robot> group(std::string path, std::string description) {
-    return parameters::group<Robot>(std::move(path), std::move(description)).is_required();
+Parameter<Robot> group(std::string_view path, std::string_view description) {
+    return parameters::group<Robot>(path, description).is_required();
 }
 
 void add_multirotor(Rows& rows) {
@@ -152,8 +152,8 @@ void add_arm(Rows& rows) {
 
 /// A gain or a limit of a controller: never negative.
 template <class Member>
-Parameter<Robot> gain(std::string path, std::string description, Member member) {
-    return number("controller." + std::move(path), std::move(description), member).at_least(0).at_most(1e4);
+Parameter<Robot> gain(std::string_view path, std::string_view description, Member member) {
+    return number("controller." + std::string(path), description, member).at_least(0).at_most(1e4);
 }
 
 void add_controller(Rows& rows) {

@@ -101,11 +101,11 @@ TEST_CASE("aliases are understood, but not those that never end or explode") {
     std::string bomb = "a0: &a0 [1, 2]\n";
     std::string chain = "a0: &a0 [1]\n";
     for (int i = 1; i < 100; ++i) {
-        const std::string now = std::to_string(i);
-        const std::string last = std::to_string(i - 1);
-        chain += "a" + now + ": &a" + now + " [*a" + last + "]\n";
+        const std::string begin = "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
+        const std::string last = "*a" + std::to_string(i - 1);
+        chain.append(begin).append(last).append("]\n");
         if (i < 30) {
-            bomb += "a" + now + ": &a" + now + " [*a" + last + ", *a" + last + ", *a" + last + "]\n";
+            bomb.append(begin).append(last).append(", ").append(last).append(", ").append(last).append("]\n");
         }
     }
     CHECK(faults_of_text(edited(good, "obstacles:\n", "obstacles: *a29\n") + bomb) != "sound");
