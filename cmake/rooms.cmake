@@ -38,7 +38,7 @@ add_library(downwash_options INTERFACE)
 target_compile_options(downwash_options INTERFACE
   -ffp-contract=off # the same bytes on every processor
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-  -Wno-restrict # g++ 12 sees overlaps in every "text" + std::string (GCC bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in every "text" + std::string (GCC bug 105651)
   $<$<BOOL:${DOWNWASH_WERROR}>:-Werror>)
 
 # downwash_room(NAME SOURCES ... USES rooms... PRIVATE libraries... PRIVATE_HEADERS files...)
