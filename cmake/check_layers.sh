@@ -19,6 +19,7 @@ problems:    base scene dynamics aeromap controllers simulation planner
 report:      base scene dynamics aeromap controllers simulation planner problems
 cli:         *
 bench:       *
+docs:        *
 tests:       *
 examples:    *
 '

@@ -31,18 +31,6 @@ bool same_bytes(const FlightState& a, const FlightState& b) {
 
 }  // namespace
 
-ReferenceLimits reference_limits(const MotionLimits& motion) {
-    return {motion.max_speed_m_s, motion.max_acceleration_m_s2, motion.max_arm_rate_rad_s,
-            motion.max_arm_acceleration_rad_s2};
-}
-
-double hover_power_w(const FlightModel& model) {
-    const PlantModel& plant = model.tick().plant;
-    double thrust_n[max_rotors];
-    dynamics::allocate(plant, plant.total_mass_kg * standard_gravity_m_s2, 0.0, thrust_n);
-    return dynamics::rotor_power(plant, thrust_n);
-}
-
 std::string cause_of(FlightFault fault) {
     switch (fault) {
         case FlightFault::collision:
@@ -69,7 +57,7 @@ FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const S
       space_(space),
       map_(map),
       limits_(reference_limits(problem.motion)),
-      hover_power_w_(planning::hover_power_w(model)) {
+      free_air_cost_(problem, model, space) {
     rules_.margin_m = problem.planner.safety_margin_m;
     rules_.bounds = problem.bounds;
     rules_.measures_clearance = problem.planner.objective == Objective::clearance;
@@ -109,20 +97,7 @@ std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_
 }
 
 double FlightTree::estimated_cost(const FlightNode& from, const Configuration& to) const {
-    const double dx = to.x_m - from.configuration.x_m;
-    const double dz = to.z_m - from.configuration.z_m;
-    const double turn = space_.arm_turn_rad(from.configuration.arm_rad, to.arm_rad);
-    const double duration_s = rest_to_rest_duration_s(std::sqrt(dx * dx + dz * dz), std::abs(turn), limits_);
-    switch (problem_.planner.objective) {
-        case Objective::energy:
-            return hover_power_w_ * duration_s;
-        case Objective::length:
-            return space_.distance_m(from.configuration, to);
-        case Objective::time:
-        case Objective::clearance:  // far from everything its density is small; time is what it grows with
-            break;
-    }
-    return duration_s;
+    return free_air_cost_.of_motion(from.configuration, to);
 }
 
 ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferencePoint& to, std::int64_t ticks) const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/planner/free_air_cost.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/search_space.hpp"
 #include "downwash/planner/solution.hpp"
@@ -98,18 +99,12 @@ class FlightTree {
     const AeroMap* map_;
     FlightRules rules_;
     ReferenceLimits limits_;
-    double hover_power_w_;
+    FreeAirCost free_air_cost_;
     std::deque<FlightNode> nodes_;
     std::vector<FlightNode*> moving_;
     std::vector<FlightNode*> holds_;
     FlightStatistics statistics_;
 };
-
-/// The reference limits of a problem.
-[[nodiscard]] ReferenceLimits reference_limits(const MotionLimits& motion);
-
-/// Power of the level, hovering vehicle far from all surfaces, arm still [W].
-[[nodiscard]] double hover_power_w(const FlightModel& model);
 
 /// The name under which a refusal is counted.
 [[nodiscard]] std::string cause_of(FlightFault fault);

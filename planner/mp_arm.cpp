@@ -10,10 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/planner/flight_tree.hpp"
+#include "downwash/planner/free_air_cost.hpp"
 #include "downwash/planner/ompl_space.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
-#include "downwash/simulation/flight_loop.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -30,82 +29,18 @@ class SeededRrtStar : public ompl::geometric::RRTstar {
     }
 };
 
-/// What a straight edge costs the geometric variant.
-class EdgeCost {
- public:
-    EdgeCost(const Problem& problem, const FlightModel& model, const SearchSpace& space)
-        : objective_(problem.planner.objective),
-          model_(model),
-          space_(space),
-          limits_(reference_limits(problem.motion)),
-          hover_power_w_(hover_power_w(model)) {}
-
-    [[nodiscard]] double of_motion(const Configuration& a, const Configuration& b) const {
-        const double turn = std::abs(space_.arm_turn_rad(a.arm_rad, b.arm_rad));
-        const double duration_s = rest_to_rest_duration_s(std::hypot(b.x_m - a.x_m, b.z_m - a.z_m), turn, limits_);
-        switch (objective_) {
-            case Objective::energy:
-                return hover_power_w_ * duration_s;
-            case Objective::time:
-                return duration_s;
-            case Objective::length:
-                return space_.distance_m(a, b);
-            case Objective::clearance:
-                break;
-        }
-        return duration_s * mean_clearance_density(a, space_.seen_from(a, b));
-    }
-
-    [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const {
-        switch (objective_) {
-            case Objective::energy:
-                return hover_power_w_ * hold_s;
-            case Objective::time:
-                return hold_s;
-            case Objective::length:
-                return 0;
-            case Objective::clearance:
-                break;
-        }
-        return hold_s * density(at);
-    }
-
- private:
-    [[nodiscard]] double density(const Configuration& c) const {
-        return simulation::clearance_density(model_.collisions().clearance_m({c.x_m, c.z_m, 0, c.arm_rad}));
-    }
-
-    [[nodiscard]] double mean_clearance_density(const Configuration& a, const Configuration& b) const {
-        constexpr double spacing_m = 0.25;
-        const int pieces = static_cast<int>(std::ceil(space_.distance_m(a, b) / spacing_m)) + 1;
-        double sum = 0;
-        for (int i = 0; i < pieces; ++i) {
-            const double s = (i + 0.5) / pieces;
-            sum += density(
-                {a.x_m + s * (b.x_m - a.x_m), a.z_m + s * (b.z_m - a.z_m), a.arm_rad + s * (b.arm_rad - a.arm_rad)});
-        }
-        return sum / pieces;
-    }
-
-    Objective objective_;
-    const FlightModel& model_;
-    const SearchSpace& space_;
-    ReferenceLimits limits_;
-    double hover_power_w_;
-};
-
 class GeometricObjective : public ob::OptimizationObjective {
  public:
-    GeometricObjective(const ob::SpaceInformationPtr& information, const EdgeCost& cost, const SearchSpace& space)
-        : ob::OptimizationObjective(information), edge_cost_(cost), space_(space) {}
+    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
+        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {}
 
     ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
     ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
-        return ob::Cost(edge_cost_.of_motion(read(from, space_), read(to, space_)));
+        return ob::Cost(free_air_cost_.of_motion(read(from, space_), read(to, space_)));
     }
 
  private:
-    const EdgeCost& edge_cost_;
+    const FreeAirCost& free_air_cost_;
     const SearchSpace& space_;
 };
 
@@ -120,7 +55,7 @@ std::vector<Waypoint> unwrapped(const ompl::geometric::PathGeometric& path, cons
     return waypoints;
 }
 
-double cost_of(const std::vector<Waypoint>& waypoints, const EdgeCost& cost, double hold_s) {
+double cost_of(const std::vector<Waypoint>& waypoints, const FreeAirCost& cost, double hold_s) {
     double sum = 0;
     const auto at = [&](std::size_t i) {
         return Configuration{waypoints[i].x_m, waypoints[i].z_m, waypoints[i].arm_rad};
@@ -168,7 +103,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     // A motion is checked so densely that the margin covers what happens between two checks.
     const double step_m = std::clamp(2 * problem.planner.safety_margin_m, 0.02, 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
-    const EdgeCost edge_cost(problem, model, space);
+    const FreeAirCost free_air_cost(problem, model, space);
     const Configuration start{problem.start.x_m, problem.start.z_m, problem.start.arm_rad};
     const double hold_s = problem.goal.hold_s;
 
@@ -177,7 +112,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     write(start, start_state.get(), space);
     definition->addStartState(start_state);
     definition->setGoal(make_goal_region(information, space, random));
-    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, edge_cost, space));
+    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
 
     const auto planner = std::make_shared<SeededRrtStar>(information, problem.planner.seed);
     planner->setProblemDefinition(definition);
@@ -185,7 +120,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     definition->setIntermediateSolutionCallback(
         [&](const ob::Planner*, const std::vector<const ob::State*>& states, const ob::Cost cost) {
             const Configuration end = states.empty() ? start : read(states.front(), space);
-            hooks.on_improvement(cost.value() + edge_cost.of_hold(end, hold_s), planner->numIterations());
+            hooks.on_improvement(cost.value() + free_air_cost.of_hold(end, hold_s), planner->numIterations());
         });
     planner->solve(ob::PlannerTerminationCondition([&] { return hooks.is_over(planner->numIterations()); }));
 
@@ -201,7 +136,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
             result.status = is_exact ? Status::solved : Status::approximate;
             result.plan = timed_plan(waypoints, reference_of(problem.start), reference_limits(problem.motion),
                                      model.tick().tick_s);
-            result.cost = cost_of(waypoints, edge_cost, hold_s);
+            result.cost = cost_of(waypoints, free_air_cost, hold_s);
         }
     }
     return result;

@@ -115,13 +115,10 @@ class StraightMotion : public ob::MotionValidator {
         const Configuration a = read(from, space_);
         const Configuration b = space_.seen_from(a, read(to, space_));
         const double arm_length_m = 2 * space_.arm_weight_m();
-        const double motion_m =
-            std::hypot(b.x_m - a.x_m, b.z_m - a.z_m) + arm_length_m * std::abs(b.arm_rad - a.arm_rad);
+        const double motion_m = travel_m(a, b) + arm_length_m * std::abs(b.arm_rad - a.arm_rad);
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
-            const double s = static_cast<double>(i) / steps;
-            const Configuration c{a.x_m + s * (b.x_m - a.x_m), a.z_m + s * (b.z_m - a.z_m),
-                                  a.arm_rad + s * (b.arm_rad - a.arm_rad)};
+            const Configuration c = between(a, b, static_cast<double>(i) / steps);
             ++counts_.states;
             if (!space_.is_valid(c)) {
                 ++counts_.refused_motions;

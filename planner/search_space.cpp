@@ -9,6 +9,16 @@
 
 namespace downwash::planning {
 
+double travel_m(const Configuration& a, const Configuration& b) noexcept {
+    const double dx = b.x_m - a.x_m;
+    const double dz = b.z_m - a.z_m;
+    return std::sqrt(dx * dx + dz * dz);
+}
+
+Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
+    return {a.x_m + s * (b.x_m - a.x_m), a.z_m + s * (b.z_m - a.z_m), a.arm_rad + s * (b.arm_rad - a.arm_rad)};
+}
+
 SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
     : model_(model),
       bounds_(problem.bounds),
@@ -46,9 +56,7 @@ Configuration SearchSpace::steered(const Configuration& from, const Configuratio
     if (distance <= range_m) {
         return target;
     }
-    const double s = range_m / distance;
-    return {from.x_m + s * (target.x_m - from.x_m), from.z_m + s * (target.z_m - from.z_m),
-            from.arm_rad + s * (target.arm_rad - from.arm_rad)};
+    return between(from, target, range_m / distance);
 }
 
 Configuration SearchSpace::sample(Random& random) const {

@@ -15,6 +15,12 @@ struct Configuration {
     double arm_rad = 0;
 };
 
+/// Straight distance of the vehicle's positions [m].
+[[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) noexcept;
+
+/// The point at the share s of the straight line from a to b, arm angles taken as they stand.
+[[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept;
+
 /// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
 class SearchSpace {
  public:

@@ -233,7 +233,8 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> scene, const PlaneOfMo
     require_valid(robot);
     parts = parts_of(robot);
     for (const Part& part : parts) {
-        const double offset = part.is_arm ? std::hypot(robot.joint_x_m, robot.joint_z_m) : 0;
+        const double offset =
+            part.is_arm ? std::sqrt(robot.joint_x_m * robot.joint_x_m + robot.joint_z_m * robot.joint_z_m) : 0;
         reach_m = std::max(reach_m, offset + reach_of(part.convex));
     }
     const Scene::Solids& solids = scene->solids();

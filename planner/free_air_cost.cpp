@@ -1,0 +1,76 @@
+#include "downwash/planner/free_air_cost.hpp"
+
+#include <cmath>
+
+#include "downwash/simulation/flight_loop.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// Power of the level, hovering vehicle, arm still [W].
+double hover_power_w(const FlightModel& model) {
+    const PlantModel& plant = model.tick().plant;
+    double thrust_n[max_rotors];
+    dynamics::allocate(plant, plant.total_mass_kg * standard_gravity_m_s2, 0.0, thrust_n);
+    return dynamics::rotor_power(plant, thrust_n);
+}
+
+}  // namespace
+
+ReferenceLimits reference_limits(const MotionLimits& motion) {
+    return {motion.max_speed_m_s, motion.max_acceleration_m_s2, motion.max_arm_rate_rad_s,
+            motion.max_arm_acceleration_rad_s2};
+}
+
+FreeAirCost::FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space)
+    : objective_(problem.planner.objective),
+      model_(model),
+      space_(space),
+      limits_(reference_limits(problem.motion)),
+      hover_power_w_(hover_power_w(model)) {}
+
+double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
+    const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
+    const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits_);
+    switch (objective_) {
+        case Objective::energy:
+            return hover_power_w_ * duration_s;
+        case Objective::time:
+            return duration_s;
+        case Objective::length:
+            return space_.distance_m(from, to);
+        case Objective::clearance:
+            break;
+    }
+    return duration_s * mean_clearance_density(from, space_.seen_from(from, to));
+}
+
+double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
+    switch (objective_) {
+        case Objective::energy:
+            return hover_power_w_ * hold_s;
+        case Objective::time:
+            return hold_s;
+        case Objective::length:
+            return 0;
+        case Objective::clearance:
+            break;
+    }
+    return hold_s * clearance_density(at);
+}
+
+double FreeAirCost::clearance_density(const Configuration& at) const {
+    return simulation::clearance_density(model_.collisions().clearance_m({at.x_m, at.z_m, 0, at.arm_rad}));
+}
+
+double FreeAirCost::mean_clearance_density(const Configuration& from, const Configuration& to) const {
+    constexpr double spacing_m = 0.25;
+    const int pieces = static_cast<int>(std::ceil(space_.distance_m(from, to) / spacing_m)) + 1;
+    double sum = 0;
+    for (int i = 0; i < pieces; ++i) {
+        sum += clearance_density(between(from, to, (i + 0.5) / pieces));
+    }
+    return sum / pieces;
+}
+
+}  // namespace downwash::planning
