@@ -1,0 +1,49 @@
+#include "downwash/base/text.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <string>
+#include <string_view>
+
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/sha256.hpp"
+
+using namespace downwash;
+
+TEST_CASE("numbers are written shortly and read back the same") {
+    CHECK(to_text(0.1) == "0.1");
+    CHECK(to_text(100000.0) == "100000");
+    CHECK(to_text(-0.0) == "-0");
+    CHECK(to_text(1e-300) == "1e-300");
+    CHECK(std::stod(to_text(0.1 + 0.2)) == 0.1 + 0.2);
+    CHECK(to_text(48.5429175, 4) == "48.54");
+}
+
+TEST_CASE("a misspelt word is taken for the nearest name, a strange one for none") {
+    const std::array<std::string_view, 3> names{"energy", "time", "clearance"};
+    CHECK(nearest_name("enrgy", names) == "energy");
+    CHECK(nearest_name("tiem", names) == "time");
+    CHECK(nearest_name("comfort", names).empty());
+    CHECK(nearest_name(std::string(100000, 'x'), names).empty());
+    CHECK(joined_names(names) == "energy, time or clearance");
+}
+
+TEST_CASE("a long text is cut between characters") {
+    CHECK(excerpt("short\ntext") == "short text");
+    CHECK(excerpt(std::string(47, 'a') + "\xc3\xa4" + "bc") == std::string(47, 'a') + "...");
+}
+
+TEST_CASE("names of keys carry their units") {
+    CHECK(unit_of("multirotor.pitch_inertia_kg_m2") == "kg m2");
+    CHECK(unit_of("start.pitch_rate_deg_s") == "deg/s");
+    CHECK(unit_of("planner.seed").empty());
+    CHECK(is_in_degrees("goal.configuration.tolerance_deg"));
+    CHECK(without_unit("mass_kg") == "mass");
+    CHECK(is_stem_with_unit("mass_g", "mass"));
+    CHECK_FALSE(is_stem_with_unit("mass_centre", "mass"));
+}
+
+TEST_CASE("SHA-256 gives the digests of its standard") {
+    CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
