@@ -148,7 +148,7 @@ TEST_CASE("A plan file is refused where it cannot be flown") {
         {"\"reference\": [", "\"reference\": [], \"old\": [", "plan.reference: expected at least one knot"},
         {"\"reference\": [", "\"reference\": [7, ", "plan.reference[0]: expected a group of keys"},
         {"\"waypoints\": [", "\"waypoints\": {}, \"old\": [", "plan.waypoints: expected a list"},
-        {"\"waypoints\": [", "\"waypoints\": [], \"old\": [", "there are 0 waypoints but 3 knots"},
+        {"\"waypoints\": [", "\"waypoints\": [], \"old\": [", "there are 0 waypoints, but 3 knots"},
         {"\"plan\": {", "\"plan\": 5, \"old\": {", "plan: expected a group"},
         {"\"status\": \"solved\"", "\"status\": \"great\"",
          "3:13: status: expected one of none, approximate or solved"},
