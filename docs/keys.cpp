@@ -21,7 +21,8 @@ std::string default_text(const Parameter<Problem>& parameter) {
     if (!parameter.get || parameter.path.find("[]") != std::string::npos || parameter.path.rfind("goal.", 0) == 0) {
         return "";
     }
-    const Value value = parameter.get(Problem{}, 0);
+    static const Problem defaults;
+    const Value value = parameter.get(defaults, 0);
     if (const auto* flag = std::get_if<bool>(&value)) {
         return *flag ? "true" : "false";
     }

@@ -193,7 +193,7 @@ TEST_CASE("a start that already meets the goal is solved by holding there") {
     problem.start.x_m = 3 - 0.6;
     problem.start.z_m = 4.8 - 1.2 * std::sin(1.0471975511965976);
     problem.start.arm_rad = -1.0471975511965976;
-    problem.planner.max_iterations = 0;
+    problem.planner.max_iterations = 1;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     CHECK(solution.plan->reference.size() == 1);
