@@ -27,8 +27,8 @@ class DOWNWASH_EXPORT DirectEffect {
     };
 
     /// Factors at the world position of a rotor hub; 1 for a position that is not finite. A point of the disc inside an
-    /// obstacle counts as touching it. Absolute quadrature error in the flyable area: below 1e-4 for level surfaces,
-    /// below 2e-3 for any.
+    /// obstacle counts as touching it. Absolute quadrature error in the flyable area: below 1e-11 under level faces
+    /// with straight edges, below 2e-3 for any.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
     /// K, the factor on the commanded free-air thrust.

@@ -9,6 +9,7 @@
 
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
+#include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
@@ -54,6 +55,9 @@ class DiscQuadrature {
         const double weight = is_far_ ? 0.12 : stake < 0.1 ? 0.5 : 1;
         const bool is_level = std::all_of(candidates.begin(), candidates.end(),
                                           [](const Candidate& candidate) { return candidate.footprint->is_level; });
+        is_polygonal_ = is_level && std::all_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+                            return candidate.footprint->outline.ellipses.empty();
+                        });
         scale_ = (is_level ? 2 : 1) * weight / query.radius_m;  // level chords cost little
         breaks_.reserve(32);
         stretches_.reserve(candidates.size());
@@ -71,7 +75,28 @@ class DiscQuadrature {
 
  private:
     double strip(double low, double high) {
+        if (is_polygonal_) {
+            return polygonal_strip(low, high);
+        }
         return integral(low, high, [this](double v) { return chord(v); });
+    }
+
+    /// Under level faces with straight edges a chord's integral is made of v and the chord's own length, which with
+    /// v = R sin t are analytic in t: Gauss' rule gives it to rounding.
+    double polygonal_strip(double low, double high) {
+        const double first = angle_of(low);
+        const double last = angle_of(high);
+        const auto f = [this](double t) {
+            double sine = 0;
+            double cosine = 0;
+            lane::sin_cos(t, sine, cosine);
+            return chord(query_.radius_m * sine) * query_.radius_m * cosine;
+        };
+        return last - first < 1 ? integrate(plain_6, first, last, f) : integrate(plain_12, first, last, f);
+    }
+
+    double angle_of(double v) const {
+        return lane::atan2(v, std::sqrt(std::max(query_.radius_m * query_.radius_m - v * v, 0.0)));
     }
 
     /// More points the wider the piece and the more is at stake.
@@ -211,6 +236,14 @@ class DiscQuadrature {
         for (const Candidate& candidate : candidates_) {
             add_breaks(frame_, query_.side, candidate.footprint->outline, breaks_);
         }
+        if (is_polygonal_) {
+            for (std::size_t i = 1; i < candidates_.size(); ++i) {
+                for (std::size_t j = 0; j < i; ++j) {
+                    add_crossings(frame_, candidates_[i].footprint->outline, candidates_[j].footprint->outline,
+                                  breaks_);
+                }
+            }
+        }
         std::sort(breaks_.begin(), breaks_.end());
         const double negligible = 1e-6 * query_.radius_m;
         breaks_.erase(
@@ -222,7 +255,8 @@ class DiscQuadrature {
     double background_m_;
     double background_;
     bool is_far_ = false;
-    double scale_ = 0;  ///< what makes a width one that matters
+    bool is_polygonal_ = false;  ///< level faces with straight edges only
+    double scale_ = 0;           ///< what makes a width one that matters
     const std::pmr::vector<Candidate>& candidates_;
     ChordFrame frame_{};
     std::pmr::vector<double> breaks_;

@@ -31,19 +31,35 @@ constexpr std::array<GaussNode, N> smoothed(const std::array<GaussNode, N / 2>& 
 inline constexpr auto smoothed_2 = smoothed<2>({{{0.57735026918962576, 1}}});
 inline constexpr auto smoothed_4 =
     smoothed<4>({{{0.8611363115940526, 0.34785484513745385}, {0.33998104358485626, 0.6521451548625461}}});
-inline constexpr auto smoothed_6 = smoothed<6>({{{0.932469514203152, 0.17132449237917036},
-                                                 {0.6612093864662645, 0.3607615730481386},
-                                                 {0.2386191860831969, 0.46791393457269104}}});
+inline constexpr std::array<GaussNode, 3> legendre_6{{{0.932469514203152, 0.17132449237917036},
+                                                      {0.6612093864662645, 0.3607615730481386},
+                                                      {0.2386191860831969, 0.46791393457269104}}};
+inline constexpr auto smoothed_6 = smoothed<6>(legendre_6);
 inline constexpr auto smoothed_8 = smoothed<8>({{{0.9602898564975363, 0.10122853629037626},
                                                  {0.7966664774136267, 0.22238103445337448},
                                                  {0.525532409916329, 0.31370664587788727},
                                                  {0.1834346424956498, 0.362683783378362}}});
-inline constexpr auto smoothed_12 = smoothed<12>({{{0.9815606342467192, 0.04717533638651183},
-                                                   {0.9041172563704749, 0.10693932599531843},
-                                                   {0.7699026741943047, 0.16007832854334622},
-                                                   {0.5873179542866175, 0.20316742672306592},
-                                                   {0.3678314989981802, 0.2334925365383548},
-                                                   {0.1252334085114689, 0.24914704581340277}}});
+inline constexpr std::array<GaussNode, 6> legendre_12{{{0.9815606342467192, 0.04717533638651183},
+                                                       {0.9041172563704749, 0.10693932599531843},
+                                                       {0.7699026741943047, 0.16007832854334622},
+                                                       {0.5873179542866175, 0.20316742672306592},
+                                                       {0.3678314989981802, 0.2334925365383548},
+                                                       {0.1252334085114689, 0.24914704581340277}}};
+inline constexpr auto smoothed_12 = smoothed<12>(legendre_12);
+
+/// The same rules without the substitution, for integrands that are smooth up to their ends.
+template <std::size_t N>
+constexpr std::array<GaussNode, N> plain(const std::array<GaussNode, N / 2>& upper_half) {
+    std::array<GaussNode, N> rule{};
+    for (std::size_t j = 0; j < N / 2; ++j) {
+        rule[j] = {-upper_half[j].position, upper_half[j].weight};
+        rule[N - 1 - j] = upper_half[j];
+    }
+    return rule;
+}
+
+inline constexpr auto plain_6 = plain<6>(legendre_6);
+inline constexpr auto plain_12 = plain<12>(legendre_12);
 
 /// Integral of f over [low, high].
 template <class Rule, class Function>

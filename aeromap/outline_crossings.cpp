@@ -157,6 +157,27 @@ void add_breaks(const ChordFrame& frame, Side side, const ShadowOutline& outline
     }
 }
 
+void add_crossings(const ChordFrame& frame, const ShadowOutline& one, const ShadowOutline& other,
+                   std::pmr::vector<double>& breaks) {
+    for (const OutlineSegment& a : one.segments) {
+        const double ax = a.bx - a.ax;
+        const double ay = a.by - a.ay;
+        for (const OutlineSegment& b : other.segments) {
+            const double bx = b.bx - b.ax;
+            const double by = b.by - b.ay;
+            const double cross = ax * by - ay * bx;
+            const double part = ((b.ax - a.ax) * by - (b.ay - a.ay) * bx) / cross;  // not finite for parallels
+            const double x = a.ax + part * ax;
+            const double y = a.ay + part * ay;
+            const double u = frame.u_of(x, y);
+            const double v = frame.v_of(x, y);
+            if (u * u + v * v < frame.radius_m * frame.radius_m) {
+                breaks.push_back(v);
+            }
+        }
+    }
+}
+
 void add_creases(const ChordFrame& frame, Side side, const ShadowOutline& outline, double v, const Interval& stretch,
                  std::pmr::vector<double>& cuts) {
     const auto add = [&](double u) {

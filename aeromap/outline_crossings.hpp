@@ -28,6 +28,10 @@ struct ChordFrame {
 /// Appends the chords v at which the outline begins, ends, has a corner, or leaves the disc.
 void add_breaks(const ChordFrame& frame, Side side, const ShadowOutline& outline, std::pmr::vector<double>& breaks);
 
+/// Appends the chords v at which straight lines of two outlines cross each other inside the disc.
+void add_crossings(const ChordFrame& frame, const ShadowOutline& one, const ShadowOutline& other,
+                   std::pmr::vector<double>& breaks);
+
 /// Appends the positions u inside `stretch` of the chord v where an edge crosses it that creases the surface seen from
 /// the rotor.
 void add_creases(const ChordFrame& frame, Side side, const ShadowOutline& outline, double v, const Interval& stretch,

@@ -30,8 +30,9 @@ constexpr double range_share = 0.2;
 /// win with so much less.
 constexpr double optimism = 0.9;
 
-/// A better plan is worth a direct flight from this relative gain on.
-constexpr double least_gain = 1e-3;
+/// While the search goes on a better plan is worth a direct flight from this relative gain on; at its end any is.
+constexpr double worthwhile_gain = 5e-3;
+constexpr double any_gain = 1e-6;
 
 /// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
 /// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
@@ -67,16 +68,17 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
 ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
     if (iterations_ == 0 && space_.is_near_goal(tree_.root().configuration)) {
         try_hold(tree_.root());
-        review_holds();
+        review_holds(worthwhile_gain);
     }
     while (!terminated && !(max_iterations_ && iterations_ >= *max_iterations_)) {
         ++iterations_;
         grow();
-        review_holds();
+        review_holds(worthwhile_gain);
         if (observer_) {
             observer_();
         }
     }
+    review_holds(any_gain);
     return incumbent_ ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::TIMEOUT;
 }
 
@@ -184,7 +186,7 @@ void FlightTreePlanner::try_hold(FlightNode& node) {
     tree_.add_hold(node);
 }
 
-void FlightTreePlanner::review_holds() {
+void FlightTreePlanner::review_holds(double least_gain) {
     for (;;) {
         const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
         FlightNode* best = nullptr;

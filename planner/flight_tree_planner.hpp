@@ -46,7 +46,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     FlightNode* connect(const Configuration& to, const std::vector<FlightNode*>& neighbours);
     void rewire_through(FlightNode& node, std::vector<FlightNode*> neighbours);
     void try_hold(FlightNode& node);
-    void review_holds();
+    void review_holds(double least_gain);
     [[nodiscard]] std::size_t neighbour_count() const;
 
     FlightTree& tree_;

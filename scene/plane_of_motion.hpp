@@ -8,7 +8,7 @@ namespace downwash {
 /// The vertical plane in which the manipulator moves. A plane coordinate (x, z) is the world point
 /// origin + x (cos h, sin h, 0) + z (0, 0, 1); "lateral" is the distance to the left of the plane.
 class DOWNWASH_EXPORT PlaneOfMotion {
-   public:
+ public:
     PlaneOfMotion() : PlaneOfMotion({0, 0, 0}, 0) {}
     /// @param origin_m a world point of the plane  @param heading_rad of its x axis about the world's z
     PlaneOfMotion(const Vector3& origin_m, double heading_rad);
@@ -31,7 +31,7 @@ class DOWNWASH_EXPORT PlaneOfMotion {
         return {dx * cos_ + dy * sin_, -dx * sin_ + dy * cos_, p_m[2] - origin_m_[2]};
     }
 
-   private:
+ private:
     Vector3 origin_m_;
     double heading_rad_;
     double cos_;

@@ -17,7 +17,7 @@ struct Interval {
 
 /// The obstacles of the world, placed once and never changed; safe to share between threads.
 class DOWNWASH_EXPORT Scene {
-   public:
+ public:
     /// @throws InputError when a shape has a size that is not finite and positive, or an axis of no length
     explicit Scene(std::vector<Obstacle> obstacles);
     ~Scene();
@@ -50,7 +50,7 @@ class DOWNWASH_EXPORT Scene {
     struct Solids;
     [[nodiscard]] const Solids& solids() const noexcept;
 
-   private:
+ private:
     std::unique_ptr<const Solids> solids_;
 };
 

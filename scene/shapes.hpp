@@ -15,8 +15,8 @@ struct Box {
 
 /// A solid cylinder with flat ends, centred on its own frame.
 struct Cylinder {
-    double radius_m = 0;  ///< > 0
-    double length_m = 0;  ///< end to end along `axis`, > 0
+    double radius_m = 0;    ///< > 0
+    double length_m = 0;    ///< end to end along `axis`, > 0
     Vector3 axis{0, 0, 1};  ///< direction in the local frame; any length but zero
 };
 
@@ -45,10 +45,10 @@ struct BodyShape {
 /// What of the robot can touch something: the multirotor's bodies and the arm as a capsule.
 struct RobotShape {
     std::vector<BodyShape> bodies;
-    double joint_x_m = 0;       ///< arm joint in the body frame
-    double joint_z_m = 0;       ///< arm joint in the body frame
-    double arm_length_m = 0;    ///< joint to end effector
-    double arm_radius_m = 0;    ///< radius of the capsule around the arm
+    double joint_x_m = 0;     ///< arm joint in the body frame
+    double joint_z_m = 0;     ///< arm joint in the body frame
+    double arm_length_m = 0;  ///< joint to end effector
+    double arm_radius_m = 0;  ///< radius of the capsule around the arm
 };
 
 }  // namespace downwash

@@ -86,12 +86,13 @@ controllers::ControllerState<T> control(const TickModel& model, const State<T>& 
 
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
 /// @param factor callable (rotor, x_m, z_m) -> K, the surface effect at a rotor hub in the plane
-template <class T, class Factor>
+/// @param integrate callable (plant, state, command, dt, factor) -> state: dynamics::OneStep or dynamics::RefinedStep
+template <class T, class Factor, class Integrate = dynamics::OneStep>
 State<T> tick(const TickModel& model, const State<T>& state, const controllers::Setpoint<T>& reference,
-              const Factor& factor, TickRecord<T>& record) {
+              const Factor& factor, TickRecord<T>& record, const Integrate& integrate = {}) {
     State<T> next;
     next.controller = control(model, state, reference, record);
-    next.plant = dynamics::flight_step(model.plant, state.plant, record.command, T(model.tick_s), factor);
+    next.plant = integrate(model.plant, state.plant, record.command, T(model.tick_s), factor);
     return next;
 }
 

@@ -150,7 +150,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
             break;
         }
         fault = simulation::fly_ticks(
-            model.tick(), segment, factor, state,
+            model.tick(), segment, factor, dynamics::RefinedStep{}, state,
             [&](const FlightState& before, const ReferencePoint& at, const TickRecord<double>& record,
                 const FlightState& next, const ReferencePoint& next_reference) {
                 reference = next_reference;

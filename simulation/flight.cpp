@@ -54,7 +54,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
                        const ReferenceSegment& segment, FlightState& state, const Factor& factor) {
     SegmentFlight flight;
     flight.fault = simulation::fly_ticks(
-        model.tick(), segment, factor, state,
+        model.tick(), segment, factor, dynamics::OneStep{}, state,
         [&](const FlightState& before, const ReferencePoint&, const TickRecord<double>& record, const FlightState& next,
             const ReferencePoint& next_reference) {
             ++flight.ticks;

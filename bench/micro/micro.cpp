@@ -52,7 +52,7 @@ void fly_ticks(benchmark::State& state, const Factor& factor) {
     std::int64_t ticks = 0;
     for (auto _ : state) {
         FlightState vehicle = slot_start(bridge);
-        simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, vehicle,
+        simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, dynamics::OneStep{}, vehicle,
                               [](const auto&...) { return FlightFault::none; });
         benchmark::DoNotOptimize(vehicle);
         ticks += slot_segment().ticks();

@@ -34,11 +34,11 @@ TEST_CASE("The edge of a half plane covers a circular segment, whatever its dire
             const double y = s * radius * along[1];
             const double over = 1 + covered * (surface_factor(settings.ground, 0.8, 2) - 1);
             const double under = 1 + covered * (surface_factor(settings.ceiling, 0.8, 2) - 1);
-            REQUIRE(effect.factors({x, y, 0.8 * radius}).ground == Approx(over).margin(1e-4));
-            REQUIRE(effect.factors({x, y, -1 - 0.8 * radius}).ceiling == Approx(under).margin(1e-4));
+            REQUIRE(effect.factors({x, y, 0.8 * radius}).ground == Approx(over).epsilon(0).margin(1e-11));
+            REQUIRE(effect.factors({x, y, -1 - 0.8 * radius}).ceiling == Approx(under).epsilon(0).margin(1e-11));
             // Where the rotor plane cuts the slab the covered part counts as touching, on both sides.
-            REQUIRE(effect.factors({x, y, -0.5}).ground == Approx(1 + covered).margin(1e-3));
-            REQUIRE(effect.factors({x, y, -0.5}).ceiling == Approx(1 + covered).margin(1e-3));
+            REQUIRE(effect.factors({x, y, -0.5}).ground == Approx(1 + covered).epsilon(0).margin(1e-11));
+            REQUIRE(effect.factors({x, y, -0.5}).ceiling == Approx(1 + covered).epsilon(0).margin(1e-11));
         }
     }
 }
