@@ -1,29 +1,11 @@
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
+#include "../support/count_allocations.hpp"
 #include "downwash/aeromap/aero_map.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;
-
-namespace {
-thread_local long allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
+using test::allocations;
 
 TEST_CASE("Neither the direct effect nor a look-up allocates") {
     test::Random random(41);
