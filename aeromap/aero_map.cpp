@@ -16,7 +16,6 @@
 namespace downwash {
 namespace {
 
-constexpr double most_cells = 16777216;  // 2^24
 constexpr std::size_t rows_per_task = 8;
 
 bool is_range(double low, double high) {
@@ -77,19 +76,29 @@ void run_parallel(std::size_t count, int threads, const Task& task) {
     }
 }
 
+double cell_side_m(const AeroSettings& settings, double rotor_radius_m) {
+    const double parts = std::ceil(settings.grid_m / longest_cell_side_m(settings, rotor_radius_m));
+    return settings.grid_m / std::max(1.0, parts);
+}
+
 }  // namespace
+
+double map_cells(const AeroSettings& settings, double rotor_radius_m, const MapExtent& extent, std::size_t layers) {
+    const double cells_per_m = 1 / cell_side_m(settings, rotor_radius_m);
+    return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m) *
+           cells_over(extent.z_high_m - extent.z_low_m, cells_per_m) * static_cast<double>(layers);
+}
 
 AeroMap::AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
                  std::vector<double> lateral_offsets_m, int threads)
     : effect_(std::move(effect)), plane_(plane), extent_(extent), lateral_offsets_m_(std::move(lateral_offsets_m)) {
-    const double grid_m = effect_->settings().grid_m;
-    require_valid(grid_m, extent_, lateral_offsets_m_);
-    const double parts = std::ceil(grid_m / longest_cell_side_m(effect_->settings(), effect_->rotor_radius_m()));
-    cell_m_ = grid_m / std::max(1.0, parts);
+    const AeroSettings& settings = effect_->settings();
+    require_valid(settings.grid_m, extent_, lateral_offsets_m_);
+    cell_m_ = cell_side_m(settings, effect_->rotor_radius_m());
     cells_per_m_ = 1 / cell_m_;
     const double columns = cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_);
     const double rows = cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_);
-    if (!(columns * rows * static_cast<double>(lateral_offsets_m_.size()) <= most_cells)) {
+    if (!(map_cells(settings, effect_->rotor_radius_m(), extent_, lateral_offsets_m_.size()) <= most_map_cells)) {
         throw InputError(std::vector<Fault>{
             {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
     }
@@ -114,8 +123,7 @@ void AeroMap::build(int threads) {
     for (std::size_t task = 0; task < parts.size(); ++task) {
         Layer& layer = layers_[task / tasks_per_layer];
         std::size_t node = layer.nodes.size();
-        for (std::size_t c = 0; c < parts[task].steps.size(); ++c) {
-            const CellSteps steps = parts[task].steps[c];
+        for (const CellSteps& steps : parts[task].steps) {
             layer.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
             node += std::size_t{steps.x + 1U} * (steps.z + 1U);
         }

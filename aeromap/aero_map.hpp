@@ -16,6 +16,13 @@ struct MapExtent {
     double z_low_m = 0, z_high_m = 0;
 };
 
+/// Cells that a map would have, all layers together. A cell is grid_m or a whole part of it, as steep models need.
+[[nodiscard]] DOWNWASH_EXPORT double map_cells(const AeroSettings& settings, double rotor_radius_m,
+                                               const MapExtent& extent, std::size_t layers);
+
+/// The most cells a map may have: 2^24, some hundred megabytes.
+inline constexpr double most_map_cells = 16777216;
+
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 

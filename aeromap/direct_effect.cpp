@@ -59,8 +59,6 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
     : scene_(std::move(scene)),
       settings_(settings),
       radius_m_(rotor_radius_m),
-      ground_kink_m_(-1),
-      ceiling_kink_m_(-1),
       footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {
     require_valid(settings, rotor_radius_m);
     ground_kink_m_ = radius_m_ * kink_of(settings.ground, settings.max_factor);

@@ -46,7 +46,7 @@ class DOWNWASH_EXPORT DirectEffect {
     std::shared_ptr<const Scene> scene_;
     AeroSettings settings_;
     double radius_m_;
-    double ground_kink_m_, ceiling_kink_m_;  ///< distances at which the models meet their cap
+    double ground_kink_m_ = -1, ceiling_kink_m_ = -1;  ///< distances at which the models meet their cap
     std::shared_ptr<const std::vector<Footprint>> footprints_;
 };
 

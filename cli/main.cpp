@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -96,6 +98,9 @@ int main(int argc, char** argv) {
         code = downwash::cli::run(argc, argv);
     } catch (const downwash::ProblemFileError& error) {
         fmt::print(stderr, "{}\n", error.what());
+    } catch (const std::logic_error& error) {
+        fmt::print(stderr, "downwash: this is a bug in downwash, please report it: {}\n", error.what());
+        std::abort();
     } catch (const std::exception& error) {
         fmt::print(stderr, "downwash: {}\n", error.what());
     }

@@ -78,9 +78,6 @@ void PlannerOptions::apply(Problem& problem) const {
             refuse(error.faults());
         }
     }
-    if (refused.empty() && !given_.empty()) {
-        refuse(problem_faults(problem));
-    }
     if (!refused.empty()) {
         throw UsageError(refused);
     }

@@ -15,7 +15,7 @@ class PlannerOptions {
     void add_to(CLI::App& command);
 
     /// Writes what was given over the file's settings.
-    /// @throws UsageError with every option that is out of range, or that makes the problem impossible
+    /// @throws UsageError with every option that is no value for its key or out of range
     void apply(Problem& problem) const;
 
  private:

@@ -37,8 +37,7 @@ std::string announcement(const Problem& problem) {
 
 ExitCode run(const SolveArguments& arguments) {
     const Interruption interruption;
-    Problem problem = read_problem(arguments.problem);
-    arguments.planner.apply(problem);
+    const Problem problem = read_problem(arguments.problem, [&](Problem& read) { arguments.planner.apply(read); });
     const OutputFolder folder(arguments.out ? std::filesystem::path(*arguments.out) : default_folder(problem));
 
     SolveOptions options;

@@ -44,7 +44,7 @@ struct Demand {
 template <class T>
 struct ControlStep {
     Demand<T> demand;
-    ControllerState<T> integrated;  ///< next memory when the demand can be met
+    ControllerState<T> integrated;  ///< next memory when the demand can be met; a clipped tilt stops x and z already
     ControllerState<T> frozen;      ///< next memory when it was clipped: integrators stand still (anti-windup)
     dynamics::Attitude<T> attitude;
     dynamics::EquationsOfMotion<T> equations;
@@ -109,8 +109,9 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     const T force_x = mass * v[0] + arm_mass * e.arm_x * v7 + e.bias[0];
     const T force_z = mass * v[1] + arm_mass * e.arm_z * v7 + e.bias[1];
     const T least_force_z(gains.min_vertical_force_ratio * model.total_mass_kg * standard_gravity_m_s2);
-    const T pitch_reference = lane::clamp(lane::atan2(force_x, lane::max(force_z, least_force_z)),
-                                          T(-gains.max_tilt_rad), T(gains.max_tilt_rad));
+    const T wanted_pitch = lane::atan2(force_x, lane::max(force_z, least_force_z));
+    const T pitch_reference = lane::clamp(wanted_pitch, T(-gains.max_tilt_rad), T(gains.max_tilt_rad));
+    const auto is_force_clipped = lane::max(lane::abs(wanted_pitch - pitch_reference), least_force_z - force_z) > T(0);
     step.demand.thrust_n = force_x * a.sin_pitch + force_z * a.cos_pitch;
 
     // K5^-1: pitch rate reference, from a filtered backward difference of the pitch reference.
@@ -139,8 +140,9 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
 
     step.integrated = step.frozen;
     for (int i = 0; i < 2; ++i) {
-        step.integrated.position_integral[i] = integrate(gains.position_ki, gains.position_integral_limit_m_s2,
-                                                         memory.position_integral[i], error[i], tick_s);
+        const T integral = integrate(gains.position_ki, gains.position_integral_limit_m_s2, memory.position_integral[i],
+                                     error[i], tick_s);
+        step.integrated.position_integral[i] = lane::select(is_force_clipped, memory.position_integral[i], integral);
     }
     step.integrated.pitch_rate_integral = integrate(gains.attitude_kiu5, gains.attitude_integral_limit_rad_s2,
                                                     memory.pitch_rate_integral, rate_error, tick_s);

@@ -12,14 +12,6 @@
 namespace downwash::planning {
 namespace {
 
-ReferencePoint at_rest(const Configuration& c) {
-    ReferencePoint point;
-    point.position[0] = c.x_m;
-    point.position[1] = c.z_m;
-    point.position[2] = c.arm_rad;
-    return point;
-}
-
 bool is_at_rest(const ReferencePoint& point) {
     return point == at_rest({point.position[0], point.position[1], point.position[2]});
 }
@@ -51,6 +43,11 @@ std::string cause_of(FlightFault fault) {
     throw std::logic_error("a flight without fault has no cause of refusal");
 }
 
+std::map<std::string, std::uint64_t> no_rejections() {
+    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},  {"tracking", 0},
+            {"unstable", 0},  {"bounds", 0},       {"goal_missed", 0}, {"direct_flight", 0}};
+}
+
 FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map)
     : problem_(problem),
       model_(model),
@@ -61,17 +58,11 @@ FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const S
     rules_.margin_m = problem.planner.safety_margin_m;
     rules_.bounds = problem.bounds;
     rules_.measures_clearance = problem.planner.objective == Objective::clearance;
-    for (const char* cause : {"collision", "flyable_area", "saturation", "tracking", "unstable", "bounds",
-                              "goal_missed", "direct_flight"}) {
-        statistics_.rejected[cause] = 0;
-    }
+    statistics_.rejected = no_rejections();
     FlightNode root;
     const Start& start = problem.start;
     root.configuration = {start.x_m, start.z_m, start.arm_rad};
-    root.reference = at_rest(root.configuration);
-    root.reference.velocity[0] = start.vx_m_s;
-    root.reference.velocity[1] = start.vz_m_s;
-    root.reference.velocity[2] = start.arm_rate_rad_s;
+    root.reference = reference_at(start);
     root.state = start_state(model, start);
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
 }
@@ -104,22 +95,27 @@ ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferenceP
     return {from.reference, to, ticks, model_.tick().tick_s};
 }
 
-bool FlightTree::reference_is_clear(const ReferenceSegment& segment) {
+FlightFault FlightTree::reference_fault(const ReferenceSegment& segment) {
     // A flight follows its reference to a few centimetres, so a reference that collides is not worth flying.
     constexpr double spacing_m = 0.1;
     const ReferencePoint& a = segment.from();
     const ReferencePoint& b = segment.to();
-    const double motion_m = std::abs(b.position[0] - a.position[0]) + std::abs(b.position[1] - a.position[1]) +
-                            problem_.robot.arm.length_m * std::abs(b.position[2] - a.position[2]);
+    const double end_to_end_m = std::abs(b.position[0] - a.position[0]) + std::abs(b.position[1] - a.position[1]) +
+                                problem_.robot.arm.length_m * std::abs(b.position[2] - a.position[2]);
+    const double by_speed_m =
+        (std::abs(a.velocity[0]) + std::abs(a.velocity[1]) + problem_.robot.arm.length_m * std::abs(a.velocity[2])) *
+        segment.duration_s();  // a moving start may overshoot the line
+    const double motion_m = end_to_end_m + by_speed_m;
     const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
     for (std::int64_t i = samples; i >= 1; --i) {  // from the new end, where obstacles are likelier
         const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
         ++statistics_.states_checked;
-        if (!space_.is_valid({p.position[0], p.position[1], p.position[2]})) {
-            return false;
+        const FlightFault fault = space_.fault_at({p.position[0], p.position[1], p.position[2]});
+        if (fault != FlightFault::none) {
+            return fault;
         }
     }
-    return true;
+    return FlightFault::none;
 }
 
 bool FlightTree::accepted(const SegmentFlight& flight) {
@@ -161,8 +157,9 @@ std::optional<FlightTree::Flown> FlightTree::fly_to(const FlightNode& from, cons
 
 std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const Configuration& to) {
     const std::int64_t ticks = shortest_ticks(from.reference, at_rest(to), limits_, model_.tick().tick_s);
-    if (!reference_is_clear(segment_to(from, at_rest(to), ticks))) {
-        count_rejection("collision");
+    const FlightFault fault = reference_fault(segment_to(from, at_rest(to), ticks));
+    if (fault != FlightFault::none) {
+        count_rejection(cause_of(fault));
         return std::nullopt;
     }
     return fly_to(from, to, ticks);
@@ -187,6 +184,10 @@ std::optional<FlightTree::Flown> FlightTree::fly_hold(const FlightNode& from) {
     const std::int64_t judged = std::min<std::int64_t>(ticks, std::llround(goal_settling_s / tick_s));
     const PlantModel& plant = model_.tick().plant;
     Flown result{from.configuration, ticks, from.state, from.cost};
+    if (ticks <= judged && !meets_goal(problem_.goal, plant, result.state)) {
+        count_rejection("goal_missed");
+        return std::nullopt;
+    }
     // The last second is flown tick by tick, as the goal has to be met in each of them.
     std::int64_t remaining = ticks;
     ++statistics_.edges;
@@ -276,11 +277,12 @@ Plan FlightTree::plan_to(const FlightNode& node) const {
     }
     Plan plan;
     plan.tick_s = model_.tick().tick_s;
+    std::reverse(way.begin(), way.end());
     std::int64_t tick = 0;
-    for (auto n = way.rbegin(); n != way.rend(); ++n) {
-        tick += (*n)->ticks;
-        plan.waypoints.push_back({(*n)->configuration.x_m, (*n)->configuration.z_m, (*n)->configuration.arm_rad});
-        plan.reference.push_back({tick, (*n)->reference});
+    for (const FlightNode* n : way) {
+        tick += n->ticks;
+        plan.waypoints.push_back({n->configuration.x_m, n->configuration.z_m, n->configuration.arm_rad});
+        plan.reference.push_back({tick, n->reference});
     }
     return plan;
 }
@@ -290,11 +292,12 @@ void FlightTree::verify(const FlightNode& node) const {
     for (const FlightNode* n = &node; n->parent != nullptr; n = n->parent) {
         way.push_back(n);
     }
+    std::reverse(way.begin(), way.end());
     FlightState state = nodes_.front().state;
-    for (auto n = way.rbegin(); n != way.rend(); ++n) {
-        const ReferenceSegment segment = segment_to(*(*n)->parent, (*n)->reference, (*n)->ticks);
+    for (const FlightNode* n : way) {
+        const ReferenceSegment segment = segment_to(*n->parent, n->reference, n->ticks);
         const SegmentFlight flight = fly(model_, map_, rules_, segment, state);
-        if (flight.fault != FlightFault::none || !same_bytes(state, (*n)->state)) {
+        if (flight.fault != FlightFault::none || !same_bytes(state, n->state)) {
             throw std::logic_error("re-flying a plan did not reproduce the search tree bit for bit");
         }
     }

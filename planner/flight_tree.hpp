@@ -87,7 +87,7 @@ class FlightTree {
  private:
     [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,
                                               std::int64_t ticks) const;
-    [[nodiscard]] bool reference_is_clear(const ReferenceSegment& segment);
+    [[nodiscard]] FlightFault reference_fault(const ReferenceSegment& segment);
     [[nodiscard]] std::optional<Flown> fly_to(const FlightNode& from, const Configuration& to, std::int64_t ticks);
     [[nodiscard]] std::optional<Flown> fly_hold(const FlightNode& from);
     [[nodiscard]] bool accepted(const SegmentFlight& flight);
@@ -105,6 +105,9 @@ class FlightTree {
     std::vector<FlightNode*> holds_;
     FlightStatistics statistics_;
 };
+
+/// A count of nothing for every cause of refusal.
+[[nodiscard]] std::map<std::string, std::uint64_t> no_rejections();
 
 /// The name under which a refusal is counted.
 [[nodiscard]] std::string cause_of(FlightFault fault);

@@ -112,8 +112,8 @@ void FlightTreePlanner::grow() {
     }
     const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
     const Configuration to = space_.steered(nearest, *aim, range_m_);
-    if (!space_.is_valid(to)) {
-        tree_.count_rejection("collision");
+    if (const FlightFault fault = space_.fault_at(to); fault != FlightFault::none) {
+        tree_.count_rejection(cause_of(fault));
         return;
     }
     const std::vector<FlightNode*> neighbours = tree_.nearest(to, neighbour_count());
@@ -155,7 +155,7 @@ FlightNode* FlightTreePlanner::connect(const Configuration& to, const std::vecto
         }
         auto flight = tree_.flown(*parent.node, space_.seen_from(parent.node->configuration, to));
         if (flight && (!best || flight->cost < best->cost)) {
-            best = std::move(flight);
+            best = flight;
             best_parent = parent.node;
         }
     }

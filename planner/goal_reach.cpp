@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "downwash/base/lane_math.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -25,7 +26,7 @@ std::array<Offset, 17> unit_disc() {
     for (std::size_t i = 0; i < 8; ++i) {
         const double angle = static_cast<double>(i) * turn_rad / 8;
         offsets[1 + i] = {0.5 * std::cos(angle), 0.5 * std::sin(angle)};
-        offsets[9 + i] = {0.99 * std::cos(angle), 0.99 * std::sin(angle)};
+        offsets[9 + i] = {usable_tolerance_share * std::cos(angle), usable_tolerance_share * std::sin(angle)};
     }
     return offsets;
 }
@@ -33,10 +34,6 @@ std::array<Offset, 17> unit_disc() {
 bool is_within(const Bounds& bounds, double x_m, double z_m) {
     return x_m >= bounds.x_low_m - rounding_m && x_m <= bounds.x_high_m + rounding_m &&
            z_m >= bounds.z_low_m - rounding_m && z_m <= bounds.z_high_m + rounding_m;
-}
-
-double wrapped(double angle_rad) {
-    return std::remainder(angle_rad, turn_rad);
 }
 
 CollisionChecker checker_of(const Problem& problem) {
@@ -51,7 +48,7 @@ bool arm_can_turn_to(const ArmParameters& arm, double angle_rad, double toleranc
     }
     const double middle = (arm.lower_limit_rad + arm.upper_limit_rad) / 2;
     const double half_range = (arm.upper_limit_rad - arm.lower_limit_rad) / 2;
-    return std::abs(wrapped(angle_rad - middle)) <= half_range + tolerance_rad + rounding_m;
+    return std::abs(lane::wrap_angle(angle_rad - middle)) <= half_range + tolerance_rad + rounding_m;
 }
 
 double missing_reach_m(const Problem& problem) {
@@ -80,7 +77,8 @@ Reach reach_of_end_effector(const Problem& problem) {
         // Counted from the wanted direction, so that this one is tried whatever it is.
         const double angle_rad = goal.direction_rad.value_or(0) + k * turn_rad / arm_angles;
         const bool is_direction_right =
-            !goal.direction_rad || std::abs(wrapped(angle_rad - *goal.direction_rad)) <= goal.direction_tolerance_rad;
+            !goal.direction_rad ||
+            std::abs(lane::wrap_angle(angle_rad - *goal.direction_rad)) <= goal.direction_tolerance_rad;
         if (!is_direction_right || !arm_can_turn_to(arm, angle_rad, 0)) {
             continue;
         }
@@ -108,7 +106,7 @@ bool has_clear_configuration(const Problem& problem) {
     }
     const CollisionChecker checker = checker_of(problem);
     for (const Offset& offset : unit_disc()) {
-        for (const double turned : {0.0, -0.5, 0.5, -0.99, 0.99}) {
+        for (const double turned : {0.0, -0.5, 0.5, -usable_tolerance_share, usable_tolerance_share}) {
             const PlanarPose pose{*goal.x_m + goal.tolerance_m * offset.x, *goal.z_m + goal.tolerance_m * offset.z, 0,
                                   *goal.arm_rad + goal.tolerance_rad * turned};
             if (!checker.is_nearer_than(pose, problem.planner.safety_margin_m)) {

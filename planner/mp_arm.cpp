@@ -27,21 +27,29 @@ class SeededRrtStar : public ompl::geometric::RRTstar {
         rng_.setLocalSeed(seed);
         setNearestNeighbors<ompl::NearestNeighborsLinear>();
     }
+
+    [[nodiscard]] std::size_t nodes() const { return nn_ ? nn_->size() : 0; }
 };
 
+/// Straight motions, and the hold as part of every motion that arrives at the goal.
 class GeometricObjective : public ob::OptimizationObjective {
  public:
-    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
-        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {}
+    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space,
+                       double hold_s)
+        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space), hold_s_(hold_s) {}
 
+    bool isSymmetric() const override { return false; }
     ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
     ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
-        return ob::Cost(free_air_cost_.of_motion(read(from, space_), read(to, space_)));
+        const Configuration end = read(to, space_);
+        const double hold = space_.is_near_goal(end) ? free_air_cost_.of_hold(end, hold_s_) : 0;
+        return ob::Cost(free_air_cost_.of_motion(read(from, space_), end) + hold);
     }
 
  private:
     const FreeAirCost& free_air_cost_;
     const SearchSpace& space_;
+    double hold_s_;
 };
 
 std::vector<Waypoint> unwrapped(const ompl::geometric::PathGeometric& path, const SearchSpace& space,
@@ -64,17 +72,6 @@ double cost_of(const std::vector<Waypoint>& waypoints, const FreeAirCost& cost, 
         sum += cost.of_motion(at(i - 1), at(i));
     }
     return sum + cost.of_hold(at(waypoints.size() - 1), hold_s);
-}
-
-ReferencePoint reference_of(const Start& start) {
-    ReferencePoint point;
-    point.position[0] = start.x_m;
-    point.position[1] = start.z_m;
-    point.position[2] = start.arm_rad;
-    point.velocity[0] = start.vx_m_s;
-    point.velocity[1] = start.vz_m_s;
-    point.velocity[2] = start.arm_rate_rad_s;
-    return point;
 }
 
 }  // namespace
@@ -100,8 +97,9 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
                                    Random& random, const GeometricHooks& hooks) {
     const QuietOmpl quiet;
     QueryCounts counts;
-    // A motion is checked so densely that the margin covers what happens between two checks.
-    const double step_m = std::clamp(2 * problem.planner.safety_margin_m, 0.02, 0.1);
+    // A motion is checked so densely that the margin covers what happens between two checks; without a margin a corner
+    // may be cut by 2.5 mm.
+    const double step_m = std::clamp(2 * problem.planner.safety_margin_m, 0.005, 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
     const FreeAirCost free_air_cost(problem, model, space);
     const Configuration start{problem.start.x_m, problem.start.z_m, problem.start.arm_rad};
@@ -112,31 +110,34 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     write(start, start_state.get(), space);
     definition->addStartState(start_state);
     definition->setGoal(make_goal_region(information, space, random));
-    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
+    definition->setOptimizationObjective(
+        std::make_shared<GeometricObjective>(information, free_air_cost, space, hold_s));
 
     const auto planner = std::make_shared<SeededRrtStar>(information, problem.planner.seed);
     planner->setProblemDefinition(definition);
     planner->setup();
     definition->setIntermediateSolutionCallback(
-        [&](const ob::Planner*, const std::vector<const ob::State*>& states, const ob::Cost cost) {
-            const Configuration end = states.empty() ? start : read(states.front(), space);
-            hooks.on_improvement(cost.value() + free_air_cost.of_hold(end, hold_s), planner->numIterations());
+        [&](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost) {
+            hooks.on_improvement(planner->bestCost().value(), planner->numIterations());
         });
-    planner->solve(ob::PlannerTerminationCondition([&] { return hooks.is_over(planner->numIterations()); }));
+    planner->solve(ob::PlannerTerminationCondition([&] {
+        return hooks.is_over({planner->numIterations(), planner->nodes(), counts.refused()});
+    }));
 
     GeometricResult result;
     result.iterations = planner->numIterations();
     result.states_checked = counts.states;
-    result.collisions = counts.refused_states + counts.refused_motions;
+    result.refused_collision = counts.refused_collision;
+    result.refused_bounds = counts.refused_bounds;
     if (definition->getSolutionPath() != nullptr) {
         const auto* path = definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
         const std::vector<Waypoint> waypoints = unwrapped(*path, space, start);
         const bool is_exact = definition->hasExactSolution();
         if (is_exact || waypoints.size() > 1) {
             result.status = is_exact ? Status::solved : Status::approximate;
-            result.plan = timed_plan(waypoints, reference_of(problem.start), reference_limits(problem.motion),
+            result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
                                      model.tick().tick_s);
-            result.cost = cost_of(waypoints, free_air_cost, hold_s);
+            result.cost = is_exact ? planner->bestCost().value() : cost_of(waypoints, free_air_cost, hold_s);
         }
     }
     return result;

@@ -16,13 +16,19 @@ struct GeometricResult {
     double cost = 0;  ///< estimate of the variant: level hover along the reference and through the hold
     std::uint64_t iterations = 0;
     std::uint64_t states_checked = 0;
-    std::uint64_t collisions = 0;  ///< refused states and motions
+    std::uint64_t refused_collision = 0;
+    std::uint64_t refused_bounds = 0;
+};
+
+/// A glance at a running geometric search.
+struct GeometricProgress {
+    std::uint64_t iteration, nodes, refused;
 };
 
 /// What a geometric search is told and asked while it runs.
 struct GeometricHooks {
-    /// Asked in every iteration with its number.
-    std::function<bool(std::uint64_t iteration)> is_over;
+    /// Asked in every iteration.
+    std::function<bool(const GeometricProgress&)> is_over;
     /// Told of every better path.
     std::function<void(double cost, std::uint64_t iteration)> on_improvement;
 };

@@ -86,12 +86,7 @@ class Validity : public ob::StateValidityChecker {
     Validity(const ob::SpaceInformationPtr& information, const SearchSpace& space, QueryCounts& counts)
         : ob::StateValidityChecker(information), space_(space), counts_(counts) {}
 
-    bool isValid(const ob::State* state) const override {
-        ++counts_.states;
-        const bool is_valid = space_.is_valid(read(state, space_));
-        counts_.refused_states += is_valid ? 0 : 1;
-        return is_valid;
-    }
+    bool isValid(const ob::State* state) const override { return counts_.note(space_.fault_at(read(state, space_))); }
 
  private:
     const SearchSpace& space_;
@@ -119,9 +114,7 @@ class StraightMotion : public ob::MotionValidator {
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
             const Configuration c = between(a, b, static_cast<double>(i) / steps);
-            ++counts_.states;
-            if (!space_.is_valid(c)) {
-                ++counts_.refused_motions;
+            if (!counts_.note(space_.fault_at(c))) {
                 last_valid.second = static_cast<double>(i - 1) / steps;
                 if (last_valid.first != nullptr) {
                     si_->getStateSpace()->interpolate(from, to, last_valid.second, last_valid.first);
@@ -162,6 +155,13 @@ class GoalRegion : public ob::GoalSampleableRegion {
 
 }  // namespace
 
+bool QueryCounts::note(FlightFault fault) noexcept {
+    ++states;
+    refused_collision += fault == FlightFault::collision ? 1 : 0;
+    refused_bounds += fault == FlightFault::bounds ? 1 : 0;
+    return fault == FlightFault::none;
+}
+
 void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
     auto* compound = state->as<ob::CompoundState>();
     auto* position = compound->as<Position>(0);
@@ -187,7 +187,7 @@ ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random&
     states->setStateSamplerAllocator([&space, &random](const ob::StateSpace* s) -> ob::StateSamplerPtr {
         return std::make_shared<Sampler>(s, space, random);
     });
-    const auto information = std::make_shared<ob::SpaceInformation>(states);
+    auto information = std::make_shared<ob::SpaceInformation>(states);
     information->setStateValidityChecker(std::make_shared<Validity>(information, space, counts));
     information->setMotionValidator(std::make_shared<StraightMotion>(information, space, motion_step_m, counts));
     information->setup();

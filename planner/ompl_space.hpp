@@ -17,8 +17,12 @@ namespace downwash::planning {
 /// Counts of what OMPL's planners asked.
 struct QueryCounts {
     std::uint64_t states = 0;
-    std::uint64_t refused_states = 0;
-    std::uint64_t refused_motions = 0;
+    std::uint64_t refused_collision = 0;  ///< states and motions
+    std::uint64_t refused_bounds = 0;
+
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_collision + refused_bounds; }
+    /// Counts a query and says whether it found nothing wrong.
+    bool note(FlightFault fault) noexcept;
 };
 
 /// Space information over (x, z) and the arm (a circle, or an interval where it has limits) with sampler, validity and

@@ -4,18 +4,19 @@
 #include <set>
 #include <string>
 
+#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/planner/goal_reach.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/problem_parameters.hpp"
 #include "downwash/scene/collision_checker.hpp"
+#include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double largest_map_cells = 2e7;  ///< some hundred megabytes
 constexpr double degrees_per_radian = 57.29577951308232;
 
 std::string rounded(double value) {
@@ -59,14 +60,16 @@ std::vector<Fault> shapeless_cylinders(const Problem& p) {
 }
 
 std::vector<Fault> too_large_map(const Problem& p) {
-    const double columns = (p.bounds.x_high_m - p.bounds.x_low_m) / p.aero.grid_m;
-    const double rows = (p.bounds.z_high_m - p.bounds.z_low_m) / p.aero.grid_m;
-    if (!p.aero.enabled || columns * rows <= largest_map_cells) {
+    if (!p.aero.enabled) {
         return {};
     }
-    const double finest_m = p.aero.grid_m * std::sqrt(columns * rows / largest_map_cells);
-    return {{"aero.grid_m", "makes a map of " + rounded(columns * rows) + " cells over the bounds: expected at least " +
-                                rounded(std::ceil(finest_m * 1000) / 1000) + " m, or narrower bounds"}};
+    const double cells = map_cells(p.aero, p.robot.rotors.radius_m, rotor_extent(p.robot.rotors, p.bounds),
+                                   lateral_offsets_m(p.robot.rotors).size());
+    if (cells <= most_map_cells) {
+        return {};
+    }
+    return {{"aero.grid_m", "makes a map of " + rounded(cells) + " cells over the bounds: expected at most " +
+                                rounded(most_map_cells) + "; choose a coarser grid or narrower bounds"}};
 }
 
 std::vector<Fault> start_outside_bounds(const Problem& p) {
@@ -231,7 +234,7 @@ const std::array<Check<Problem>, 14> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
-    {{"environment.bounds", "aero"}, too_large_map},
+    {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
     {{"environment.bounds", "start"}, start_outside_bounds},
     {{"start", "motion"}, start_too_fast},
     {{"start.arm_deg", "robot.arm"}, start_beyond_arm_limits},

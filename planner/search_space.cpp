@@ -9,6 +9,22 @@
 
 namespace downwash::planning {
 
+ReferencePoint at_rest(const Configuration& c) noexcept {
+    ReferencePoint point;
+    point.position[0] = c.x_m;
+    point.position[1] = c.z_m;
+    point.position[2] = c.arm_rad;
+    return point;
+}
+
+ReferencePoint reference_at(const Start& start) noexcept {
+    ReferencePoint point = at_rest({start.x_m, start.z_m, start.arm_rad});
+    point.velocity[0] = start.vx_m_s;
+    point.velocity[1] = start.vz_m_s;
+    point.velocity[2] = start.arm_rate_rad_s;
+    return point;
+}
+
 double travel_m(const Configuration& a, const Configuration& b) noexcept {
     const double dx = b.x_m - a.x_m;
     const double dz = b.z_m - a.z_m;
@@ -91,22 +107,36 @@ std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& 
 }
 
 Configuration SearchSpace::moved_to_goal(Configuration c, Random& random) const {
+    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance: where an
+    // obstacle, a bound or a limit stands at the goal, only those can do.
+    const double share = random.chance(0.5) ? usable_tolerance_share : 0;
+    double dx = random.uniform(-1, 1);
+    double dz = random.uniform(-1, 1);
+    const double stretch = share * tolerance_m() / std::max(1.0, std::sqrt(dx * dx + dz * dz));
+    dx *= stretch;
+    dz *= stretch;
+    const double turn = usable_tolerance_share * tolerance_rad() * random.uniform(-1, 1);
     if (goal_.end_effector) {
         const EndEffectorGoal& goal = *goal_.end_effector;
         if (goal.direction_rad) {
-            const double half = 0.5 * goal.direction_tolerance_rad;
-            c.arm_rad = into_arm_range(*goal.direction_rad + random.uniform(-half, half));
+            c.arm_rad = into_arm_range(*goal.direction_rad + turn);
         }
         const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
         const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
-        c.x_m = goal.x_m - tip.x;
-        c.z_m = goal.z_m - tip.z;
+        c.x_m = goal.x_m + dx - tip.x;
+        c.z_m = goal.z_m + dz - tip.z;
         return c;
     }
     const ConfigurationGoal& goal = *goal_.configuration;
-    c.x_m = goal.x_m.value_or(c.x_m);
-    c.z_m = goal.z_m.value_or(c.z_m);
-    c.arm_rad = goal.arm_rad ? into_arm_range(*goal.arm_rad) : c.arm_rad;
+    if (goal.x_m) {
+        c.x_m = *goal.x_m + dx;
+    }
+    if (goal.z_m) {
+        c.z_m = *goal.z_m + dz;
+    }
+    if (goal.arm_rad) {
+        c.arm_rad = into_arm_range(*goal.arm_rad + (share > 0 ? turn : 0));
+    }
     return c;
 }
 
@@ -127,20 +157,27 @@ GoalError SearchSpace::error(const Configuration& c) const {
 }
 
 bool SearchSpace::is_near_goal(const Configuration& c) const {
-    GoalError doubled = error(c);
-    doubled.distance_m *= 2;
-    doubled.angle_rad *= 2;
-    return is_met(goal_, doubled);
+    // A hair more than the share: samples right at its rim shall count.
+    constexpr double share = usable_tolerance_share + 1e-6;
+    const GoalError e = error(c);
+    return is_met(goal_, {e.distance_m / share, e.angle_rad / share});
+}
+
+double SearchSpace::tolerance_m() const noexcept {
+    return goal_.end_effector ? goal_.end_effector->tolerance_m : goal_.configuration->tolerance_m;
+}
+
+double SearchSpace::tolerance_rad() const noexcept {
+    return goal_.end_effector ? goal_.end_effector->direction_tolerance_rad : goal_.configuration->tolerance_rad;
 }
 
 double SearchSpace::goal_distance_m(const Configuration& c) const {
+    if (is_near_goal(c)) {
+        return 0;
+    }
     const GoalError e = error(c);
-    const bool by_tip = goal_.end_effector.has_value();
-    const double tolerance_m = by_tip ? goal_.end_effector->tolerance_m : goal_.configuration->tolerance_m;
-    const double tolerance_rad =
-        by_tip ? goal_.end_effector->direction_tolerance_rad : goal_.configuration->tolerance_rad;
-    return std::max(0.0, e.distance_m - 0.5 * tolerance_m) +
-           arm_weight_m() * std::max(0.0, e.angle_rad - 0.5 * tolerance_rad);
+    return std::max(0.0, e.distance_m - usable_tolerance_share * tolerance_m()) +
+           arm_weight_m() * std::max(0.0, e.angle_rad - usable_tolerance_share * tolerance_rad());
 }
 
 bool SearchSpace::is_inside(const Configuration& c) const noexcept {
@@ -149,8 +186,12 @@ bool SearchSpace::is_inside(const Configuration& c) const noexcept {
            (!arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad));
 }
 
-bool SearchSpace::is_valid(const Configuration& c) const {
-    return is_inside(c) && !model_.collisions().is_nearer_than({c.x_m, c.z_m, 0, c.arm_rad}, margin_m_);
+FlightFault SearchSpace::fault_at(const Configuration& c) const {
+    if (!is_inside(c)) {
+        return FlightFault::bounds;
+    }
+    return model_.collisions().is_nearer_than({c.x_m, c.z_m, 0, c.arm_rad}, margin_m_) ? FlightFault::collision
+                                                                                       : FlightFault::none;
 }
 
 double SearchSpace::extent_m() const noexcept {

@@ -4,6 +4,7 @@
 
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/random.hpp"
+#include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::planning {
@@ -14,6 +15,12 @@ struct Configuration {
     double z_m = 0;
     double arm_rad = 0;
 };
+
+/// The reference at rest there.
+[[nodiscard]] ReferencePoint at_rest(const Configuration& configuration) noexcept;
+
+/// The reference at the start of a problem: the one point of a plan that may move.
+[[nodiscard]] ReferencePoint reference_at(const Start& start) noexcept;
 
 /// Straight distance of the vehicle's positions [m].
 [[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) noexcept;
@@ -65,15 +72,18 @@ class SearchSpace {
     /// Goal error of the level vehicle.
     [[nodiscard]] GoalError error(const Configuration& configuration) const;
 
-    /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within half
-    /// of each tolerance, the other half being left to the flight.
+    /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within the
+    /// usable share of each tolerance.
     [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
 
     /// Distance and angle to the goal as one length [m], 0 inside the goal region.
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
 
-    /// Whether the level vehicle there lies within the bounds and keeps the safety margin.
-    [[nodiscard]] bool is_valid(const Configuration& configuration) const;
+    /// What forbids the level vehicle there: `bounds` (or arm limits), `collision` with the safety margin, or `none`.
+    [[nodiscard]] FlightFault fault_at(const Configuration& configuration) const;
+    [[nodiscard]] bool is_valid(const Configuration& configuration) const {
+        return fault_at(configuration) == FlightFault::none;
+    }
 
     /// Largest distance between two configurations [m].
     [[nodiscard]] double extent_m() const noexcept;
@@ -83,6 +93,8 @@ class SearchSpace {
     /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
     [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
+    [[nodiscard]] double tolerance_m() const noexcept;
+    [[nodiscard]] double tolerance_rad() const noexcept;
 
     const FlightModel& model_;
     Bounds bounds_;

@@ -48,7 +48,7 @@ struct Improvement {
 
 /// How a search went.
 struct SearchRecord {
-    double wall_s = 0;                            ///< of the search itself
+    double wall_s = 0;                            ///< of the search, direct flights of better plans included
     double map_wall_s = 0;                        ///< spent on the aero map before it
     double flight_wall_s = 0;                     ///< spent on the direct flight of the reported plan
     std::optional<double> first_solution_wall_s;  ///< first plan that the planner's own model accepted

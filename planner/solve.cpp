@@ -74,11 +74,11 @@ class Search {
     double reported_s_ = 0;
 };
 
-/// Flies a plan with direct aerodynamics and notes how long that took.
-Execution fly_directly(const Problem& problem, const FlightModel& model, const Plan& plan, SearchRecord& record) {
+/// Flies a plan with direct aerodynamics and says how long that took.
+Execution fly_directly(const Problem& problem, const FlightModel& model, const Plan& plan, double& wall_s) {
     const Stopwatch clock;
     Execution execution = execute(model, start_state(model, problem.start), plan.reference, problem.goal, true);
-    record.flight_wall_s = clock.seconds();
+    wall_s = clock.seconds();
     return execution;
 }
 
@@ -88,9 +88,10 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     planning::Random random(problem.planner.seed);
     Search search(problem, options, solution);
     planning::GeometricHooks hooks;
-    hooks.is_over = [&](std::uint64_t iteration) {
-        search.report(iteration, iteration, 0);
-        return search.is_over() || (problem.planner.max_iterations && iteration >= *problem.planner.max_iterations);
+    hooks.is_over = [&](const planning::GeometricProgress& progress) {
+        search.report(progress.iteration, progress.nodes, progress.refused);
+        return search.is_over() ||
+               (problem.planner.max_iterations && progress.iteration >= *problem.planner.max_iterations);
     };
     hooks.on_improvement = [&](double cost, std::uint64_t iteration) {
         search.found_first(search.seconds());
@@ -101,7 +102,9 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     record.wall_s = search.seconds();
     record.iterations = result.iterations;
     record.states_checked = result.states_checked;
-    record.rejected["collision"] = result.collisions;
+    record.rejected = planning::no_rejections();
+    record.rejected["collision"] = result.refused_collision;
+    record.rejected["bounds"] = result.refused_bounds;
     solution.status = result.status;
     solution.plan = std::move(result.plan);
     solution.cost = result.cost;
@@ -120,11 +123,13 @@ void search_by_flights(const Problem& problem, const FlightModel& model, const S
     const auto accept = [&](const planning::Candidate& candidate) {
         search.found_first(search.seconds());
         if (is_aware) {
-            Execution flight = fly_directly(problem, model, candidate.plan, record);
+            double flight_wall_s = 0;
+            Execution flight = fly_directly(problem, model, candidate.plan, flight_wall_s);
             if (flight.outcome != Outcome::ok) {
                 return false;
             }
             solution.execution = std::move(flight);
+            record.flight_wall_s = flight_wall_s;
         }
         search.improved(candidate.cost, candidate.iteration);
         return true;
@@ -195,7 +200,7 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
-        solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning);
+        solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning.flight_wall_s);
     }
     if (solution.execution) {
         solution.execution_cost = cost_of(*solution.execution, solution.objective);

@@ -32,9 +32,12 @@ std::string to_text(const LocatedFault& fault) {
 ProblemFileError::ProblemFileError(std::vector<LocatedFault> faults)
     : std::runtime_error(joined(faults)), faults_(std::move(faults)) {}
 
-Problem read_problem(const std::filesystem::path& file) {
+Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust) {
     problems::TreeReader reader;
     reader.read_problem_file(file);
+    if (adjust) {
+        reader.adjust(adjust);
+    }
     if (!reader.is_full()) {
         reader.add(further_problem_faults(reader.problem(), reader.faulty_keys()));
     }

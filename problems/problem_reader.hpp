@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -34,8 +35,10 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
 
 /// Reads a problem and the robot that it refers to, whose path is relative to the problem's file.
 /// The result is complete and sound: problem_faults() finds nothing in it.
-/// @throws ProblemFileError with every fault that can be found in one reading (a hundred at most)
-[[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file);
+/// @param adjust changes values before the problem is checked as a whole, for example with set_parameter()
+/// @throws ProblemFileError with every fault that can be found in one reading (a hundred at most), and what adjust does
+[[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file,
+                                                   const std::function<void(Problem&)>& adjust = {});
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
 [[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ class TreeReader {
     void read_robot_file(const std::filesystem::path& file);
 
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
+    void adjust(const std::function<void(Problem&)>& change) { change(problem_); }
     /// Keys of which the problem has no trustworthy value.
     [[nodiscard]] const FaultyKeys& faulty_keys() const noexcept { return faulty_; }
     /// More faults are not worth reading.

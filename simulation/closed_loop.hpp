@@ -28,11 +28,12 @@ struct TickRecord {
     T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped
 };
 
-/// How far a demanded rotor thrust reaches towards its limits: 1 at either limit, more beyond.
+/// A demanded rotor thrust over the greatest; below the least thrust 1 and more, by how far it is missed.
 template <class T>
 T thrust_saturation(const PlantModel& plant, T demand_n) {
     const T span(plant.max_thrust_n - plant.min_thrust_n);
-    return lane::max(demand_n / T(plant.max_thrust_n), T(1) + (T(plant.min_thrust_n) - demand_n) / span);
+    const T below = T(plant.min_thrust_n) - demand_n;
+    return lane::select(below > T(0), T(1) + below / span, demand_n / T(plant.max_thrust_n));
 }
 
 /// What the controller expects of the rotors in the middle of the tick: the commands, or where a lag will have brought

@@ -49,6 +49,12 @@ class DOWNWASH_EXPORT FlightModel {
     std::size_t rotor_layer_[max_rotors] = {};
 };
 
+/// Every rotor position that a vehicle within the bounds can reach, at any pitch.
+[[nodiscard]] DOWNWASH_EXPORT MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
+
+/// The distinct distances of rotors to the left of the plane [m], in the order of the rotors.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<double> lateral_offsets_m(const RotorParameters& rotors);
+
 /// The pose whose collisions a state stands for.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {
     return {state.plant.q[0], state.plant.q[1], state.plant.q[2], state.plant.q[3]};

@@ -47,6 +47,9 @@ struct GoalError {
 /// Whether the error lies within the goal's tolerances.
 [[nodiscard]] DOWNWASH_EXPORT bool is_met(const Goal& goal, const GoalError& error);
 
+/// The share of each tolerance that a reference may use up while planning; the rest is left to the flight.
+inline constexpr double usable_tolerance_share = 0.9;
+
 /// The goal must be met over so long at the end of the hold [s], ...
 inline constexpr double goal_settling_s = 1.0;
 /// ... with the vehicle's centre of mass slower than this [m/s].

@@ -50,7 +50,7 @@ template <class Factor>
 void fly_ticks(benchmark::State& state, const Factor& factor) {
     const Bridge& bridge = Bridge::get();
     std::int64_t ticks = 0;
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         FlightState vehicle = slot_start(bridge);
         simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, dynamics::OneStep{}, vehicle,
                               [](const auto&...) { return FlightFault::none; });
@@ -96,7 +96,7 @@ std::vector<Query> random_queries(const Bounds& bounds) {
 void map_look_up(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
     const std::vector<Query> queries = random_queries(bridge.problem.bounds);
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         for (const Query& q : queries) {
             benchmark::DoNotOptimize(bridge.map->factor(0, q.x_m, q.z_m));
         }
@@ -108,7 +108,7 @@ BENCHMARK(map_look_up);
 void direct_effect(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
     const std::vector<Query> queries = random_queries(bridge.problem.bounds);
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         for (const Query& q : queries) {
             benchmark::DoNotOptimize(bridge.model->direct().factor({q.x_m, 0.32, q.z_m}));
         }
@@ -120,7 +120,7 @@ BENCHMARK(direct_effect);
 void collision_check(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
     const std::vector<Query> queries = random_queries(bridge.problem.bounds);
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         for (const Query& q : queries) {
             benchmark::DoNotOptimize(
                 bridge.model->collisions().is_nearer_than({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}, 0.05));
@@ -133,7 +133,7 @@ BENCHMARK(collision_check);
 void clearance(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
     const std::vector<Query> queries = random_queries(bridge.problem.bounds);
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         for (const Query& q : queries) {
             benchmark::DoNotOptimize(bridge.model->collisions().clearance_m({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}));
         }
@@ -144,7 +144,7 @@ BENCHMARK(clearance);
 
 void map_build(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         benchmark::DoNotOptimize(bridge.model->make_map(bridge.problem.bounds));
     }
     state.counters["MB"] = static_cast<double>(bridge.map->memory_bytes()) * 1e-6;
@@ -157,7 +157,7 @@ void edge(benchmark::State& state, bool is_aware) {
     FlightRules rules;
     rules.bounds = bridge.problem.bounds;
     std::int64_t ticks = 0;
-    for (auto _ : state) {
+    for ([[maybe_unused]] auto _ : state) {
         FlightState vehicle = slot_start(bridge);
         const SegmentFlight flight =
             fly(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, slot_segment(), vehicle);

@@ -10,7 +10,6 @@
 namespace {
 
 using downwash::allocation_has_full_rank;
-using downwash::make_plant_model;
 using downwash::max_rotors;
 using downwash::PlantModel;
 using downwash::standard_gravity_m_s2;

@@ -32,8 +32,8 @@ const Edit edits[] = {
     {"z_m: [0.5, 5]", "z_m: [5, 5]",
      "problem.yaml:5:31: environment.bounds.z_m is [low, high]: expected low below high"},
     {"x_m: [-6, 6], z_m: [0.5, 5]", "x_m: [-6000, 6000], z_m: [0.5, 50]",
-     "problem.yaml:9:1: aero.grid_m makes a map of 2.376e+08 cells over the bounds: expected at least 0.173 m, or "
-     "narrower bounds"},
+     "problem.yaml:9:1: aero.grid_m makes a map of 4.81e+08 cells over the bounds: expected at most 1.678e+07; "
+     "choose a coarser grid or narrower bounds"},
     {"x_m: 3, z_m: 2.5", "x_m: 9, z_m: 2.5",
      "problem.yaml:14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it "
      "by 1.7 m; widen environment.bounds or move the goal"},

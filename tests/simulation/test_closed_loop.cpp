@@ -323,10 +323,10 @@ TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the inte
     CHECK(swung.controller.pitch_rate_integral == 0);
 }
 
-TEST_CASE("Saturation is one at either limit of a rotor and greater beyond") {
+TEST_CASE("Saturation is the demand over the greatest thrust, and above one beyond either limit of a rotor") {
     const auto plant = plant_of(test_robot());
     CHECK(simulation::thrust_saturation(plant, 28.0) == 1);
-    CHECK(simulation::thrust_saturation(plant, 0.0) == 1);
+    CHECK(simulation::thrust_saturation(plant, 0.0) == 0);
     CHECK(simulation::thrust_saturation(plant, 14.0) == 0.5);
     CHECK(simulation::thrust_saturation(plant, 29.0) > 1);
     CHECK(simulation::thrust_saturation(plant, -1.0) > 1);

@@ -1,0 +1,78 @@
+#include <catch2/catch.hpp>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/flight_tree_planner.hpp"
+#include "downwash/planner/ompl_space.hpp"
+#include "downwash/planner/solve.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// Searches the ceiling problem, asking `accept` about every better plan.
+struct Search {
+    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> accept)
+        : planner(planning::make_space_information(space, random, 0.1, counts), tree, space, random,
+                  std::move(accept)) {
+        planner.set_max_iterations(iterations);
+        static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition([] { return false; })));
+    }
+
+    Problem problem = test::ceiling_problem();
+    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    planning::SearchSpace space{problem, *model};
+    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    planning::Random random{1};
+    planning::FlightTree tree{problem, *model, space, map.get()};
+    planning::QueryCounts counts;
+    planning::FlightTreePlanner planner;
+};
+
+}  // namespace
+
+TEST_CASE("a refused plan is counted and discarded, and the search goes on to another") {
+    std::vector<double> refused;
+    const auto accept = [&refused](const planning::Candidate& candidate) {
+        if (refused.size() < 3) {
+            refused.push_back(candidate.cost);
+            return false;
+        }
+        return true;
+    };
+    const Search search(300, accept);
+    CHECK(refused.size() == 3);
+    CHECK(search.tree.statistics().rejected.at("direct_flight") == 3);
+    REQUIRE(search.planner.incumbent());
+    CHECK(search.planner.iterations() == 300);
+}
+
+TEST_CASE("when every plan is refused there is none, however many were found") {
+    const Search search(60, [](const planning::Candidate&) { return false; });
+    CHECK(search.tree.statistics().rejected.at("direct_flight") > 1);
+    CHECK_FALSE(search.planner.incumbent());
+}
+
+TEST_CASE("a plan that was accepted stays, although cheaper ones are refused") {
+    int asked = 0;
+    double accepted = 0;
+    const auto only_the_first = [&](const planning::Candidate& candidate) {
+        if (++asked == 1) {
+            accepted = candidate.cost;
+            return true;
+        }
+        return false;
+    };
+    const Search search(200, only_the_first);
+    REQUIRE(asked > 1);
+    REQUIRE(search.planner.incumbent());
+    CHECK(search.planner.incumbent()->cost == accepted);
+}
+
+TEST_CASE("the tree can be read as OMPL's planner data") {
+    const Search search(40, [](const planning::Candidate&) { return true; });
+    ompl::base::PlannerData data(search.planner.getSpaceInformation());
+    search.planner.getPlannerData(data);
+    CHECK(data.numVertices() == search.tree.size());
+    CHECK(data.numEdges() == search.tree.size() - 1);
+    CHECK(data.numStartVertices() == 1);
+}
