@@ -1,34 +1,45 @@
-// Plans from C++ with an installed Downwash: read a problem, search until the first plan, ask how its flight went.
-// Usage: embed PROBLEM.yaml
+// Plans from C++ with an installed Downwash: a problem without any file, a stop token, progress, and the flight.
 
 #include <cstdio>
-#include <exception>
+#include <stop_token>
 
 #include <downwash/planner/solve.hpp>
-#include <downwash/problems/problem_reader.hpp>
 
-int main(int count, char** arguments) {
-    if (count != 2) {
-        std::fprintf(stderr, "usage: embed PROBLEM.yaml\n");
-        return 2;
+int main() {
+    using namespace downwash;
+    Problem problem;
+    Robot& robot = problem.robot;
+    robot.name = "quad-with-arm";
+    robot.multirotor = {.mass_kg = 4.5, .pitch_inertia_kg_m2 = 0.20};
+    robot.body = {{Box{{1.04, 1.04, 0.22}}, {0, 0, 0}}};
+    robot.rotors.radius_m = 0.1905;
+    robot.rotors.positions_m = {{0.32, 0.32, 0.06}, {0.32, -0.32, 0.06}, {-0.32, 0.32, 0.06}, {-0.32, -0.32, 0.06}};
+    robot.rotors.max_thrust_n = 28;
+    robot.rotors.power_coefficient_w_n1p5 = 3.15;
+    robot.arm = {.length_m = 1.2, .mass_kg = 0.45, .center_of_mass_m = 0.72, .inertia_kg_m2 = 0.06, .radius_m = 0.03};
+    robot.arm.max_torque_nm = 12;
+    robot.controller = {.position_kp = 2, .position_kd = 2.6, .position_ki = 0.4, .attitude_k5 = 8, .attitude_ku5 = 20};
+    robot.controller.arm_kp = 30;
+    robot.controller.arm_kd = 11;
+
+    problem.bounds = {.x_low_m = -6, .x_high_m = 6, .z_low_m = 0.5, .z_high_m = 5};
+    problem.obstacles = {{"ground", Box{{30, 20, 1}}, {0, 0, -0.5}}, {"ceiling", Box{{30, 8, 1}}, {0, 0, 5.5}}};
+    problem.start = {.x_m = -4, .z_m = 2, .arm_rad = 1.57};
+    problem.goal.end_effector = EndEffectorGoal{.x_m = 3, .z_m = 4.8, .direction_rad = {}};
+    problem.planner.max_iterations = 100;
+
+    std::stop_source interrupt;  // a mission planner would call interrupt.request_stop()
+    SolveOptions options;
+    options.stop = interrupt.get_token();
+    options.on_progress = [](const Progress& p) { std::printf("%.1f s: %zu nodes\n", p.wall_s, std::size_t(p.nodes)); };
+    const Solution solution = solve(problem, options);
+    if (solution.status != Status::solved) {
+        return 1;
     }
-    try {
-        const downwash::Problem problem = downwash::read_problem(arguments[1]);
-
-        downwash::SolveOptions options;
-        options.stop_at_first_solution = true;
-        const downwash::Solution solution = downwash::solve(problem, options);
-
-        if (solution.status != downwash::Status::solved || !solution.plan || !solution.execution) {
-            std::printf("%s: no plan within the limits\n", problem.name.c_str());
-            return 1;
-        }
-        const bool flown = solution.execution->outcome == downwash::Outcome::ok;
-        std::printf("%s: %zu waypoints, %.1f s of flight, %s\n", problem.name.c_str(), solution.plan->waypoints.size(),
-                    solution.plan->duration_s(), flown ? "flown to the goal" : "but its flight failed");
-        return flown ? 0 : 3;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 2;
-    }
+    const Execution& flight = *solution.execution;
+    const FlightRow& end = flight.rows.back();
+    std::printf("%zu corners, %.1f s, %.0f J, end effector at (%.2f, %.2f) m: %s\n", solution.plan->waypoints.size(),
+                flight.duration_s, flight.energy_j, end.end_effector_x_m, end.end_effector_z_m,
+                flight.outcome == Outcome::ok ? "held at the goal" : "failed");
+    return flight.outcome == Outcome::ok ? 0 : 3;
 }

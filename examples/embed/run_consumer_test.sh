@@ -44,14 +44,14 @@ for flags in '' '-march=native'; do
         cat "$work/log"
         exit 1
     }
-    "$work/embed/embed" "$problem"
+    "$work/embed/embed"
 done
 
 if command -v pkg-config >/dev/null; then
     echo "the example, built by way of pkg-config"
     read -ra flags < <(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --cflags --libs downwash)
     g++ -std=c++20 "$root/examples/embed/main.cpp" "${flags[@]}" -Wl,-rpath,"$prefix/lib" -o "$work/embed_pkg_config"
-    "$work/embed_pkg_config" "$problem"
+    "$work/embed_pkg_config"
 fi
 
 echo "the installed program"
