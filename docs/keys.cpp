@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <string>
+#include <vector>
 
 #include "downwash/planner/problem_parameters.hpp"
 
@@ -10,30 +11,56 @@ using namespace downwash;
 
 namespace {
 
+/// A problem in which every optional group and every shape stands once, with its defaults.
+Problem with_everything() {
+    Problem problem;
+    problem.goal.end_effector = EndEffectorGoal{};
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.obstacles = {{"", Box{}, {}, {}}, {"", Cylinder{}, {}, {}}, {"", Sphere{}, {}, {}}};
+    problem.robot.body = {{Box{}, {}}, {Cylinder{}, {}}, {Sphere{}, {}}};
+    return problem;
+}
+
+/// The list element in which a key has a value.
+std::size_t element_of(const std::string& path) {
+    return path.find(".cylinder.") != std::string::npos ? 1 : path.find(".sphere.") != std::string::npos ? 2 : 0;
+}
+
+std::string in_file_units(const std::string& path, double value) {
+    return fmt::format("{:.6g}", is_in_degrees(path) ? value * 57.29577951308232 : value);
+}
+
 std::string default_text(const Parameter<Problem>& parameter) {
+    static const Problem defaults = with_everything();
     if (parameter.required) {
         return "required";
     }
     if (parameter.exclusive) {
         return "one of its group";
     }
-    // Keys of lists and of things that may be absent have no value in an empty problem.
-    if (!parameter.get || parameter.path.find("[]") != std::string::npos || parameter.path.rfind("goal.", 0) == 0) {
+    if (!parameter.get) {
         return "";
     }
-    static const Problem defaults;
-    const Value value = parameter.get(defaults, 0);
+    const std::string& path = parameter.path;
+    const Value value = parameter.get(defaults, element_of(path));
     if (const auto* flag = std::get_if<bool>(&value)) {
         return *flag ? "true" : "false";
     }
     if (const auto* number = std::get_if<double>(&value)) {
-        return fmt::format("{:.6g}", is_in_degrees(parameter.path) ? *number * 57.29577951308232 : *number);
+        return in_file_units(path, *number);
     }
     if (const auto* integer = std::get_if<std::uint64_t>(&value)) {
         return fmt::format("{}", *integer);
     }
     if (const auto* text = std::get_if<std::string>(&value)) {
         return *text;
+    }
+    if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+        std::string text;
+        for (const double number : *list) {
+            text += (text.empty() ? "" : ", ") + in_file_units(path, number);
+        }
+        return "[" + text + "]";
     }
     return std::holds_alternative<std::monostate>(value) ? "null" : "";
 }

@@ -38,17 +38,19 @@ std::string cause_of(FlightFault fault) {
         case FlightFault::bounds:
             return "bounds";
         case FlightFault::none:
+        case FlightFault::interrupted:
             break;
     }
-    throw std::logic_error("a flight without fault has no cause of refusal");
+    throw std::logic_error("a flight that was not refused has no cause of refusal");
 }
 
 std::map<std::string, std::uint64_t> no_rejections() {
-    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},  {"tracking", 0},
-            {"unstable", 0},  {"bounds", 0},       {"goal_missed", 0}, {"direct_flight", 0}};
+    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},    {"tracking", 0}, {"unstable", 0},
+            {"bounds", 0},    {"goal_missed", 0},  {"direct_flight", 0}, {"too_long", 0}};
 }
 
-FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map)
+FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
+                       std::function<bool()> is_over)
     : problem_(problem),
       model_(model),
       space_(space),
@@ -57,6 +59,7 @@ FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const S
       free_air_cost_(problem, model, space) {
     rules_.margin_m = problem.planner.safety_margin_m;
     rules_.bounds = problem.bounds;
+    rules_.is_over = std::move(is_over);
     rules_.measures_clearance = problem.planner.objective == Objective::clearance;
     statistics_.rejected = no_rejections();
     FlightNode root;
@@ -121,6 +124,9 @@ FlightFault FlightTree::reference_fault(const ReferenceSegment& segment) {
 bool FlightTree::accepted(const SegmentFlight& flight) {
     statistics_.ticks += static_cast<std::uint64_t>(flight.ticks);
     statistics_.states_checked += static_cast<std::uint64_t>(flight.ticks);
+    if (flight.fault == FlightFault::interrupted) {
+        return false;
+    }
     if (flight.fault != FlightFault::none) {
         count_rejection(cause_of(flight.fault));
         return false;
@@ -157,6 +163,10 @@ std::optional<FlightTree::Flown> FlightTree::fly_to(const FlightNode& from, cons
 
 std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const Configuration& to) {
     const std::int64_t ticks = shortest_ticks(from.reference, at_rest(to), limits_, model_.tick().tick_s);
+    if (ticks > most_plan_ticks - from.ticks_from_start) {
+        count_rejection("too_long");
+        return std::nullopt;
+    }
     const FlightFault fault = reference_fault(segment_to(from, at_rest(to), ticks));
     if (fault != FlightFault::none) {
         count_rejection(cause_of(fault));
@@ -173,6 +183,7 @@ FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
     node.cost = flight.cost;
     node.parent = &parent;
     node.ticks = flight.ticks;
+    node.ticks_from_start = parent.ticks_from_start + flight.ticks;
     parent.children.push_back(&node);
     moving_.push_back(&node);
     return node;
@@ -236,17 +247,19 @@ bool FlightTree::rewire(FlightNode& node, FlightNode& parent) {
         FlightState state;
         double cost;
         std::int64_t ticks;
+        std::int64_t ticks_from_start;
         bool is_discarded;
     };
     std::vector<Before> changed;
-    const auto replace = [&changed](FlightNode& n, const Flown& by) {
-        changed.push_back({&n, n.state, n.cost, n.ticks, n.is_discarded});
+    const auto replace = [&changed](FlightNode& n, const FlightNode& from, const Flown& by) {
+        changed.push_back({&n, n.state, n.cost, n.ticks, n.ticks_from_start, n.is_discarded});
         n.state = by.state;
         n.cost = by.cost;
         n.ticks = by.ticks;
+        n.ticks_from_start = from.ticks_from_start + by.ticks;
         n.is_discarded = false;  // a new flight, a new chance
     };
-    replace(node, *flight);
+    replace(node, parent, *flight);
     for (std::size_t i = 0; i < changed.size(); ++i) {
         for (FlightNode* child : changed[i].node->children) {
             const FlightNode& from = *changed[i].node;
@@ -257,11 +270,12 @@ bool FlightTree::rewire(FlightNode& node, FlightNode& parent) {
                     before.node->state = before.state;
                     before.node->cost = before.cost;
                     before.node->ticks = before.ticks;
+                    before.node->ticks_from_start = before.ticks_from_start;
                     before.node->is_discarded = before.is_discarded;
                 }
                 return false;
             }
-            replace(*child, *again);
+            replace(*child, from, *again);
         }
     }
     std::erase(node.parent->children, &node);

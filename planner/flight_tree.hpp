@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -21,6 +22,7 @@ struct FlightNode {
     double cost = 0;              ///< of the flight from the start, in the objective's unit
     FlightNode* parent = nullptr;
     std::int64_t ticks = 0;  ///< length of the edge from the parent
+    std::int64_t ticks_from_start = 0;
     std::vector<FlightNode*> children;
     bool is_hold = false;       ///< the edge is the hold at the goal; such a node has no children
     bool is_discarded = false;  ///< a hold whose direct flight failed
@@ -40,7 +42,9 @@ struct FlightStatistics {
 class FlightTree {
  public:
     /// @param map surface effects of the planner's own model; nullptr for none
-    FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map);
+    /// @param is_over asked now and then within a flight; true ends it without a result
+    FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
+               std::function<bool()> is_over = {});
 
     [[nodiscard]] FlightNode& root() noexcept { return nodes_.front(); }
     [[nodiscard]] std::size_t size() const noexcept { return moving_.size(); }

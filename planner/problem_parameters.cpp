@@ -289,7 +289,8 @@ void add_planner(Rows& rows) {
         "planner.objective", "what a plan should keep small", objectives,
         [](auto& p) -> auto& { return p.planner.objective; }));
     rows.push_back(positive(
-        "planner.time_limit_s", "wall time of the search", 1e6,
+        "planner.time_limit_s",
+        "wall time of the search, map and last flight apart; null: 10 s, or none where max_iterations is set", 1e6,
         [](auto& p) -> auto& { return p.planner.time_limit_s; }));
     rows.push_back(parameters::integer<Problem>(
                        "planner.max_iterations", "limit for a run that is repeatable bit for bit",

@@ -32,6 +32,9 @@ struct Plan {
     }
 };
 
+/// Plans longer than this many control ticks, hold apart, are not looked for: an hour at 100 Hz.
+inline constexpr std::int64_t most_plan_ticks = 360000;
+
 /// What a search came to.
 enum class Status : std::uint8_t {
     none,         ///< not even a first step

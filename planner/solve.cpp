@@ -105,6 +105,12 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     record.rejected = planning::no_rejections();
     record.rejected["collision"] = result.refused_collision;
     record.rejected["bounds"] = result.refused_bounds;
+    if (result.plan && result.plan->reference.back().tick > most_plan_ticks) {
+        record.rejected["too_long"] = 1;
+        record.improvements.clear();
+        record.first_solution_wall_s.reset();
+        return;
+    }
     solution.status = result.status;
     solution.plan = std::move(result.plan);
     solution.cost = result.cost;
@@ -115,9 +121,9 @@ void search_by_flights(const Problem& problem, const FlightModel& model, const S
     const bool is_aware = problem.planner.variant == Variant::mp_arm_ada;
     const planning::SearchSpace space(problem, model);
     planning::Random random(problem.planner.seed);
-    planning::FlightTree tree(problem, model, space, map);
-    planning::QueryCounts counts;
     Search search(problem, options, solution);
+    planning::FlightTree tree(problem, model, space, map, [&search] { return search.is_over(); });
+    planning::QueryCounts counts;
     SearchRecord& record = solution.planning;
 
     const auto accept = [&](const planning::Candidate& candidate) {
@@ -198,10 +204,10 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
         }
         search_by_flights(problem, *model, options, map.get(), solution);
     }
-    solution.interrupted = options.stop.stop_requested();
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
         solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning.flight_wall_s);
     }
+    solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {
         solution.execution_cost = cost_of(*solution.execution, solution.objective);
     }

@@ -9,6 +9,8 @@ namespace {
 
 using simulation::TickRecord;
 
+constexpr std::int64_t ticks_between_questions = 4096;
+
 bool is_inside(const Bounds& bounds, const FlightState& state) {
     const double* q = state.plant.q;
     return q[0] >= bounds.x_low_m && q[0] <= bounds.x_high_m && q[1] >= bounds.z_low_m && q[1] <= bounds.z_high_m;
@@ -58,6 +60,9 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
         [&](const FlightState& before, const ReferencePoint&, const TickRecord<double>& record, const FlightState& next,
             const ReferencePoint& next_reference) {
             ++flight.ticks;
+            if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
+                return FlightFault::interrupted;
+            }
             flight.length_m += simulation::step_length_m(model, before, next);
             const FlightFault fault = broken_rule(model, map, rules, record, next, next_reference);
             if (fault == FlightFault::none && rules.measures_clearance) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "downwash/base/export.hpp"
@@ -18,6 +19,7 @@ enum class FlightFault : std::uint8_t {
     tracking,      ///< the vehicle or the arm strayed too far from its reference
     unstable,      ///< tumbling, or numbers that are not finite
     bounds,        ///< the centre of mass left the bounds, or the arm its limits
+    interrupted,   ///< ended from outside; says nothing about the flight
 };
 
 /// Beyond this pitch a multirotor is lost, whatever its controller does next [rad] (80 degrees).
@@ -31,6 +33,7 @@ struct FlightRules {
     Bounds bounds;                      ///< of the centre of mass
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
+    std::function<bool()> is_over;      ///< asked now and then; true ends the flight as interrupted
     bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
 };
 

@@ -199,6 +199,32 @@ TEST_CASE("a stop asked for in mid-search keeps the best plan so far") {
     CHECK(solution.planning.wall_s < 30);
 }
 
+TEST_CASE("flights of absurd length are refused, not flown") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        Problem problem = with(variant);
+        problem.motion.max_speed_m_s = 1e-9;
+        problem.planner.max_iterations = 50;
+        const Solution solution = solve(problem);
+        CHECK(solution.status == Status::none);
+        CHECK_FALSE(solution.plan);
+        CHECK(solution.planning.improvements.empty());
+        if (variant != Variant::mp_arm) {
+            CHECK(solution.planning.rejected.at("too_long") > 0);
+            CHECK(solution.planning.simulated_s == 0);
+        }
+    }
+}
+
+TEST_CASE("the time limit is heeded within a long flight") {
+    Problem problem = with(Variant::mp_arm_da);
+    problem.motion.max_speed_m_s = 0.01;  // edges of ten minutes
+    problem.robot.controller.rate_hz = 500;
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 0.05;
+    CHECK(solve(problem).planning.wall_s < 1.5);
+}
+
 TEST_CASE("the search may end with the first accepted plan") {
     SolveOptions options;
     options.stop_at_first_solution = true;
