@@ -142,7 +142,18 @@ std::vector<Fault> weak_joint(const Robot& robot) {
                                       " Nm"}};
 }
 
-const std::array<Check<Robot>, 11> checks{{
+/// One Runge-Kutta step of a tick follows a lag only when it is no faster than about a third of the tick.
+std::vector<Fault> too_short_lag(const Robot& robot) {
+    const double least_s = 0.5 / robot.controller.rate_hz;
+    if (robot.rotors.time_constant_s == 0 || robot.rotors.time_constant_s >= least_s) {
+        return {};
+    }
+    return {{"rotors.time_constant_s", "is " + to_text(robot.rotors.time_constant_s) +
+                                           ": expected 0 for no lag, or at least half a control tick, " +
+                                           rounded(least_s) + " s"}};
+}
+
+const std::array<Check<Robot>, 12> checks{{
     {{"multirotor.body"}, missing_bodies},
     {{"multirotor.body"}, shapeless_cylinders},
     {{"rotors.positions_m", "rotors.radius_m"}, unusable_rotor_layout},
@@ -151,6 +162,7 @@ const std::array<Check<Robot>, 11> checks{{
     {{"rotors.positions_m", "rotors.min_thrust_n", "multirotor.mass_kg", "arm.mass_kg"}, too_much_thrust},
     {{"multirotor.pitch_inertia_kg_m2", "multirotor.mass_kg", "rotors.positions_m", "rotors.radius_m"},
      impossible_inertia},
+    {{"rotors.time_constant_s", "controller.rate_hz"}, too_short_lag},
     {{"arm.inertia_kg_m2", "arm.mass_kg", "arm.length_m", "arm.radius_m"}, impossible_arm_inertia},
     {{"arm.center_of_mass_m", "arm.length_m"}, outlying_center_of_mass},
     {{"arm.limits_deg"}, crossed_arm_limits},

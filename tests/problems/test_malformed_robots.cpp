@@ -44,6 +44,9 @@ const Edit edits[] = {
      "could not descend"},
     {"max_thrust_n: 28", "max_thrust_n: 28\n  min_thrust_n: 30",
      "robot.yaml:12:17: rotors.min_thrust_n is 30: expected less than max_thrust_n, which is 28"},
+    {"max_thrust_n: 28", "max_thrust_n: 28\n  time_constant_s: 0.001",
+     "robot.yaml:12:20: rotors.time_constant_s is 0.001: expected 0 for no lag, or at least half a control tick, "
+     "0.005 s"},
     {"max_thrust_n: 28", "max_thrust: 28",
      "robot.yaml:11:3: unknown key 'max_thrust' in rotors: its unit is missing; expected max_thrust_n"},
     {"pitch_inertia_kg_m2: 0.2", "pitch_inertia_kg_m2: 20",
