@@ -195,16 +195,18 @@ void print_table(const Options& options, const std::vector<Run>& runs) {
             }
             ++solved;
             first.push_back(run.first_solution_s);
-            cost.push_back(run.execution_cost);
             clearance = std::min(clearance, run.min_clearance_m);
-            if (run.outcome != "ok") {
+            if (run.outcome == "ok") {
+                cost.push_back(run.execution_cost);
+            } else {
                 ++failed;
                 failures.push_back(fmt::format("{} {} seed {}: {}", problem, variant, run.seed, run.outcome));
             }
         }
-        fmt::print("| {} | {} | {} | {} | {:.1f} ms ({:.1f} ms) | {:.0f} | {:.3f} m | {} |\n", problem, variant,
+        const std::string median_cost = cost.empty() ? "none" : fmt::format("{:.0f}", quantile(cost, 0.5));
+        fmt::print("| {} | {} | {} | {} | {:.1f} ms ({:.1f} ms) | {} | {:.3f} m | {} |\n", problem, variant,
                    share(solved, n), share(failed, n), 1e3 * quantile(first, 0.5), 1e3 * quantile(first, 0.95),
-                   quantile(cost, 0.5), clearance, discarded);
+                   median_cost, clearance, discarded);
     }
     fmt::print("\n{} runs without a flight that held:\n\n", failures.size());
     for (const std::string& failure : failures) {
