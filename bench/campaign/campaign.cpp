@@ -169,7 +169,8 @@ void print_table(const Options& options, const std::vector<Run>& runs) {
         "the goal. `discarded`: plans of the aware planner that failed so and were not reported.\n\n",
         provenance(options).substr(2));
     fmt::print(
-        "| problem | variant | solved | failed flight | first solution, median (95 %) | cost, median | least "
+        "| problem | variant | solved | failed flight | first solution, median (95 %) | flown cost of those that held, "
+        "median | least "
         "clearance | discarded |\n|---|---|---|---|---|---|---|---|\n");
     std::vector<std::pair<std::string, std::string>> groups;
     for (const Run& run : runs) {

@@ -38,7 +38,7 @@ class ProblemMaker {
         problem.description = "two\nlines: {and} \"more\"";
         problem.robot.controller.max_tilt_rad = 0.1 + uniform();
         problem.robot.controller.position_kp = std::exp(uniform());
-        problem.robot.rotors.time_constant_s = coin() ? 0 : 1e-3 * uniform();
+        problem.robot.rotors.time_constant_s = coin() ? 0 : 0.06 + 1e-3 * uniform();
         problem.robot.rotors.positions_m[0][1] += 1e-7 * uniform();
         problem.robot.arm.is_limited = coin();
         problem.robot.arm.lower_limit_rad = problem.robot.arm.is_limited ? -3 - uniform() : 0;
