@@ -66,28 +66,45 @@ EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude
     return e;
 }
 
-/// du/dt under the generalised forces Q [N, N, N m, N m]: translation eliminated, then a 2 x 2 system. Its determinant
-/// is positive for any positive masses and inertias.
+/// Pitch and arm with the translation eliminated: s55 du5 + s57 du7 = g5, s57 du5 + s77 du7 = tau7 - c7 - coupling.
+/// The determinant s55 s77 - s57^2 is positive for any positive masses and inertias.
 template <class T>
-void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
+struct RotationalSystem {
+    T force_x, force_z;  ///< what is left of Q for the translation [N]
+    T s55, s57, s77;     ///< [kg m2]
+    T g5;                ///< [N m]
+    T arm_coupling;      ///< torque on the arm from the translation [N m]
+};
+
+template <class T>
+RotationalSystem<T> rotational_system(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3]) {
+    RotationalSystem<T> s;
     const T reduced_mass(model.reduced_mass_kg);
     const T ratio(model.arm_mass_ratio);
     const T inertia_b(model.arm_inertia_kg_m2);
     const T reach(model.arm_center_of_mass_m);
-    const T fx = force[0] - e.bias[0];
-    const T fz = force[1] - e.bias[1];
-    const T s55 =
-        T(model.pitch_inertia_kg_m2) + inertia_b + reduced_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
-    const T s57 = inertia_b + reduced_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
-    const T s77 = inertia_b + reduced_mass * reach * reach;
-    const T g5 = force[2] - e.bias[2] - ratio * (e.pitch_x * fx + e.pitch_z * fz);
-    const T g7 = force[3] - e.bias[3] - ratio * (e.arm_x * fx + e.arm_z * fz);
-    const T inverse_determinant = T(1) / (s55 * s77 - s57 * s57);
-    acceleration[2] = (s77 * g5 - s57 * g7) * inverse_determinant;
-    acceleration[3] = (s55 * g7 - s57 * g5) * inverse_determinant;
+    s.force_x = force[0] - e.bias[0];
+    s.force_z = force[1] - e.bias[1];
+    s.s55 = T(model.pitch_inertia_kg_m2) + inertia_b + reduced_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
+    s.s57 = inertia_b + reduced_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
+    s.s77 = inertia_b + reduced_mass * reach * reach;
+    s.g5 = force[2] - e.bias[2] - ratio * (e.pitch_x * s.force_x + e.pitch_z * s.force_z);
+    s.arm_coupling = ratio * (e.arm_x * s.force_x + e.arm_z * s.force_z);
+    return s;
+}
+
+/// du/dt under the generalised forces Q [N, N, N m, N m].
+template <class T>
+void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
+    const RotationalSystem<T> s = rotational_system(model, e, force);
+    const T g7 = force[3] - e.bias[3] - s.arm_coupling;
+    const T inverse_determinant = T(1) / (s.s55 * s.s77 - s.s57 * s.s57);
+    acceleration[2] = (s.s77 * s.g5 - s.s57 * g7) * inverse_determinant;
+    acceleration[3] = (s.s55 * g7 - s.s57 * s.g5) * inverse_determinant;
+    const T ratio(model.arm_mass_ratio);
     const T inverse_mass(1 / model.total_mass_kg);
-    acceleration[0] = fx * inverse_mass - ratio * (e.pitch_x * acceleration[2] + e.arm_x * acceleration[3]);
-    acceleration[1] = fz * inverse_mass - ratio * (e.pitch_z * acceleration[2] + e.arm_z * acceleration[3]);
+    acceleration[0] = s.force_x * inverse_mass - ratio * (e.pitch_x * acceleration[2] + e.arm_x * acceleration[3]);
+    acceleration[1] = s.force_z * inverse_mass - ratio * (e.pitch_z * acceleration[2] + e.arm_z * acceleration[3]);
 }
 
 /// The generalised forces Q [N, N, N m, N m] that produce du/dt.
@@ -106,18 +123,9 @@ void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
 /// forces are `force` [N, N, N m]: forward dynamics with du7 given.
 template <class T>
 T joint_torque_for(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3], T arm_acceleration) {
-    const T reduced_mass(model.reduced_mass_kg);
-    const T ratio(model.arm_mass_ratio);
-    const T inertia_b(model.arm_inertia_kg_m2);
-    const T fx = force[0] - e.bias[0];
-    const T fz = force[1] - e.bias[1];
-    const T s55 =
-        T(model.pitch_inertia_kg_m2) + inertia_b + reduced_mass * (e.pitch_x * e.pitch_x + e.pitch_z * e.pitch_z);
-    const T s57 = inertia_b + reduced_mass * (e.arm_x * e.pitch_x + e.arm_z * e.pitch_z);
-    const T g5 = force[2] - e.bias[2] - ratio * (e.pitch_x * fx + e.pitch_z * fz);
-    const T pitch_acceleration = (g5 - s57 * arm_acceleration) / s55;
-    const T s77 = inertia_b + reduced_mass * T(model.arm_center_of_mass_m * model.arm_center_of_mass_m);
-    return s57 * pitch_acceleration + s77 * arm_acceleration + ratio * (e.arm_x * fx + e.arm_z * fz) + e.bias[3];
+    const RotationalSystem<T> s = rotational_system(model, e, force);
+    const T pitch_acceleration = (s.g5 - s.s57 * arm_acceleration) / s.s55;
+    return s.s57 * pitch_acceleration + s.s77 * arm_acceleration + s.arm_coupling + e.bias[3];
 }
 
 /// Kinetic energy of both bodies [J].
