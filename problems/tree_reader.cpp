@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/problems/file_text.hpp"
 #include "downwash/problems/key_remedy.hpp"
 #include "downwash/problems/value_reader.hpp"
 
@@ -47,7 +47,7 @@ void TreeReader::read_document(const std::filesystem::path& file, const std::str
     const std::size_t referring_file = file_;
     std::string text;
     try {
-        text = read_file_text(file);
+        text = read_file(file, largest_document + 1);
     } catch (const FileError& error) {
         if (files_.empty()) {
             files_.push_back({file, path});

@@ -1,0 +1,119 @@
+#include "downwash/base/files.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+namespace downwash {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string last_reason() {
+    return std::generic_category().message(errno);
+}
+
+/// A file that is removed unless it was moved to its place.
+class UnfinishedFile {
+ public:
+    explicit UnfinishedFile(const fs::path& place) : place_(place) {
+        static std::atomic<unsigned> count{0};  // threads may write the same file
+        path_ = place.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part";
+        descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) {
+            refuse();
+        }
+    }
+    ~UnfinishedFile() {
+        if (descriptor_ >= 0) {
+            close(descriptor_);
+        }
+        if (!is_finished_) {
+            unlink(path_.c_str());
+        }
+    }
+    UnfinishedFile(const UnfinishedFile&) = delete;
+    UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+    void write(std::string_view content) const {
+        while (!content.empty()) {
+            const ssize_t count = ::write(descriptor_, content.data(), content.size());
+            if (count < 0 && errno == EINTR) {
+                continue;
+            }
+            if (count <= 0) {
+                refuse();
+            }
+            content.remove_prefix(static_cast<std::size_t>(count));
+        }
+    }
+
+    void finish() {
+        // Some file systems report a full disk only when the file is closed.
+        const bool is_closed = close(std::exchange(descriptor_, -1)) == 0;
+        if (!is_closed || std::rename(path_.c_str(), place_.c_str()) != 0) {
+            refuse();
+        }
+        is_finished_ = true;
+    }
+
+ private:
+    [[noreturn]] static void refuse() { throw FileError("cannot be written: " + last_reason()); }
+
+    fs::path place_;
+    std::string path_;
+    int descriptor_ = -1;
+    bool is_finished_ = false;
+};
+
+void require_regular(const fs::path& file) {
+    std::error_code error;
+    switch (fs::status(file, error).type()) {
+        case fs::file_type::regular:
+            return;
+        case fs::file_type::not_found:
+            throw FileError("cannot be read: there is no such file");
+        case fs::file_type::directory:
+            throw FileError("cannot be read: it is a directory, expected a file");
+        case fs::file_type::none:
+            throw FileError("cannot be read: " + error.message());
+        default:
+            throw FileError("cannot be read: expected an ordinary file");
+    }
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file, std::size_t most_bytes) {
+    require_regular(file);
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    if (!stream) {
+        throw FileError("cannot be read: " + last_reason());
+    }
+    const std::streamoff size = stream.tellg();
+    stream.seekg(0);
+    std::string bytes(std::min(most_bytes, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
+        throw FileError("cannot be read to its end");
+    }
+    return bytes;
+}
+
+void write_file(const fs::path& file, std::string_view content) {
+    UnfinishedFile unfinished(file);
+    unfinished.write(content);
+    unfinished.finish();
+}
+
+void require_writable(const fs::path& file) {
+    const UnfinishedFile trial(file);
+}
+
+}  // namespace downwash

@@ -1,0 +1,71 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <thread>
+#include <vector>
+
+#include "../support/scratch_folder.hpp"
+#include "downwash/base/files.hpp"
+
+using namespace downwash;
+using downwash::test::ScratchFolder;
+
+namespace {
+
+std::size_t files_in(const std::filesystem::path& folder) {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) {
+        ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("a file reads back as it was written, whatever its bytes, and no further than asked") {
+    const ScratchFolder folder;
+    const std::string bytes("a\0b\r\n\xff", 6);
+    write_file(folder / "file", bytes);
+    CHECK(read_file(folder / "file", 100) == bytes);
+    CHECK(read_file(folder / "file", 6) == bytes);
+    CHECK(read_file(folder / "file", 3) == bytes.substr(0, 3));
+    write_file(folder / "file", "");
+    CHECK(read_file(folder / "file", 100).empty());
+}
+
+TEST_CASE("what is no file is refused by what it is") {
+    const ScratchFolder folder;
+    REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+    CHECK_THROWS_WITH(read_file(folder / "missing", 10), "cannot be read: there is no such file");
+    CHECK_THROWS_WITH(read_file(folder.path(), 10), "cannot be read: it is a directory, expected a file");
+    CHECK_THROWS_WITH(read_file(folder / "pipe", 10), "cannot be read: expected an ordinary file");
+}
+
+TEST_CASE("a file that cannot be written leaves nothing behind") {
+    const ScratchFolder folder;
+    CHECK_THROWS_WITH(write_file(folder / "missing/file", "text"), "cannot be written: No such file or directory");
+    std::filesystem::create_directories(folder / "place/full");
+    CHECK_THROWS_AS(write_file(folder / "place", "text"), FileError);
+    CHECK(files_in(folder.path()) == 1);
+    CHECK_NOTHROW(require_writable(folder / "file"));
+    CHECK_THROWS_AS(require_writable(folder / "missing/file"), FileError);
+    CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("threads that write the same file at once leave one of their texts whole") {
+    const ScratchFolder folder;
+    std::vector<std::jthread> writers;
+    for (char letter = 'a'; letter < 'e'; ++letter) {
+        writers.emplace_back([&folder, letter] {
+            for (int i = 0; i < 50; ++i) {
+                write_file(folder / "file", std::string(10000, letter));
+            }
+        });
+    }
+    writers.clear();
+    const std::string text = read_file(folder / "file", 20000);
+    REQUIRE(text.size() == 10000);
+    CHECK(text == std::string(10000, text[0]));
+    CHECK(files_in(folder.path()) == 1);
+}
