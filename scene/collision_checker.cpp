@@ -157,7 +157,9 @@ std::vector<Part> parts_of(const RobotShape& robot) {
     return parts;
 }
 
-Convex in_plane(const Obstacle& obstacle, const Matrix3& world_rotation, const PlaneOfMotion& plane) {
+Convex in_plane(const Scene::Solids& solids, std::size_t i, const PlaneOfMotion& plane) {
+    const Matrix3& world_rotation = solids.placements[i].rotation;
+    const Primitive& primitive = solids.primitives[i];
     const double c = plane.cos_heading();
     const double s = plane.sin_heading();
     Matrix3 rotation = world_rotation;
@@ -165,7 +167,7 @@ Convex in_plane(const Obstacle& obstacle, const Matrix3& world_rotation, const P
         rotation[0][k] = c * world_rotation[0][k] + s * world_rotation[1][k];
         rotation[1][k] = c * world_rotation[1][k] - s * world_rotation[0][k];
     }
-    return convex_of(obstacle.shape, plane.from_world(obstacle.center_m), placement_of(obstacle.shape, rotation));
+    return convex_of(primitive, plane.from_world(solids.obstacles[i].center_m), placement_of(primitive, rotation));
 }
 
 /// Upper bound of the distance from the frame's origin to any point of the solid.
@@ -239,7 +241,7 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> scene, const PlaneOfMo
     }
     const Scene::Solids& solids = scene->solids();
     for (std::size_t i = 0; i < solids.obstacles.size(); ++i) {
-        const Convex convex = in_plane(solids.obstacles[i], solids.placements[i].rotation, plane);
+        const Convex convex = in_plane(solids, i, plane);
         obstacles.push_back({convex, fcl_solid_of(convex)});
         bounds.push_back(bounds_of(convex));
     }

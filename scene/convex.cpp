@@ -190,13 +190,13 @@ struct ConvexMaker {
 
 }  // namespace
 
-Placement placement_of(const Shape& shape, const Matrix3& rotation) noexcept {
+Placement placement_of(const Primitive& shape, const Matrix3& rotation) noexcept {
     const auto* cylinder = std::get_if<Cylinder>(&shape);
     const Vector3 axis = cylinder ? unit(cylinder->axis) : Vector3{0, 0, 1};
     return {rotation, {dot(rotation[0], axis), dot(rotation[1], axis), dot(rotation[2], axis)}};
 }
 
-Convex convex_of(const Shape& shape, const Vector3& center_m, const Placement& placement) {
+Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placement& placement) {
     return std::visit(ConvexMaker{center_m, placement}, shape);
 }
 

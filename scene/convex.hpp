@@ -26,10 +26,10 @@ struct Convex {
     double ball_radius_m = 0;
 };
 
-Placement placement_of(const Shape& shape, const Matrix3& rotation) noexcept;
+Placement placement_of(const Primitive& shape, const Matrix3& rotation) noexcept;
 
 /// The solid `shape` with its own frame placed at `center_m` in the frame of `placement`.
-Convex convex_of(const Shape& shape, const Vector3& center_m, const Placement& placement);
+Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placement& placement);
 
 /// Half the extents along the axes of the frame [m]: the tight bounding box is center +- these.
 Vector3 half_extents_m(const Convex& convex) noexcept;

@@ -62,7 +62,11 @@ void require_valid(const std::vector<Obstacle>& obstacles) {
     std::vector<Fault> faults;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
-        inspect(obstacles[i].shape, key, faults);
+        if (const auto primitive = primitive_of(obstacles[i].shape)) {
+            inspect(*primitive, key, faults);
+        } else {
+            faults.push_back({key, "is a mesh or an octree, which a scene cannot hold yet"});
+        }
         inspect_pose(obstacles[i], key, faults);
     }
     if (!faults.empty()) {
@@ -84,11 +88,13 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
     require_valid(obstacles);
     auto solids = std::make_unique<Scene::Solids>();
     for (const Obstacle& obstacle : obstacles) {
-        const Placement placement = placement_of(obstacle.shape, rotation_of(obstacle.rpy_rad));
-        const Convex convex = convex_of(obstacle.shape, obstacle.center_m, placement);
+        const Primitive primitive = *primitive_of(obstacle.shape);
+        const Placement placement = placement_of(primitive, rotation_of(obstacle.rpy_rad));
+        const Convex convex = convex_of(primitive, obstacle.center_m, placement);
+        solids->primitives.push_back(primitive);
         solids->placements.push_back(placement);
         solids->convexes.push_back(convex);
-        solids->seen_from_above.push_back(seen_from_above(obstacle.shape, placement));
+        solids->seen_from_above.push_back(seen_from_above(primitive, placement));
         solids->bounds.push_back(bounds_of(convex));
     }
     solids->obstacles = std::move(obstacles);
@@ -97,8 +103,21 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
 
 }  // namespace
 
-void inspect(const Shape& shape, const std::string& key, std::vector<Fault>& faults) {
+void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults) {
     std::visit(SizeInspector{key, faults}, shape);
+}
+
+std::optional<Primitive> primitive_of(const Shape& shape) {
+    if (const auto* box = std::get_if<Box>(&shape)) {
+        return *box;
+    }
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+        return *cylinder;
+    }
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        return *sphere;
+    }
+    return std::nullopt;
 }
 
 Scene::Scene(std::vector<Obstacle> obstacles) : solids_(placed(std::move(obstacles))) {}

@@ -58,7 +58,7 @@ SeenFromAbove prepared(const Cylinder& cylinder, const Placement& placement) {
 
 }  // namespace
 
-SeenFromAbove seen_from_above(const Shape& shape, const Placement& placement) {
+SeenFromAbove seen_from_above(const Primitive& shape, const Placement& placement) {
     return std::visit([&](const auto& solid) { return prepared(solid, placement); }, shape);
 }
 

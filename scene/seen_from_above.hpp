@@ -35,7 +35,7 @@ struct CylinderFromAbove {
 
 using SeenFromAbove = std::variant<BoxFromAbove, SphereFromAbove, CylinderFromAbove>;
 
-[[nodiscard]] SeenFromAbove seen_from_above(const Shape& shape, const Placement& placement);
+[[nodiscard]] SeenFromAbove seen_from_above(const Primitive& shape, const Placement& placement);
 
 /// Whether upper and lower face are level planes over the whole shadow.
 [[nodiscard]] bool has_level_faces(const SeenFromAbove& form);

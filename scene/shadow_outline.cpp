@@ -126,7 +126,8 @@ ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const 
 ShadowOutline shadow_outline(const Scene& scene, std::size_t obstacle) {
     const Obstacle& solid = scene.solids().obstacles[obstacle];
     const Placement& placement = scene.solids().placements[obstacle];
-    return std::visit([&](const auto& shape) { return outline_of(shape, solid, placement); }, solid.shape);
+    return std::visit([&](const auto& shape) { return outline_of(shape, solid, placement); },
+                      scene.solids().primitives[obstacle]);
 }
 
 }  // namespace downwash

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,8 +28,42 @@ struct Sphere {
     double radius_m = 0;  ///< > 0
 };
 
-/// The solids a scene is made of. Meshes and octrees will join this list.
-using Shape = std::variant<Box, Cylinder, Sphere>;
+/// Triangles of a surface, in the local frame: corners are indices of vertices, counter-clockwise seen from outside.
+struct TriangleMesh {
+    std::vector<Vector3> vertices_m;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// A surface from a file. Closed surfaces are solid, open ones are sheets of no thickness.
+struct Mesh {
+    std::string file;  ///< where it was read; says nothing to the scene
+    double scale = 1;  ///< > 0; multiplies the vertices, which are as in the file
+    std::shared_ptr<const TriangleMesh> surface;
+};
+
+/// A cube of space that is occupied, its edges along the local axes.
+struct OccupiedCube {
+    Vector3 center_m{};
+    double side_m = 0;  ///< > 0
+};
+
+/// The occupied leaves of an octree, in the local frame.
+struct OccupancyTree {
+    double resolution_m = 0;  ///< side of the smallest cubes
+    std::vector<OccupiedCube> cubes;
+};
+
+/// Occupied space from an octree file; each cube is solid.
+struct Octomap {
+    std::string file;  ///< where it was read; says nothing to the scene
+    std::shared_ptr<const OccupancyTree> tree;
+};
+
+/// What has a closed form.
+using Primitive = std::variant<Box, Cylinder, Sphere>;
+
+/// What an obstacle can be.
+using Shape = std::variant<Box, Cylinder, Sphere, Mesh, Octomap>;
 
 /// A solid placed in the world frame N (x forward, y left, z up).
 struct Obstacle {
@@ -38,7 +75,7 @@ struct Obstacle {
 
 /// A solid that belongs to the multirotor, aligned with its body frame (b1 forward, y left, b3 up).
 struct BodyShape {
-    Shape shape;
+    Primitive shape;
     Vector3 center_m{};  ///< in the body frame, from the multirotor's centre of mass
 };
 

@@ -2,6 +2,7 @@
 
 // What scene/ knows about the placed obstacles beyond the public header. Private: not installed.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,10 @@
 
 namespace downwash {
 
-/// Five lists of equal length, one entry per obstacle, in the world frame N.
+/// Six lists of equal length, one entry per obstacle, in the world frame N.
 struct Scene::Solids {
     std::vector<Obstacle> obstacles;
+    std::vector<Primitive> primitives;
     std::vector<Placement> placements;  ///< rotation = Rz(yaw) Ry(pitch) Rx(roll)
     std::vector<Convex> convexes;
     std::vector<SeenFromAbove> seen_from_above;
@@ -22,6 +24,9 @@ struct Scene::Solids {
 };
 
 /// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
-void inspect(const Shape& shape, const std::string& key, std::vector<Fault>& faults);
+void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults);
+
+/// The primitive that a shape is, if it is one.
+std::optional<Primitive> primitive_of(const Shape& shape);
 
 }  // namespace downwash

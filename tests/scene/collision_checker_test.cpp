@@ -144,7 +144,7 @@ TEST_CASE("Clearance agrees with alternating projections where solids stand squa
     for (int round = 0; round < 5000; ++round) {
         const std::vector<Obstacle> obstacles{dice.gridded_obstacle()};
         const Obstacle body = dice.gridded_obstacle();
-        const RobotShape robot{{{body.shape, {0, 0, 0}}}, 0, 0, 0.25, 0.01};
+        const RobotShape robot{{{reference::primitive_of(body.shape), {0, 0, 0}}}, 0, 0, 0.25, 0.01};
         const PlaneOfMotion plane(body.center_m, body.rpy_rad[2]);
         const PlanarPose pose{0, 0, body.rpy_rad[1], body.rpy_rad[0]};
         const reference::Enclosure truth = reference::clearance(reference::robot_at(pose, plane, robot), obstacles);

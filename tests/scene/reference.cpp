@@ -41,7 +41,7 @@ Vector3 rolled_pitched_yawed(Vector3 v, const Vector3& rpy_rad) {
 }
 
 /// A shape in its own frame, whose axes in the world are `frame`.
-Solid placed(const downwash::Shape& shape, const Vector3& center_m, const std::array<Vector3, 3>& frame) {
+Solid placed(const downwash::Primitive& shape, const Vector3& center_m, const std::array<Vector3, 3>& frame) {
     Solid solid{Solid::Kind::box, center_m, frame, {0, 0, 0}, 0};
     if (const auto* box = std::get_if<downwash::Box>(&shape)) {
         solid.half_m = {box->size_m[0] / 2, box->size_m[1] / 2, box->size_m[2] / 2};
@@ -111,9 +111,23 @@ Enclosure distance(const Solid& a, const Solid& b) {
     return enclosure;
 }
 
+downwash::Shape shape_of(const downwash::Primitive& primitive) {
+    return std::visit([](const auto& solid) { return downwash::Shape(solid); }, primitive);
+}
+
+downwash::Primitive primitive_of(const downwash::Shape& shape) {
+    if (const auto* box = std::get_if<downwash::Box>(&shape)) {
+        return *box;
+    }
+    if (const auto* cylinder = std::get_if<downwash::Cylinder>(&shape)) {
+        return *cylinder;
+    }
+    return std::get<downwash::Sphere>(shape);
+}
+
 Solid solid_of(const downwash::Obstacle& obstacle) {
     const Vector3& rpy = obstacle.rpy_rad;
-    return placed(obstacle.shape, obstacle.center_m,
+    return placed(primitive_of(obstacle.shape), obstacle.center_m,
                   {rolled_pitched_yawed({1, 0, 0}, rpy), rolled_pitched_yawed({0, 1, 0}, rpy),
                    rolled_pitched_yawed({0, 0, 1}, rpy)});
 }
@@ -161,7 +175,7 @@ Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash:
     return least;
 }
 
-downwash::Shape Dice::shape(double least_m, double most_m) {
+downwash::Primitive Dice::shape(double least_m, double most_m) {
     const auto length = [&] { return between(least_m, most_m); };
     const double kind = between(0, 3);
     if (kind < 1) {
@@ -174,7 +188,7 @@ downwash::Shape Dice::shape(double least_m, double most_m) {
 }
 
 downwash::Obstacle Dice::obstacle() {
-    return {"obstacle", shape(0.1, 1.5), vector(-2, 2), coin() ? Vector3{0, 0, 0} : vector(-4, 4)};
+    return {"obstacle", shape_of(shape(0.1, 1.5)), vector(-2, 2), coin() ? Vector3{0, 0, 0} : vector(-4, 4)};
 }
 
 downwash::Obstacle Dice::gridded_obstacle() {

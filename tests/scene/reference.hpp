@@ -32,6 +32,11 @@ Vector3 project(const Solid& solid, const Vector3& p_m);
 double distance_to_point(const Solid& solid, const Vector3& p_m);
 Enclosure distance(const Solid& a, const Solid& b);
 
+/// The same solid as an obstacle's shape, and back: of primitives only.
+downwash::Shape shape_of(const downwash::Primitive& primitive);
+downwash::Primitive primitive_of(const downwash::Shape& shape);
+
+/// Of an obstacle that is a primitive.
 Solid solid_of(const downwash::Obstacle& obstacle);
 Solid disc(const Vector3& center_m, double radius_m);
 std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
@@ -45,7 +50,7 @@ class Dice {
     double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
     bool coin() { return between(0, 1) < 0.5; }
     Vector3 vector(double low, double high) { return {between(low, high), between(low, high), between(low, high)}; }
-    downwash::Shape shape(double least_m, double most_m);
+    downwash::Primitive shape(double least_m, double most_m);
     /// Half of them stand square to the world.
     downwash::Obstacle obstacle();
     /// Lengths and positions on a grid of a quarter metre, angles of whole and half right angles.
