@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+
+namespace downwash {
+
+/// Measured or computed K of a wide flat surface over zeta = z/R, or over (zeta, d/R) with a second distance d. What
+/// has no formula enters this way: tilted rotors, ground beside a wall, fountains under tandem rotors (model E7). K
+/// below one is possible. Immutable and safe to share.
+///
+/// Between the nodes K is interpolated by monotone cubics (PCHIP), along d first, then along zeta: continuous, with
+/// a continuous slope, and never outside the range of the surrounding nodes. Nearer than the first zeta the first value
+/// holds. Beyond the last the increment K - 1 decays as (last zeta / zeta)^2, the far field of an image source
+/// (**choice**: measurements end before the effect does). d is taken as the nearest that the table has.
+class DOWNWASH_EXPORT EffectTable {
+ public:
+    /// @param z_over_r at least two distances in [0, 1000], each at least 1e-6 above the one before
+    /// @param d_over_r the same in [0, 10000], or empty for a table over zeta alone
+    /// @param factors K in [0, 100]; those of one zeta stand together, in the order of d_over_r
+    /// @throws InputError
+    EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors);
+
+    [[nodiscard]] bool depends_on_d() const noexcept { return !d_over_r_.empty(); }
+    [[nodiscard]] std::span<const double> z_over_r() const noexcept { return z_over_r_; }
+    [[nodiscard]] std::span<const double> d_over_r() const noexcept { return d_over_r_; }
+    /// K at the nodes, those of one zeta together.
+    [[nodiscard]] std::span<const double> factors() const noexcept { return factors_; }
+
+    /// K over zeta at one d. Small, to be made and asked often; the table must outlive it.
+    class DOWNWASH_EXPORT Curve {
+     public:
+        /// @param z_over_r >= 0, infinite for no surface
+        [[nodiscard]] double operator()(double z_over_r) const;
+
+     private:
+        friend EffectTable;
+        Curve(const EffectTable& table, double d_over_r);
+        [[nodiscard]] double node(std::size_t row) const;
+        [[nodiscard]] double secant(std::size_t row, double left, double right) const;
+
+        const EffectTable* table_;
+        std::size_t column_ = 0;  ///< the interval of d; its ends contribute as follows
+        double left_ = 1, right_ = 0, slope_left_ = 0, slope_right_ = 0;
+    };
+
+    /// @param d_over_r any number but NaN; without meaning for a table over zeta alone
+    [[nodiscard]] Curve at(double d_over_r = 0) const { return {*this, d_over_r}; }
+
+    /// Nowhere at `z_over_r` or beyond, whatever d, does K differ more than this from 1. Exact at the nodes, else the
+    /// bound of the node before.
+    [[nodiscard]] double largest_change_beyond(double z_over_r) const;
+
+ private:
+    std::vector<double> z_over_r_, d_over_r_, factors_;
+    std::vector<double> slopes_z_;  ///< dK/dzeta at the nodes; of a table over zeta alone
+    std::vector<double> slopes_d_;  ///< dK/d(d/R) at the nodes; of a table over both
+    std::vector<double> changes_;   ///< largest |K - 1| from a zeta on
+};
+
+/// Reads a table from a CSV file: lines that begin with `#` are comments, then a header `z_over_r,factor` or
+/// `z_over_r,d_over_r,factor` (`thrust_ratio` is understood for `factor`), then a row for every combination of
+/// distances, in any order. At most 100000 rows and 16 MB.
+/// @throws InputError with "file:line: what is wrong" for each fault found
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file);
+
+/// The same from text; `name` stands for the file in faults.
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text,
+                                                                                    std::string_view name);
+
+}  // namespace downwash

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+
+namespace downwash {
+
+/// One measured thrust near a surface, as a ratio to the same rotor's thrust far from it at the same command.
+struct Measurement {
+    double z_over_r = 0;             ///< distance from the rotor plane to the surface in rotor radii
+    double thrust_ratio = 0;         ///< K
+    std::optional<double> sigma;     ///< standard deviation of thrust_ratio, where it is known
+    std::size_t line = 0;            ///< of the file
+    std::vector<std::string> cells;  ///< the whole row, as written
+};
+
+/// What a file of measurements holds.
+struct DOWNWASH_EXPORT Measurements {
+    std::vector<std::string> columns;  ///< names of `cells`
+    std::vector<Measurement> points;   ///< in the order of the file
+
+    [[nodiscard]] bool has(std::string_view column) const;
+    /// The distinct entries of a column, in the order of their first appearance; none without such a column.
+    [[nodiscard]] std::vector<std::string> entries(std::string_view column) const;
+    /// The points that have this entry in that column; none without such a column.
+    [[nodiscard]] Measurements with(std::string_view column, std::string_view entry) const;
+};
+
+/// Reads measurements from a CSV file: lines that begin with `#` are comments, then a header with `z_over_r` (in
+/// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty), and any others, for
+/// example `surface` and `source`. At most 100000 rows and 16 MB.
+/// @throws InputError with "file:line: what is wrong" for each fault found
+[[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
+
+/// The same from text; `name` stands for the file in faults.
+[[nodiscard]] DOWNWASH_EXPORT Measurements parse_measurements(std::string_view text, std::string_view name);
+
+}  // namespace downwash
