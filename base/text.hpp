@@ -1,8 +1,13 @@
 #pragma once
 
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 #include "downwash/base/export.hpp"
 
@@ -13,6 +18,26 @@ namespace downwash {
 
 /// A number for people to read, rounded to so many significant digits (1 to 17).
 [[nodiscard]] DOWNWASH_EXPORT std::string to_text(double value, int significant_digits);
+
+/// The number that a text wholly is ("3", "-.5", "+1e3"); empty when it is none, not finite or out of the type's range.
+/// Independent of the locale.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
+        text.remove_prefix(1);  // from_chars knows no plus sign
+    }
+    Number number{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size()) {
+        return std::nullopt;
+    }
+    if constexpr (std::is_floating_point_v<Number>) {
+        if (!std::isfinite(number)) {
+            return std::nullopt;
+        }
+    }
+    return number;
+}
 
 /// The candidate that a misspelt word most likely stands for; empty when none is near (more than a third of its
 /// letters would have to change).

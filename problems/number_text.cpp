@@ -14,22 +14,6 @@ namespace {
 // Degrees as doubles are sometimes farther apart than the radians they stand for: this takes a wider type.
 constexpr long double radians_per_degree = std::numbers::pi_v<long double> / 180;
 
-/// YAML allows a plus sign, from_chars does not.
-std::string_view without_plus(std::string_view text) {
-    const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
-    return has_plus ? text.substr(1) : text;
-}
-
-template <class Number>
-std::optional<Number> parse_whole(std::string_view text) {
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size()) {
-        return std::nullopt;
-    }
-    return number;
-}
-
 std::string_view rounded(std::array<char, 64>& text, long double number, int digits) {
     const auto format = std::chars_format::general;
     const auto end = std::to_chars(text.data(), text.data() + text.size(), number, format, digits).ptr;
@@ -38,22 +22,13 @@ std::string_view rounded(std::array<char, 64>& text, long double number, int dig
 
 }  // namespace
 
-std::optional<double> parse_number(std::string_view text) {
-    const auto number = parse_whole<double>(without_plus(text));
-    return number && std::isfinite(*number) ? number : std::nullopt;
-}
-
 std::optional<double> parse_degrees(std::string_view text) {
-    const auto degrees = parse_whole<long double>(without_plus(text));
-    if (!degrees || !std::isfinite(*degrees)) {
+    const auto degrees = parse_number<long double>(text);
+    if (!degrees) {
         return std::nullopt;
     }
     const auto radians = static_cast<double>(*degrees * radians_per_degree);
     return std::isfinite(radians) ? std::optional(radians) : std::nullopt;
-}
-
-std::optional<std::uint64_t> parse_integer(std::string_view text) {
-    return parse_whole<std::uint64_t>(without_plus(text));
 }
 
 std::string degrees_text(double angle_rad) {
@@ -63,7 +38,7 @@ std::string degrees_text(double angle_rad) {
     for (int digits = 1; digits < most_digits; ++digits) {
         const std::string_view written = rounded(text, degrees, digits);
         // As a double 90 is written "90" where one digit is "9e+01".
-        std::string plain = digits <= 17 ? to_text(parse_number(written).value_or(0)) : std::string(written);
+        std::string plain = digits <= 17 ? to_text(parse_number<double>(written).value_or(0)) : std::string(written);
         if (parse_degrees(plain) == angle_rad) {
             return plain;
         }

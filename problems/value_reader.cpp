@@ -36,7 +36,7 @@ const std::string& bare_text(const ParameterInfo& info, const YamlNode& node) {
 
 double read_number(const ParameterInfo& info, const YamlNode& node) {
     const std::string& text = bare_text(info, node);
-    const auto number = is_in_degrees(info.path) ? parse_degrees(text) : parse_number(text);
+    const auto number = is_in_degrees(info.path) ? parse_degrees(text) : parse_number<double>(text);
     if (number) {
         return *number;
     }
@@ -47,7 +47,7 @@ double read_number(const ParameterInfo& info, const YamlNode& node) {
 }
 
 std::uint64_t read_integer(const ParameterInfo& info, const YamlNode& node) {
-    const auto number = parse_integer(bare_text(info, node));
+    const auto number = parse_number<std::uint64_t>(bare_text(info, node));
     if (!number) {
         refuse(info, node);
     }

@@ -1,0 +1,58 @@
+#pragma once
+
+// What the readers of other programs' files share. Private to scene/.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace downwash::foreign {
+
+/// Larger files are refused unread [bytes].
+inline constexpr std::size_t largest_file = 512UL * 1024 * 1024;
+/// Triangles of a mesh, cubes of an octree.
+inline constexpr std::size_t most_pieces = 2'000'000;
+/// Largest size of a coordinate, in the file's unit; farther out, positions lose their tenths of a millimetre.
+inline constexpr double greatest_coordinate = 1e6;
+
+/// The bytes of a file. @throws InputError when it cannot be read or is too large
+[[nodiscard]] std::string read(const std::filesystem::path& file);
+
+/// @throws InputError "'name' message"
+[[noreturn]] void refuse(const std::string& name, const std::string& message);
+
+/// @throws InputError "'name' byte 84: message", the first byte being 0
+[[noreturn]] void refuse_at(const std::string& name, std::size_t byte, const std::string& message);
+
+/// Whether two words are equal but for the case of their ASCII letters.
+[[nodiscard]] bool is_same_word(std::string_view a, std::string_view b);
+
+/// A text, line by line, each as words between blanks.
+class Lines {
+ public:
+    Lines(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {}
+
+    /// Moves to the next line that has words; false at the end of the text.
+    bool next();
+    /// Those of the current line.
+    [[nodiscard]] const std::vector<std::string_view>& words() const noexcept { return words_; }
+    /// Whether the current line begins with a word, in upper or lower case.
+    [[nodiscard]] bool starts_with(std::string_view word) const;
+    /// What follows the current line.
+    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
+
+    /// @throws InputError when a word of the current line is no finite number of at most greatest_coordinate in size
+    [[nodiscard]] double coordinate(std::string_view word) const;
+    /// @throws InputError "'name' line 7: message"
+    [[noreturn]] void refuse(const std::string& message) const;
+
+ private:
+    std::string_view rest_;
+    std::string name_;
+    std::size_t line_ = 0;
+    std::vector<std::string_view> words_;
+};
+
+}  // namespace downwash::foreign

@@ -1,0 +1,254 @@
+#include "downwash/scene/octomap_file.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "downwash/base/text.hpp"
+#include "downwash/scene/foreign_file.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr std::string_view binary_line = "# Octomap OcTree binary file";
+constexpr std::string_view full_line = "# Octomap OcTree file";
+
+constexpr unsigned deepest = 16;
+constexpr std::uint32_t cells_across = 1U << deepest;
+constexpr double least_resolution_m = 1e-4;
+constexpr double greatest_resolution_m = 30;
+
+struct Header {
+    bool is_binary = false;
+    double resolution_m = 0;
+    std::uint64_t nodes = 0;
+    std::size_t data_at = 0;  ///< first byte of the nodes
+};
+
+/// Reads the lines up to "data".
+class HeaderReader {
+ public:
+    HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name), lines_(bytes, name) {}
+
+    Header read() {
+        Header header;
+        header.is_binary = bytes_.starts_with(binary_line);
+        if (!header.is_binary && !bytes_.starts_with(full_line)) {
+            foreign::refuse(name_, "line 1: found '" + excerpt(bytes_.substr(0, bytes_.find('\n'))) + "', expected '" +
+                                       std::string(binary_line) + "' or '" + std::string(full_line) + "'");
+        }
+        while (lines_.next() && lines_.words()[0] != "data") {
+            read_line();
+        }
+        if (lines_.words().size() != 1) {
+            lines_.refuse("the header ends here: expected a line 'data' of its own");
+        }
+        for (const auto& [key, is_given] : {std::pair("id", has_id_), std::pair("size", nodes_.has_value()),
+                                            std::pair("res", resolution_m_.has_value())}) {
+            if (!is_given) {
+                lines_.refuse("the header ends: expected a line '" + std::string(key) + "' before it");
+            }
+        }
+        header.resolution_m = *resolution_m_;
+        header.nodes = *nodes_;
+        header.data_at = bytes_.size() - lines_.rest().size();
+        return header;
+    }
+
+ private:
+    void read_line() {
+        const auto& words = lines_.words();
+        if (words[0].starts_with('#')) {
+            return;
+        }
+        if (words.size() != 2) {
+            lines_.refuse("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
+        }
+        if (words[0] == "id" && !has_id_) {
+            has_id_ = words[1] == "OcTree";
+            if (!has_id_) {
+                lines_.refuse("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
+            }
+        } else if (words[0] == "size" && !nodes_) {
+            nodes_ = parse_number<std::uint64_t>(words[1]);
+            if (!nodes_) {
+                lines_.refuse("found '" + excerpt(words[1]) + "', expected the number of nodes");
+            }
+        } else if (words[0] == "res" && !resolution_m_) {
+            resolution_m_ = parse_number<double>(words[1]);
+            if (!resolution_m_ || *resolution_m_ < least_resolution_m || *resolution_m_ > greatest_resolution_m) {
+                lines_.refuse("found '" + excerpt(words[1]) + "', expected a resolution from 0.0001 to 30 m");
+            }
+        } else {
+            lines_.refuse("found '" + excerpt(words[0]) + "', expected id, size and res once each, then 'data'");
+        }
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    foreign::Lines lines_;
+    bool has_id_ = false;
+    std::optional<std::uint64_t> nodes_;
+    std::optional<double> resolution_m_;
+};
+
+/// A cube of the octree: its lowest corner in cells of the finest level, and its level, the root's being 0.
+struct Place {
+    std::array<std::uint32_t, 3> low{};
+    unsigned depth = 0;
+
+    [[nodiscard]] std::uint32_t cells() const { return cells_across >> depth; }
+    /// The eighth that lies high along x, y, z where bit 0, 1, 2 of `child` is set.
+    [[nodiscard]] Place eighth(unsigned child) const {
+        Place place{low, depth + 1};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            place.low[axis] += (child >> axis & 1U) * place.cells();
+        }
+        return place;
+    }
+};
+
+/// Walks through the nodes as the file orders them, depth first.
+class NodeReader {
+ public:
+    NodeReader(std::string_view bytes, const std::string& name, const Header& header)
+        : bytes_(bytes), name_(name), header_(header), at_(header.data_at) {
+        tree_.resolution_m = header.resolution_m;
+    }
+
+    OccupancyTree read() {
+        count_node();
+        if (header_.is_binary) {
+            read_children({});
+        } else {
+            read_node({});
+        }
+        if (nodes_ != header_.nodes) {
+            refuse("the nodes end after " + std::to_string(nodes_) + ": expected " + std::to_string(header_.nodes) +
+                   " as the header's size says");
+        }
+        if (at_ != bytes_.size()) {
+            refuse(std::to_string(bytes_.size() - at_) + " bytes after the last node: expected none");
+        }
+        if (tree_.cubes.empty()) {
+            foreign::refuse(name_, "has no occupied leaf: expected at least one");
+        }
+        return std::move(tree_);
+    }
+
+ private:
+    /// Binary: two bits for each of eight children. 0 is unknown, 1 a free leaf, 2 an occupied leaf, 3 a node that
+    /// follows.
+    void read_children(const Place& parent) {
+        require_depth(parent);
+        const unsigned low = next_byte();
+        const unsigned bits = low | next_byte() << 8U;
+        if (bits == 0) {
+            at_ -= 2;
+            refuse("a node without children among the inner nodes: expected at least one child");
+        }
+        for (unsigned child = 0; child < 8; ++child) {
+            const unsigned state = bits >> (2 * child) & 3U;
+            if (state != 0) {
+                count_node();
+            }
+            if (state == 2) {
+                add_cube(parent.eighth(child));
+            }
+        }
+        for (unsigned child = 0; child < 8; ++child) {
+            if ((bits >> (2 * child) & 3U) == 3) {
+                read_children(parent.eighth(child));
+            }
+        }
+    }
+
+    /// Full: the logarithm of the odds that the node is occupied, and a bit for each child that follows.
+    void read_node(const Place& place) {
+        const std::size_t begin = at_;
+        std::uint32_t word = 0;
+        for (unsigned i = 0; i < 4; ++i) {
+            word |= next_byte() << (8 * i);
+        }
+        const float log_odds = std::bit_cast<float>(word);
+        // Sums of a sensor's log odds are 0 or not this small; swapped bytes mostly are, or are huge.
+        const bool is_plausible = log_odds == 0 || (std::abs(log_odds) >= 1e-9F && std::abs(log_odds) <= 1000);
+        if (!is_plausible) {
+            at_ = begin;
+            refuse("found log odds of " + to_text(static_cast<double>(log_odds), 6) +
+                   ", expected a finite number of at most 1000 in size, little-endian");
+        }
+        const unsigned children = next_byte();
+        if (children == 0) {
+            if (log_odds >= 0) {
+                add_cube(place);
+            }
+            return;
+        }
+        require_depth(place);
+        for (unsigned child = 0; child < 8; ++child) {
+            if ((children >> child & 1U) != 0) {
+                count_node();
+                read_node(place.eighth(child));
+            }
+        }
+    }
+
+    unsigned next_byte() {
+        if (at_ == bytes_.size()) {
+            refuse("the file ends after " + std::to_string(nodes_) + " of " + std::to_string(header_.nodes) +
+                   " nodes: expected all of them");
+        }
+        return static_cast<unsigned char>(bytes_[at_++]);
+    }
+
+    void count_node() {
+        if (++nodes_ > header_.nodes) {
+            refuse("one node more than " + std::to_string(header_.nodes) + ": expected as many as the header's size");
+        }
+    }
+
+    void require_depth(const Place& parent) const {
+        if (parent.depth >= deepest) {
+            refuse("a node below level " + std::to_string(deepest) + ": expected no more levels");
+        }
+    }
+
+    void add_cube(const Place& place) {
+        if (tree_.cubes.size() >= foreign::most_pieces) {
+            refuse("one occupied leaf more: expected at most 2000000");
+        }
+        OccupiedCube cube;
+        cube.side_m = place.cells() * header_.resolution_m;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            // Halves and whole numbers are exact; only the product rounds.
+            const double middle = place.low[axis] + 0.5 * place.cells() - 0.5 * cells_across;
+            cube.center_m[axis] = middle * header_.resolution_m;
+        }
+        tree_.cubes.push_back(cube);
+    }
+
+    [[noreturn]] void refuse(const std::string& message) const { foreign::refuse_at(name_, at_, message); }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    const Header& header_;
+    std::size_t at_;
+    std::uint64_t nodes_ = 0;
+    OccupancyTree tree_;
+};
+
+}  // namespace
+
+std::shared_ptr<const OccupancyTree> read_octomap(const std::filesystem::path& file) {
+    return std::make_shared<const OccupancyTree>(parse_octomap(foreign::read(file), file.string()));
+}
+
+OccupancyTree parse_octomap(std::string_view bytes, const std::string& name) {
+    const Header header = HeaderReader(bytes, name).read();
+    return NodeReader(bytes, name, header).read();
+}
+
+}  // namespace downwash
