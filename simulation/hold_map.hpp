@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/simulation/hover_analysis.hpp"
+
+namespace downwash {
+
+/// Where a vehicle can hover with one arm angle: a verdict for every node of a regular grid of the plane.
+struct HoldMap {
+    double arm_rad = 0;
+    double x_low_m = 0, z_low_m = 0;  ///< of the first node
+    double step_m = 0;
+    std::size_t columns = 0, rows = 0;  ///< nodes along x and z
+    /// One entry a node, along x first.
+    std::vector<HoldVerdict> verdicts;
+    /// [1/s], of HoverStability; NaN where there is no equilibrium. The stability boundary is its contour at 0.
+    std::vector<double> growth_rates_1_s;
+};
+
+/// The most nodes a hold map may have.
+inline constexpr double most_hold_nodes = 1048576;
+
+/// Analyses hover at every node x_low + i step, z_low + k step within the bounds.
+/// @param threads at least 1; the result does not depend on it
+/// @throws InputError when the bounds are empty, the step is not a positive number, or there would be too many nodes
+[[nodiscard]] DOWNWASH_EXPORT HoldMap make_hold_map(const FlightModel& model, const Bounds& bounds, double step_m,
+                                                    double arm_rad, int threads = 1);
+
+}  // namespace downwash

@@ -1,0 +1,192 @@
+#include "downwash/simulation/hover_analysis.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+
+#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/hover_trim.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
+
+namespace downwash {
+namespace {
+
+using simulation::LinearEffect;
+using simulation::TickModel;
+
+constexpr std::array<std::string_view, 5> verdict_names = {"not_flyable", "in_collision", "no_equilibrium", "unstable",
+                                                           "stable"};
+constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "rotor_thrust", "joint_torque",
+                                                         "tilt", "vertical",  "gain"};
+
+/// Nearer to 1 than this a spectral radius is not known to be below: rounding and differences.
+constexpr double radius_slack = 1e-9;
+
+constexpr int most_coordinates = 8 + 7 + max_rotors;
+
+/// Those numbers of a state that later ticks depend on.
+class Coordinates {
+ public:
+    Coordinates(const TickModel& model, const HoverTrim& trim, FlightState& state) {
+        for (int i = 0; i < 4; ++i) {
+            add(state.plant.q[i]);
+        }
+        for (int i = 0; i < 4; ++i) {
+            add(state.plant.u[i]);
+        }
+        if (model.plant.rotor_time_constant_s > 0) {
+            for (int i = 0; i < model.plant.rotor_count; ++i) {
+                add(state.plant.thrust_n[i]);
+            }
+        }
+        const ControllerGains& gains = model.gains;
+        auto& memory = state.controller;
+        const bool* at_limit = trim.is_integral_at_limit;
+        add_if(gains.position_ki > 0 && !at_limit[0], memory.position_integral[0]);
+        add_if(gains.position_ki > 0 && !at_limit[1], memory.position_integral[1]);
+        add_if(gains.attitude_kiu5 > 0 && !at_limit[2], memory.pitch_rate_integral);
+        add_if(gains.arm_ki > 0 && !at_limit[3], memory.arm_integral);
+        add(memory.pitch_reference_rad);
+        add(memory.pitch_reference_rate);
+        add_if(gains.rate_feed_forward, memory.rate_reference);
+    }
+
+    [[nodiscard]] int count() const noexcept { return count_; }
+    [[nodiscard]] double& operator[](int i) const noexcept { return *entries_[static_cast<std::size_t>(i)]; }
+
+ private:
+    void add(double& entry) { entries_[static_cast<std::size_t>(count_++)] = &entry; }
+    void add_if(bool feeds_back, double& entry) {
+        if (feeds_back) {
+            add(entry);
+        }
+    }
+
+    std::array<double*, most_coordinates> entries_{};
+    int count_ = 0;
+};
+
+/// Natural logarithm to some 1e-15, the same on every machine. @param x > 0
+double natural_log(double x) {
+    double halvings = 1;
+    while (x > 1.5 || x < 0.6) {
+        x = std::sqrt(x);
+        halvings *= 2;
+    }
+    const double t = (x - 1) / (x + 1);  // |t| <= 0.25
+    double sum = 0;
+    for (int k = 25; k >= 1; k -= 2) {
+        sum = sum * t * t + 1.0 / k;
+    }
+    return 2 * halvings * t * sum;
+}
+
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_coordinates, most_coordinates>;
+
+/// Of one tick at its fixed point, by central differences. The effect is linear already, so that the step may be
+/// small: 1e-6 leaves an error of some 1e-10.
+Jacobian jacobian(const TickModel& model, const HoverTrim& trim, const LinearEffect& effect) {
+    constexpr double step = 1e-6;
+    const auto reference = simulation::setpoint(trim.reference);
+    FlightState state = trim.state;
+    const Coordinates from(model, trim, state);
+    Jacobian result(from.count(), from.count());
+    for (int column = 0; column < from.count(); ++column) {
+        const double here = from[column];
+        simulation::TickRecord<double> record{};
+        from[column] = here + step;
+        FlightState above = simulation::tick(model, state, reference, effect, record);
+        from[column] = here - step;
+        FlightState below = simulation::tick(model, state, reference, effect, record);
+        from[column] = here;
+        const Coordinates to_above(model, trim, above);
+        const Coordinates to_below(model, trim, below);
+        for (int row = 0; row < from.count(); ++row) {
+            result(row, column) = (to_above[row] - to_below[row]) / (2 * step);
+        }
+    }
+    return result;
+}
+
+void find_modes(const Jacobian& jacobian, double tick_s, HoverStability& stability) {
+    const Eigen::EigenSolver<Jacobian> solver(jacobian, false);
+    double largest = 0;  // squared modulus
+    for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+        const double re = solver.eigenvalues()[i].real();
+        const double im = solver.eigenvalues()[i].imag();
+        const double squared = re * re + im * im;
+        stability.growing_modes += squared > 1 ? 1 : 0;
+        if (squared > largest) {
+            largest = squared;
+            stability.frequency_rad_s = std::abs(lane::atan2(im, re)) / tick_s;
+        }
+    }
+    stability.spectral_radius = std::sqrt(largest);
+    stability.growth_rate_1_s = natural_log(stability.spectral_radius) / tick_s;
+}
+
+/// The slopes of the surfaces and the gains they compete with.
+void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearEffect& effect,
+                    HoverStability& stability) {
+    const PlantModel& plant = model.plant;
+    const double* q = trim.state.plant.q;
+    const auto wrench = [&](double z_m, double pitch_rad, const double* thrust_n) {
+        return dynamics::rotor_wrench(plant, dynamics::attitude(plant, pitch_rad, q[3]), q[0], z_m, thrust_n, effect);
+    };
+    constexpr double step = 1e-4;
+    const double* command_n = trim.rotor_command_n;
+    stability.force_slope_n_m =
+        (wrench(q[1] + step, 0, command_n).thrust_n - wrench(q[1] - step, 0, command_n).thrust_n) / (2 * step);
+    stability.torque_slope_nm_rad =
+        (wrench(q[1], step, command_n).pitch_torque_nm - wrench(q[1], -step, command_n).pitch_torque_nm) / (2 * step);
+
+    double unit_n[max_rotors];
+    dynamics::allocate(plant, 1.0, 0.0, unit_n);
+    stability.force_gain_n_m = plant.total_mass_kg * model.gains.position_kp * wrench(q[1], 0, unit_n).thrust_n;
+    dynamics::allocate(plant, 0.0, 1.0, unit_n);
+    const auto equations =
+        dynamics::equations_of_motion(plant, dynamics::attitude(plant, 0.0, q[3]), trim.state.plant.u);
+    const double nothing[3] = {};
+    const double inertia_kg_m2 = dynamics::rotational_system(plant, equations, nothing).s55;
+    stability.torque_gain_nm_rad =
+        inertia_kg_m2 * model.gains.attitude_k5 * model.gains.attitude_ku5 * wrench(q[1], 0, unit_n).pitch_torque_nm;
+}
+
+}  // namespace
+
+std::string_view name_of(HoldVerdict verdict) {
+    return verdict_names[static_cast<std::size_t>(verdict)];
+}
+
+std::string_view name_of(HoldLimit limit) {
+    return limit_names[static_cast<std::size_t>(limit)];
+}
+
+HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, double arm_rad) {
+    HoverAnalysis analysis;
+    const double q[4] = {x_m, z_m, 0, arm_rad};
+    const double u[4] = {};
+    const FlightState resting = model.state_at(q, u);
+    if (!is_flyable(model, pose_of(resting))) {
+        return analysis;
+    }
+    analysis.verdict = HoldVerdict::in_collision;
+    if (model.collisions().is_nearer_than(pose_of(resting), 0)) {
+        return analysis;
+    }
+    const TickModel& tick = model.tick();
+    const auto attitude = dynamics::attitude(tick.plant, 0.0, arm_rad);
+    const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model});
+    analysis.trim = simulation::hover_trim(model.robot(), tick, effect, resting);
+    analysis.verdict = HoldVerdict::no_equilibrium;
+    if (analysis.trim.limit != HoldLimit::none) {
+        return analysis;
+    }
+    find_stiffness(tick, analysis.trim, effect, analysis.stability);
+    find_modes(jacobian(tick, analysis.trim, effect), tick.tick_s, analysis.stability);
+    analysis.verdict =
+        analysis.stability.spectral_radius < 1 - radius_slack ? HoldVerdict::stable : HoldVerdict::unstable;
+    return analysis;
+}
+
+}  // namespace downwash

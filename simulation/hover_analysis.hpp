@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/reference_point.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash {
+
+/// Whether a vehicle can hover at a point.
+enum class HoldVerdict : std::uint8_t {
+    not_flyable,     ///< a rotor disc nearer to an obstacle than the effects are known (model 4.4)
+    in_collision,    ///< touches an obstacle
+    no_equilibrium,  ///< no reference makes the controller ask for what balances weight and surfaces
+    unstable,        ///< balanced, but the smallest disturbance grows
+    stable,          ///< balanced, and small disturbances decay
+};
+
+/// What stands in the way of an equilibrium.
+enum class HoldLimit : std::uint8_t {
+    none,
+    arm_angle,     ///< beyond the limits of the arm
+    rotor_thrust,  ///< a rotor would have to give more than its greatest or less than its least thrust
+    joint_torque,  ///< the joint is too weak to carry the arm
+    tilt,          ///< countering the surfaces' torque takes a pitch reference beyond max_tilt
+    vertical,      ///< the vertical force would fall below the controller's least (min_vertical_force_ratio)
+    gain,          ///< a loop without gain cannot ask for what is needed
+};
+
+/// The names in files, for example "no_equilibrium" and "rotor_thrust".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldVerdict verdict);
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldLimit limit);
+
+/// How a vehicle hovers: the equilibrium of its closed loop near surfaces.
+struct HoverTrim {
+    HoldLimit limit = HoldLimit::none;  ///< anything else: there is no equilibrium, and the rest shows why
+    FlightState state{};                ///< fixed point of the tick: at rest and level, integrators settled
+    /// What the controller has to be given to hold the vehicle there. It differs from where the vehicle is on axes
+    /// without integrator, and where an integrator has reached its limit.
+    ReferencePoint reference;
+    double rotor_command_n[max_rotors] = {};
+    double joint_torque_nm = 0;
+    double saturation = 0;           ///< greatest demand over its limit, as in a tick
+    double pitch_reference_rad = 0;  ///< that the controller asks for in vain, to counter the surfaces' torque
+    /// Integrators at their limit do not feed back: x, z, pitch rate, arm.
+    bool is_integral_at_limit[4] = {};
+};
+
+/// How a small disturbance of a hover develops, and what competes there.
+struct HoverStability {
+    double spectral_radius = 0;  ///< of the Jacobian of one tick at the fixed point; stable below 1
+    double growth_rate_1_s = 0;  ///< of the slowest decay, or fastest growth: ln(spectral radius) / tick
+    double frequency_rad_s = 0;  ///< of that mode; 0 when it does not swing
+    int growing_modes = 0;       ///< eigenvalues outside the unit circle
+
+    double force_slope_n_m = 0;      ///< dF/dz at the trim commands; positive pulls away from the height that is held
+    double force_gain_n_m = 0;       ///< what position_kp sets against it: force in effect per metre of error
+    double torque_slope_nm_rad = 0;  ///< dT2/dpitch at the trim commands; positive tips over
+    double torque_gain_nm_rad = 0;   ///< what k5 ku5 set against it: torque in effect per radian of error
+};
+
+/// Whether a vehicle can hover at a point with its own controller, and in what manner.
+struct HoverAnalysis {
+    HoldVerdict verdict = HoldVerdict::not_flyable;
+    HoverTrim trim;            ///< from no_equilibrium on
+    HoverStability stability;  ///< for unstable and stable
+};
+
+/// Whether the vehicle can hover with its centre of mass at (x, z) and the arm at an angle, with surface effects
+/// evaluated directly. Linear theory: it says what becomes of disturbances of a millimetre, not how far they may be.
+/// @param x_m,z_m,arm_rad finite; where the vehicle itself should be (not its reference)
+[[nodiscard]] DOWNWASH_EXPORT HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m,
+                                                          double arm_rad);
+
+}  // namespace downwash
