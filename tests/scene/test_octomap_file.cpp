@@ -1,0 +1,226 @@
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <sstream>
+#include <tuple>
+
+#include "../support/random.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/octomap_file.hpp"
+
+using namespace downwash;
+using downwash::test::Random;
+
+namespace {
+
+const std::string header = "# Octomap OcTree binary file\n# a comment\nid OcTree\nsize 3\nres 0.5\ndata\n";
+// The root's children: 0 is occupied, 7 follows. Of that one's, child 5 is free: the tree has four nodes.
+const std::string nodes("\x02\xc0\x00\x04", 4);
+
+std::string sound() {
+    std::string text = header;
+    return text.replace(text.find("size 3"), 6, "size 4") + nodes;
+}
+
+std::string with(std::string_view from, std::string_view to) {
+    std::string text = sound();
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+std::string said_of(std::string_view bytes) {
+    try {
+        static_cast<void>(parse_octomap(bytes, "a.bt"));
+        return "sound";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+/// Cubes as (side, centre), in a certain order.
+using Cubes = std::vector<std::tuple<double, double, double, double>>;
+
+Cubes sorted(Cubes cubes) {
+    std::sort(cubes.begin(), cubes.end());
+    return cubes;
+}
+
+Cubes cubes_of(const OccupancyTree& tree) {
+    Cubes cubes;
+    for (const OccupiedCube& cube : tree.cubes) {
+        cubes.emplace_back(cube.side_m, cube.center_m[0], cube.center_m[1], cube.center_m[2]);
+    }
+    return sorted(cubes);
+}
+
+/// What OctoMap itself holds occupied.
+Cubes cubes_of(const octomap::OcTree& tree) {
+    Cubes cubes;
+    for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+        if (tree.isNodeOccupied(*leaf)) {
+            // Its coordinates are floats: from the key they are doubles.
+            const octomap::OcTreeKey key = leaf.getIndexKey();
+            const unsigned depth = leaf.getDepth();
+            cubes.emplace_back(tree.getNodeSize(depth), tree.keyToCoord(key[0], depth), tree.keyToCoord(key[1], depth),
+                               tree.keyToCoord(key[2], depth));
+        }
+    }
+    return sorted(cubes);
+}
+
+/// A tree of occupied and free voxels near the origin, some blocks of them full and so pruned to larger cubes.
+void fill(octomap::OcTree& tree, Random& random) {
+    const int corner = random.integer(-40, 30);
+    for (int i = 0; i < 300; ++i) {
+        const auto near = [&random, corner] {
+            return static_cast<std::uint16_t>(32768 + corner + random.integer(0, 15));
+        };
+        tree.updateNode(octomap::OcTreeKey(near(), near(), near()), random.integer(0, 2) > 0);
+    }
+    const auto block = static_cast<std::uint16_t>(32768 + 16 * random.integer(-3, 3));
+    for (std::uint16_t i = 0; i < 8 * 8 * 8; ++i) {
+        const auto at = [block](int offset) { return static_cast<std::uint16_t>(block + offset); };
+        for (int hits = 0; hits < 8; ++hits) {  // up to the greatest probability: only equal leaves are pruned
+            tree.updateNode(octomap::OcTreeKey(at(i % 8), at(i / 8 % 8), at(i / 64)), true);
+        }
+    }
+    tree.prune();
+}
+
+}  // namespace
+
+TEST_CASE("Two bits for each child: free, occupied, or a node that follows") {
+    const OccupancyTree tree = parse_octomap(sound(), "a.bt");
+    CHECK(tree.resolution_m == 0.5);
+    // The lowest eighth of 65536 cells of half a metre.
+    CHECK(cubes_of(tree) == Cubes{{16384, -8192, -8192, -8192}});
+}
+
+TEST_CASE("What OctoMap writes is read as OctoMap holds it") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        octomap::OcTree tree(random.uniform(0.01, 0.5));
+        fill(tree, random);
+        std::stringstream full;
+        tree.write(full);
+        const OccupancyTree found = parse_octomap(full.str(), "a.ot");
+        // The header has six digits of the resolution, so it is OctoMap's own reading that counts.
+        const std::unique_ptr<octomap::AbstractOcTree> again(octomap::AbstractOcTree::read(full));
+        REQUIRE(cubes_of(found) == cubes_of(dynamic_cast<const octomap::OcTree&>(*again)));
+        REQUIRE(std::any_of(found.cubes.begin(), found.cubes.end(),
+                            [&found](const OccupiedCube& cube) { return cube.side_m > 7 * found.resolution_m; }));
+
+        std::stringstream binary;
+        tree.writeBinary(binary);
+        octomap::OcTree binary_again(0.1);
+        REQUIRE(binary_again.readBinary(binary));
+        REQUIRE(cubes_of(parse_octomap(binary.str(), "a.bt")) == cubes_of(binary_again));
+    }
+}
+
+TEST_CASE("Voxels in the outermost corners are where OctoMap has them") {
+    octomap::OcTree tree(0.25);
+    tree.updateNode(octomap::OcTreeKey(0, 0, 0), true);
+    tree.updateNode(octomap::OcTreeKey(65535, 65535, 65535), true);
+    std::stringstream stream;
+    tree.writeBinary(stream);
+    CHECK(cubes_of(parse_octomap(stream.str(), "a.bt")) ==
+          Cubes{{0.25, -8191.875, -8191.875, -8191.875}, {0.25, 8191.875, 8191.875, 8191.875}});
+}
+
+TEST_CASE("Faulty octree headers are refused with their line") {
+    REQUIRE(said_of(sound()) == "sound");
+    CHECK(said_of("") == "'a.bt' line 1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
+    CHECK(said_of("solid\n") ==
+          "'a.bt' line 1: found 'solid', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
+    CHECK(said_of(with("id OcTree", "id ColorOcTree")) ==
+          "'a.bt' line 3: a tree of kind 'ColorOcTree': expected OcTree");
+    CHECK(said_of(with("id OcTree\n", "")) == "'a.bt' line 5: the header ends: expected a line 'id' before it");
+    CHECK(said_of(with("size 4", "size -4")) == "'a.bt' line 4: found '-4', expected the number of nodes");
+    CHECK(said_of(with("res 0.5", "res 0")) == "'a.bt' line 5: found '0', expected a resolution from 0.0001 to 30 m");
+    CHECK(said_of(with("res 0.5", "res nan")) ==
+          "'a.bt' line 5: found 'nan', expected a resolution from 0.0001 to 30 m");
+    CHECK(said_of(with("res 0.5", "res 31")) == "'a.bt' line 5: found '31', expected a resolution from 0.0001 to 30 m");
+    CHECK(said_of(with("res 0.5", "size 4")) ==
+          "'a.bt' line 5: found 'size', expected id, size and res once each, then 'data'");
+    CHECK(said_of(with("res 0.5", "res 0.5 m")) ==
+          "'a.bt' line 5: found 3 words, expected a key and its value, or 'data'");
+    CHECK(said_of(sound().substr(0, sound().find("data"))) ==
+          "'a.bt' line 5: the header ends here: expected a line 'data' of its own");
+}
+
+TEST_CASE("Faulty streams of nodes are refused with their byte") {
+    const std::size_t data = header.size();
+    const std::string at = "'a.bt' byte ";
+    CHECK(said_of(header + nodes) ==
+          at + std::to_string(data + 4) + ": one node more than 3: expected as many as the header's size");
+    CHECK(said_of(with("size 4", "size 5")) ==
+          at + std::to_string(data + 4) + ": the nodes end after 4: expected 5 as the header's size says");
+    CHECK(said_of(sound() + "x") == at + std::to_string(data + 4) + ": 1 bytes after the last node: expected none");
+    CHECK(said_of(sound().substr(0, data + 3)) ==
+          at + std::to_string(data + 3) + ": the file ends after 3 of 4 nodes: expected all of them");
+    CHECK(said_of(with("size 4", "size 18446744073709551615").substr(0, data + 22)) ==
+          at + std::to_string(data + 22) +
+              ": the file ends after 3 of 18446744073709551615 nodes: expected all of them");
+    CHECK(said_of(with(nodes, std::string("\x02\xc0\x00\x00", 4))) ==
+          at + std::to_string(data + 2) +
+              ": a node without children among the inner nodes: expected at least one child");
+    CHECK(said_of(with("size 4", "size 2").substr(0, data) + std::string("\x01\x00", 2)) ==
+          "'a.bt' has no occupied leaf: expected at least one");
+    // Sixteen levels end at the resolution; there is nothing below.
+    std::string deep = with("size 4", "size 99").substr(0, data + 1);
+    for (int i = 0; i < 20; ++i) {
+        deep += std::string("\x03\x00", 2);
+    }
+    CHECK(said_of(deep) == at + std::to_string(data + 33) + ": a node below level 16: expected no more levels");
+}
+
+TEST_CASE("Probabilities that are none are refused, as are those of the other byte order") {
+    octomap::OcTree tree(0.1);
+    Random random(3);
+    fill(tree, random);
+    std::stringstream stream;
+    tree.write(stream);
+    const std::string whole = stream.str();
+    const std::size_t data = whole.find("data\n") + 5;
+    REQUIRE(said_of(whole) == "sound");
+    std::string holding_nan = whole;
+    holding_nan.replace(data, 4, std::string("\x00\x00\xc0\x7f", 4));
+    CHECK(said_of(holding_nan) == "'a.bt' byte " + std::to_string(data) +
+                                      ": found log odds of nan, expected a finite number of at most 1000 in size, "
+                                      "little-endian");
+    std::string swapped = whole;
+    for (std::size_t node = data; node < swapped.size(); node += 5) {
+        std::reverse(swapped.begin() + static_cast<std::ptrdiff_t>(node),
+                     swapped.begin() + static_cast<std::ptrdiff_t>(node) + 4);
+    }
+    CHECK_THAT(said_of(swapped), Catch::Contains("little-endian"));
+}
+
+TEST_CASE("No beginning of an octree file passes for the whole, nor does one with a byte more") {
+    octomap::OcTree tree(0.1);
+    Random random(4);
+    fill(tree, random);
+    std::stringstream full, binary;
+    tree.write(full);
+    tree.writeBinary(binary);
+    for (const std::string& whole : {full.str(), binary.str()}) {
+        REQUIRE(said_of(whole) == "sound");
+        REQUIRE(said_of(whole + '\0') != "sound");
+        for (std::size_t size = 0; size < whole.size(); ++size) {
+            REQUIRE(said_of(whole.substr(0, size)) != "sound");
+        }
+    }
+}
+
+TEST_CASE("Trees of colours are refused") {
+    octomap::ColorOcTree tree(0.1);
+    tree.updateNode(octomap::OcTreeKey(32768, 32768, 32768), true);
+    std::stringstream stream;
+    tree.write(stream);
+    CHECK_THAT(said_of(stream.str()), Catch::Contains("a tree of kind 'ColorOcTree': expected OcTree"));
+}
