@@ -19,7 +19,8 @@ struct PlanarPose {
 
 /// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
 /// Bounding boxes dismiss what is plainly apart; then FCL decides contact, and distances are enclosed to 1e-8 m
-/// (scene/convex.hpp says how). No query allocates while nothing touches. A pose that is not finite is in contact.
+/// (scene/convex.hpp says how). A body inside a closed mesh is in contact. No query allocates while nothing touches. A
+/// pose that is not finite is in contact.
 /// @pre angles of at most 1e5 rad
 class DOWNWASH_EXPORT CollisionChecker {
  public:
@@ -41,7 +42,8 @@ class DOWNWASH_EXPORT CollisionChecker {
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Euclidean distance from a level disc to the nearest obstacle [m]; 0 on contact, infinity without obstacles.
+/// Euclidean distance from a level disc to the nearest obstacle [m]; 0 on contact and inside closed meshes, infinity
+/// without obstacles.
 /// This decides the flyable area (thesis figure 5.4).
 [[nodiscard]] DOWNWASH_EXPORT double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radius_m);
 
@@ -49,5 +51,10 @@ class DOWNWASH_EXPORT CollisionChecker {
 /// disc_clearance_m, sooner.
 [[nodiscard]] DOWNWASH_EXPORT bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                  double distance_m);
+
+/// Distance from a point to the nearest obstacle within the horizontal plane through the point [m], to 1e-8: that to
+/// walls, not to ground and ceiling. 0 inside an obstacle, infinity when the plane cuts none. Where the plane just
+/// grazes a round solid it may be less than the truth, by up to a hundredth of the solid's radius.
+[[nodiscard]] DOWNWASH_EXPORT double horizontal_clearance_m(const Scene& scene, const Vector3& point_m);
 
 }  // namespace downwash

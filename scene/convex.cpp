@@ -26,6 +26,10 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 /// The point of the solid without its ball that lies farthest in `direction`.
 Vector3 support(const Convex& convex, const Vector3& direction) {
     Vector3 point = convex.center_m;
+    if (convex.is_triangle) {
+        const auto farther = [&](const Vector3& a, const Vector3& b) { return dot(a, direction) < dot(b, direction); };
+        return point + *std::max_element(convex.half_axes_m.begin(), convex.half_axes_m.end(), farther);
+    }
     for (std::size_t i = 0; i < static_cast<std::size_t>(convex.segment_count); ++i) {
         const Vector3& axis = convex.half_axes_m[i];
         point = dot(axis, direction) < 0 ? point - axis : point + axis;
@@ -205,7 +209,8 @@ Vector3 half_extents_m(const Convex& convex) noexcept {
     Vector3 half{ball, ball, ball};
     for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(convex.segment_count); ++i) {
-            half[k] += std::abs(convex.half_axes_m[i][k]);
+            const double reach = std::abs(convex.half_axes_m[i][k]);
+            half[k] = convex.is_triangle ? std::max(half[k], reach) : half[k] + reach;
         }
         if (convex.disc_radius_m > 0) {
             const double b = convex.disc_normal[(k + 1) % 3];

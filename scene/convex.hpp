@@ -1,6 +1,7 @@
 #pragma once
 
 // Convex solids as sums of simple parts, and the distance between two of them. Private: not installed.
+// Triangles are solids of no thickness.
 
 #include <array>
 
@@ -15,11 +16,13 @@ struct Placement {
 };
 
 /// All points center + (segments: sum of s_i half_axes[i], |s_i| <= 1) + (a point of the disc) + (a point of the ball).
-/// A box is three segments, a cylinder one segment and a disc, a capsule one segment and a ball, a sphere a ball.
+/// A box is three segments, a cylinder one segment and a disc, a capsule one segment and a ball, a sphere a ball. In a
+/// triangle, center + half_axes[i] are the corners instead, and center is that of its bounding box.
 /// Every vector is in one frame, which the owner names.
 struct Convex {
     Vector3 center_m{};
     int segment_count = 0;
+    bool is_triangle = false;
     std::array<Vector3, 3> half_axes_m{};
     Vector3 disc_normal{0, 0, 1};  ///< unit vector
     double disc_radius_m = 0;

@@ -8,8 +8,39 @@
 namespace downwash {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 Convex level_disc(const Vector3& center_m, double radius_m) {
     return {.center_m = center_m, .disc_radius_m = radius_m};
+}
+
+/// How far a point lies from a box within the horizontal plane through it; infinite when the plane passes the box by.
+double level_gap_m(const Scene::Bounds& box, const Vector3& p_m) {
+    if (p_m[2] < box.low_m[2] || p_m[2] > box.high_m[2]) {
+        return infinity;
+    }
+    return std::max(
+        {0.0, box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1]});
+}
+
+/// The radius at which a level disc around the point first touches a solid that the disc's plane cuts; any lower bound
+/// of it that is at least `enough_m`. The distance of a growing disc is a convex function of its radius, so that the
+/// line through two of its values meets zero before the function does.
+double touching_radius_m(const Convex& solid, const Vector3& p_m, double enough_m) {
+    constexpr double tolerance_m = 1e-9;
+    constexpr int most_steps = 60;  // a handful but where the plane grazes a round solid
+    double radius = 0;
+    double distance = distance_m(level_disc(p_m, 0), solid, infinity);
+    double next = distance;
+    for (int step = 0; step < most_steps && distance > tolerance_m && next < enough_m; ++step) {
+        const double before = distance;
+        const double grown = next - radius;
+        radius = next;
+        distance = distance_m(level_disc(p_m, radius), solid, infinity);
+        const double fall = before - distance;
+        next = radius + (fall > 0 ? std::max(distance, distance * grown / fall) : distance);
+    }
+    return std::max(radius, distance <= tolerance_m ? radius : next);
 }
 
 }  // namespace
@@ -18,25 +49,40 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
     const Scene::Solids& solids = scene.solids();
     const Convex disc = level_disc(center_m, radius_m);
     const Scene::Bounds bounds = bounds_of(disc);
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < solids.convexes.size(); ++i) {
-        if (gap_m(bounds, solids.bounds[i]) < least) {
-            least = std::min(least, distance_m(disc, solids.convexes[i], least));
+    double least = infinity;
+    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
+    solids.parts.tree.any(gap, least, [&](std::size_t part) {
+        if (gap(solids.parts.bounds(part)) < least) {
+            least = std::min(least, distance_m(disc, solids.parts.convex(part), least));
         }
-    }
-    return std::max(0.0, least);
+        return least <= 0;
+    });
+    return least <= 0 || solids.is_inside_mesh(center_m) ? 0 : least;
 }
 
 bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double distance_m) {
     const Scene::Solids& solids = scene.solids();
     const Convex disc = level_disc(center_m, radius_m);
     const Scene::Bounds bounds = bounds_of(disc);
-    for (std::size_t i = 0; i < solids.convexes.size(); ++i) {
-        if (gap_m(bounds, solids.bounds[i]) <= distance_m && is_nearer_than(disc, solids.convexes[i], distance_m)) {
-            return false;
+    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
+    const bool is_near = solids.parts.tree.any(gap, distance_m, [&](std::size_t part) {
+        return gap(solids.parts.bounds(part)) <= distance_m &&
+               is_nearer_than(disc, solids.parts.convex(part), distance_m);
+    });
+    return !is_near && !solids.is_inside_mesh(center_m);
+}
+
+double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
+    const Scene::Solids& solids = scene.solids();
+    double least = infinity;
+    const auto gap = [&](const Scene::Bounds& box) { return level_gap_m(box, point_m); };
+    solids.parts.tree.any(gap, least, [&](std::size_t part) {
+        if (gap(solids.parts.bounds(part)) < least) {
+            least = std::min(least, touching_radius_m(solids.parts.convex(part), point_m, least));
         }
-    }
-    return true;
+        return least <= 0;
+    });
+    return solids.is_inside_mesh(point_m) ? 0 : std::max(0.0, least);
 }
 
 }  // namespace downwash

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
+#include "downwash/scene/mesh_surface.hpp"
+#include "downwash/scene/octree_boxes.hpp"
 #include "downwash/scene/solids.hpp"
 
 namespace downwash {
@@ -58,15 +61,21 @@ void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<
     }
 }
 
+/// Adds the faults of any shape.
+struct ShapeInspector {
+    const std::string& key;
+    std::vector<Fault>& faults;
+
+    void operator()(const Mesh& mesh) const { inspect(mesh, key, faults); }
+    void operator()(const Octomap& octomap) const { inspect(octomap, key, faults); }
+    void operator()(const Primitive& primitive) const { inspect(primitive, key, faults); }
+};
+
 void require_valid(const std::vector<Obstacle>& obstacles) {
     std::vector<Fault> faults;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
-        if (const auto primitive = primitive_of(obstacles[i].shape)) {
-            inspect(*primitive, key, faults);
-        } else {
-            faults.push_back({key, "is a mesh or an octree, which a scene cannot hold yet"});
-        }
+        std::visit(ShapeInspector{key, faults}, obstacles[i].shape);
         inspect_pose(obstacles[i], key, faults);
     }
     if (!faults.empty()) {
@@ -84,19 +93,85 @@ Matrix3 rotation_of(const Vector3& rpy_rad) {
              {-sp, cp * sr, cp * cr}}};
 }
 
+Vector3 turned(const Matrix3& r, const Vector3& v) {
+    return {r[0][0] * v[0] + r[0][1] * v[1] + r[0][2] * v[2], r[1][0] * v[0] + r[1][1] * v[1] + r[1][2] * v[2],
+            r[2][0] * v[0] + r[2][1] * v[1] + r[2][2] * v[2]};
+}
+
+void widen(Scene::Bounds& bounds, const Scene::Bounds& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        bounds.low_m[k] = std::min(bounds.low_m[k], other.low_m[k]);
+        bounds.high_m[k] = std::max(bounds.high_m[k], other.high_m[k]);
+    }
+}
+
+/// Adds the parts of one obstacle and returns the bounds of them all.
+struct PartsMaker {
+    const Obstacle& obstacle;
+    const std::string& key;
+    Scene::Solids& solids;
+
+    Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const {
+        const Vector3 p = turned(rotation, p_m);
+        return {obstacle.center_m[0] + p[0], obstacle.center_m[1] + p[1], obstacle.center_m[2] + p[2]};
+    }
+    void require_room(std::size_t more, const char* name) const {
+        if (solids.parts.count() + more >= too_many_parts) {
+            throw InputError(
+                {{key + name,
+                  "brings the scene above 2000000 triangles and boxes: leave out what the robot cannot reach"}});
+        }
+    }
+    Scene::Bounds operator()(const Primitive& primitive) const {
+        solids.parts.add(primitive, obstacle.center_m, placement_of(primitive, rotation_of(obstacle.rpy_rad)));
+        return solids.parts.primitive_bounds.back();
+    }
+    Scene::Bounds operator()(const Octomap& octomap) const {
+        const std::vector<LocalBox> boxes = merged_boxes(*octomap.tree);
+        require_room(boxes.size(), ".octomap.file");
+        Parts& parts = solids.parts;
+        const Placement placement = placement_of(Box{}, rotation_of(obstacle.rpy_rad));
+        const auto turn = static_cast<std::uint32_t>(parts.octree_placements.size());
+        parts.octree_placements.push_back(placement);
+        Scene::Bounds bounds = nothing;
+        for (const LocalBox& box : boxes) {
+            const OctreeBox placed{to_world(placement.rotation, box.center_m), box.size_m, turn};
+            parts.octree_boxes.push_back(placed);
+            widen(bounds, bounds_of(convex_of(Box{placed.size_m}, placed.center_m, placement)));
+        }
+        return bounds;
+    }
+    Scene::Bounds operator()(const Mesh& mesh) const {
+        require_room(mesh.surface->triangles.size(), ".mesh.file");
+        std::vector<Triangle>& triangles = solids.parts.triangles;
+        const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
+        const std::size_t first = triangles.size();
+        Scene::Bounds bounds = nothing;
+        for (Triangle triangle : scaled_triangles(mesh)) {
+            for (Vector3& corner : triangle) {
+                corner = to_world(rotation, corner);
+            }
+            triangles.push_back(triangle);
+            widen(bounds, bounds_of(triangle));
+        }
+        if (is_closed(*mesh.surface)) {
+            solids.closed_surfaces.push_back({first, triangles.size(), bounds});
+        }
+        return bounds;
+    }
+
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+    static constexpr Scene::Bounds nothing{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+};
+
 std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
     require_valid(obstacles);
     auto solids = std::make_unique<Scene::Solids>();
-    for (const Obstacle& obstacle : obstacles) {
-        const Primitive primitive = *primitive_of(obstacle.shape);
-        const Placement placement = placement_of(primitive, rotation_of(obstacle.rpy_rad));
-        const Convex convex = convex_of(primitive, obstacle.center_m, placement);
-        solids->primitives.push_back(primitive);
-        solids->placements.push_back(placement);
-        solids->convexes.push_back(convex);
-        solids->seen_from_above.push_back(seen_from_above(primitive, placement));
-        solids->bounds.push_back(bounds_of(convex));
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+        const std::string key = "obstacles[" + std::to_string(i) + "]";
+        solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], key, *solids}, obstacles[i].shape));
     }
+    solids->parts.index();
     solids->obstacles = std::move(obstacles);
     return solids;
 }
@@ -107,17 +182,25 @@ void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>&
     std::visit(SizeInspector{key, faults}, shape);
 }
 
-std::optional<Primitive> primitive_of(const Shape& shape) {
-    if (const auto* box = std::get_if<Box>(&shape)) {
-        return *box;
-    }
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-        return *cylinder;
-    }
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        return *sphere;
-    }
-    return std::nullopt;
+bool Scene::Solids::is_inside_mesh(const Vector3& p_m) const noexcept {
+    const auto apart_upwards = [&](const Bounds& box) {
+        return std::max({box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1],
+                         p_m[2] - box.high_m[2]});
+    };
+    return std::any_of(closed_surfaces.begin(), closed_surfaces.end(), [&](const ClosedSurface& surface) {
+        if (apart_upwards(surface.bounds) > 0 || p_m[2] < surface.bounds.low_m[2]) {
+            return false;
+        }
+        int turns = 0;
+        parts.tree.any(apart_upwards, 0, [&](std::size_t part) {
+            const std::size_t triangle = part - parts.first_triangle();  // huge for other parts
+            if (triangle >= surface.first && triangle < surface.last) {
+                turns += winding_above(parts.triangles[triangle], p_m);
+            }
+            return false;
+        });
+        return turns != 0;
+    });
 }
 
 Scene::Scene(std::vector<Obstacle> obstacles) : solids_(placed(std::move(obstacles))) {}
@@ -131,6 +214,14 @@ const std::vector<Obstacle>& Scene::obstacles() const noexcept {
 
 const Scene::Bounds& Scene::bounds(std::size_t obstacle) const noexcept {
     return solids_->bounds[obstacle];
+}
+
+std::size_t Scene::part_count() const noexcept {
+    return solids_->parts.count();
+}
+
+Scene::Bounds Scene::part_bounds(std::size_t part) const noexcept {
+    return solids_->parts.bounds(part);
 }
 
 const Scene::Solids& Scene::solids() const noexcept {

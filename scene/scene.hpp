@@ -18,7 +18,9 @@ struct Interval {
 /// The obstacles of the world, placed once and never changed; safe to share between threads.
 class DOWNWASH_EXPORT Scene {
  public:
-    /// @throws InputError when a shape has a size that is not finite and positive, or an axis of no length
+    /// @throws InputError when a shape has a size that is not finite and positive, or an axis of no length; when a mesh
+    /// or an octree has nothing in it, is not finite, refers to vertices it has not got, or the scene has more than
+    /// 2,000,000 triangles and boxes. Triangles without area are left out.
     explicit Scene(std::vector<Obstacle> obstacles);
     ~Scene();
     Scene(const Scene&) = delete;
@@ -34,17 +36,26 @@ class DOWNWASH_EXPORT Scene {
     };
     [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;
 
-    /// The stretch of the vertical line through world (x, y) that lies inside one obstacle, as heights z [m].
-    [[nodiscard]] Interval vertical_extent(std::size_t obstacle, double x_m, double y_m) const noexcept;
+    /// Obstacles consist of convex parts: a mesh of its triangles, an octree of boxes that fill what its cubes fill,
+    /// any other is its own only part. Parts are numbered through; those of primitives come first, in the obstacles'
+    /// order.
+    [[nodiscard]] std::size_t part_count() const noexcept;
 
-    /// The stretch of the horizontal line p + s (dx, dy), |(dx, dy)| = 1, that lies in one obstacle's vertical
-    /// shadow (its projection onto the ground), in metres s.
-    [[nodiscard]] Interval shadow_on_line(std::size_t obstacle, double px_m, double py_m, double dx,
+    /// World-aligned bounding box of one part [m].
+    [[nodiscard]] Bounds part_bounds(std::size_t part) const noexcept;
+
+    /// The stretch of the vertical line through world (x, y) that lies inside one part, as heights z [m]: a single
+    /// height in a triangle. Upright triangles are not met.
+    [[nodiscard]] Interval vertical_extent(std::size_t part, double x_m, double y_m) const noexcept;
+
+    /// The stretch of the horizontal line p + s (dx, dy), |(dx, dy)| = 1, that lies in one part's vertical shadow (its
+    /// projection onto the ground), in metres s. Upright triangles have none.
+    [[nodiscard]] Interval shadow_on_line(std::size_t part, double px_m, double py_m, double dx,
                                           double dy) const noexcept;
 
-    /// Whether one obstacle's upper and lower faces are level planes over its whole shadow (a box without roll or
-    /// pitch, an upright cylinder), so that its vertical extent is the same wherever it is above or below.
-    [[nodiscard]] bool is_level(std::size_t obstacle) const noexcept;
+    /// Whether one part's upper and lower faces are level planes over its whole shadow (a box without roll or pitch, an
+    /// upright cylinder, a level triangle), so that its vertical extent is the same wherever it is above or below.
+    [[nodiscard]] bool is_level(std::size_t part) const noexcept;
 
     /// The placed obstacles for the collision library; only scene/ looks inside.
     struct Solids;

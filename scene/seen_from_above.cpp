@@ -18,19 +18,7 @@ double inverse_or_zero(double x) {
 }
 
 SeenFromAbove prepared(const Box& box, const Placement& placement) {
-    const Matrix3& r = placement.rotation;
-    BoxFromAbove form{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        form.faces[i] = {r[0][i], r[1][i], inverse_or_zero(without_negligible(r[2][i])), 0.5 * box.size_m[i]};
-        const double nx = -without_negligible(r[1][i]);
-        const double ny = without_negligible(r[0][i]);
-        double reach = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            reach += std::abs(nx * r[0][k] + ny * r[1][k]) * 0.5 * box.size_m[k];
-        }
-        form.shadow[i] = {nx, ny, 0, reach};
-    }
-    return form;
+    return box_from_above(box, placement);
 }
 
 SeenFromAbove prepared(const Sphere& sphere, const Placement&) {
@@ -57,6 +45,22 @@ SeenFromAbove prepared(const Cylinder& cylinder, const Placement& placement) {
 }
 
 }  // namespace
+
+BoxFromAbove box_from_above(const Box& box, const Placement& placement) {
+    const Matrix3& r = placement.rotation;
+    BoxFromAbove form{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        form.faces[i] = {r[0][i], r[1][i], inverse_or_zero(without_negligible(r[2][i])), 0.5 * box.size_m[i]};
+        const double nx = -without_negligible(r[1][i]);
+        const double ny = without_negligible(r[0][i]);
+        double reach = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            reach += std::abs(nx * r[0][k] + ny * r[1][k]) * 0.5 * box.size_m[k];
+        }
+        form.shadow[i] = {nx, ny, 0, reach};
+    }
+    return form;
+}
 
 SeenFromAbove seen_from_above(const Primitive& shape, const Placement& placement) {
     return std::visit([&](const auto& solid) { return prepared(solid, placement); }, shape);

@@ -35,6 +35,8 @@ struct CylinderFromAbove {
 
 using SeenFromAbove = std::variant<BoxFromAbove, SphereFromAbove, CylinderFromAbove>;
 
+[[nodiscard]] BoxFromAbove box_from_above(const Box& box, const Placement& placement);
+
 [[nodiscard]] SeenFromAbove seen_from_above(const Primitive& shape, const Placement& placement);
 
 /// Whether upper and lower face are level planes over the whole shadow.

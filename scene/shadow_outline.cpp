@@ -51,12 +51,12 @@ void set_slope(ShadowOutline& outline, const Matrix3& r) {
     outline.slope_y = r[1][chosen] / level_part(chosen);
 }
 
-ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement& placement) {
+ShadowOutline outline_of(const Box& box, const Vector3& center_m, const Placement& placement) {
     ShadowOutline outline;
     const Matrix3& r = placement.rotation;
     set_slope(outline, r);
     const auto corner = [&](const std::array<double, 3>& signs, std::size_t row) {
-        double position = solid.center_m[row];
+        double position = center_m[row];
         for (std::size_t k = 0; k < 3; ++k) {
             position += r[row][k] * 0.5 * signs[k] * box.size_m[k];
         }
@@ -82,16 +82,16 @@ ShadowOutline outline_of(const Box& box, const Obstacle& solid, const Placement&
     return outline;
 }
 
-ShadowOutline outline_of(const Sphere& sphere, const Obstacle& solid, const Placement&) {
-    return {1, 0, {}, {{solid.center_m[0], solid.center_m[1], 1, 0, sphere.radius_m, sphere.radius_m, true, true}}};
+ShadowOutline outline_of(const Sphere& sphere, const Vector3& center_m, const Placement&) {
+    return {1, 0, {}, {{center_m[0], center_m[1], 1, 0, sphere.radius_m, sphere.radius_m, true, true}}};
 }
 
-ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const Placement& placement) {
+ShadowOutline outline_of(const Cylinder& cylinder, const Vector3& center_m, const Placement& placement) {
     ShadowOutline outline;
     const Vector3& axis = placement.axis_world;
     const double level = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
-    const double x = solid.center_m[0];
-    const double y = solid.center_m[1];
+    const double x = center_m[0];
+    const double y = center_m[1];
     const double r = cylinder.radius_m;
     if (level < negligible_tilt) {
         outline.ellipses.push_back({x, y, 1, 0, r, r, true, true});
@@ -121,13 +121,49 @@ ShadowOutline outline_of(const Cylinder& cylinder, const Obstacle& solid, const 
     return outline;
 }
 
+/// Every edge: where triangles meet, a surface may crease.
+ShadowOutline outline_of(const Triangle& t) {
+    ShadowOutline outline;
+    if (!has_shadow(t)) {
+        return outline;
+    }
+    const Vector3 normal = normal_of(t);
+    const double level = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1]);
+    if (is_level(t)) {
+        const double x = t[1][0] - t[0][0];
+        const double y = t[1][1] - t[0][1];
+        const double length = std::sqrt(x * x + y * y);
+        outline.slope_x = x / length;
+        outline.slope_y = y / length;
+    } else {
+        outline.slope_x = normal[0] / level;
+        outline.slope_y = normal[1] / level;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vector3& a = t[i];
+        const Vector3& b = t[(i + 1) % 3];
+        outline.segments.push_back({a[0], a[1], b[0], b[1], true, true});
+    }
+    return outline;
+}
+
 }  // namespace
 
-ShadowOutline shadow_outline(const Scene& scene, std::size_t obstacle) {
-    const Obstacle& solid = scene.solids().obstacles[obstacle];
-    const Placement& placement = scene.solids().placements[obstacle];
-    return std::visit([&](const auto& shape) { return outline_of(shape, solid, placement); },
-                      scene.solids().primitives[obstacle]);
+ShadowOutline shadow_outline(const Scene& scene, std::size_t part) {
+    const Parts& parts = scene.solids().parts;
+    return parts.visit(
+        part,
+        [&](std::size_t i) {
+            return std::visit(
+                [&](const auto& shape) {
+                    return outline_of(shape, parts.primitive_centers_m[i], parts.primitive_placements[i]);
+                },
+                parts.primitives[i]);
+        },
+        [](const OctreeBox& box, const Placement& placement) {
+            return outline_of(Box{box.size_m}, box.center_m, placement);
+        },
+        [](const Triangle& triangle) { return outline_of(triangle); });
 }
 
 }  // namespace downwash

@@ -2,31 +2,37 @@
 
 // What scene/ knows about the placed obstacles beyond the public header. Private: not installed.
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "downwash/base/fault.hpp"
-#include "downwash/scene/convex.hpp"
+#include "downwash/scene/parts.hpp"
 #include "downwash/scene/scene.hpp"
-#include "downwash/scene/seen_from_above.hpp"
 
 namespace downwash {
 
-/// Six lists of equal length, one entry per obstacle, in the world frame N.
+/// Everything in the world frame N.
 struct Scene::Solids {
+    /// A mesh without a rim, which is solid: `first` to `last` - 1 of Parts::triangles.
+    struct ClosedSurface {
+        std::size_t first, last;
+        Bounds bounds;
+    };
+
     std::vector<Obstacle> obstacles;
-    std::vector<Primitive> primitives;
-    std::vector<Placement> placements;  ///< rotation = Rz(yaw) Ry(pitch) Rx(roll)
-    std::vector<Convex> convexes;
-    std::vector<SeenFromAbove> seen_from_above;
-    std::vector<Bounds> bounds;  ///< tight
+    std::vector<Bounds> bounds;  ///< of the obstacles, tight
+    Parts parts;
+    std::vector<ClosedSurface> closed_surfaces;
+
+    /// Whether a point lies inside a closed mesh. Points on its surface may count as either.
+    [[nodiscard]] bool is_inside_mesh(const Vector3& p_m) const noexcept;
 };
 
 /// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
 void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults);
 
-/// The primitive that a shape is, if it is one.
-std::optional<Primitive> primitive_of(const Shape& shape);
+/// The smallest number of parts that a scene refuses, over all its obstacles. It bounds the memory that a file can ask
+/// for: some 150 bytes a part.
+inline constexpr std::size_t too_many_parts = 2'000'001;
 
 }  // namespace downwash

@@ -1,5 +1,5 @@
-// Vertical lines through the obstacles, and their shadows on the ground. Every obstacle is convex, so each answer is
-// one interval, found in closed form.
+// Vertical lines through the parts of obstacles, and their shadows on the ground. Every part is convex, so each answer
+// is one interval, found in closed form.
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ double inverse_or_zero(double x) {
     return x == 0 ? 0 : 1 / x;
 }
 
-// The stretch of the vertical line through (x, y), all from the obstacle's centre.
+// The stretch of the vertical line through (x, y), all from the part's centre.
 
 Interval vertical(double x, double y, const BoxFromAbove& box) {
     Interval stretch = whole_line;
@@ -137,25 +137,50 @@ Interval shadow(double x_world, double y_world, double dx, double dy, const Cyli
 
 }  // namespace
 
-Interval Scene::vertical_extent(std::size_t obstacle, double x_m, double y_m) const noexcept {
-    const Vector3& center_m = solids_->obstacles[obstacle].center_m;
-    const Interval stretch =
-        std::visit([&](const auto& form) { return vertical(x_m - center_m[0], y_m - center_m[1], form); },
-                   solids_->seen_from_above[obstacle]);
-    if (!(stretch.low <= stretch.high)) {
-        return {};
-    }
-    return {center_m[2] + stretch.low, center_m[2] + stretch.high};
+Interval Scene::vertical_extent(std::size_t part, double x_m, double y_m) const noexcept {
+    const auto of_form = [&](const Vector3& center_m, const auto& form) {
+        const Interval stretch = vertical(x_m - center_m[0], y_m - center_m[1], form);
+        return stretch.low <= stretch.high ? Interval{center_m[2] + stretch.low, center_m[2] + stretch.high}
+                                           : Interval{};
+    };
+    const Parts& parts = solids_->parts;
+    return parts.visit(
+        part,
+        [&](std::size_t i) {
+            return std::visit([&](const auto& form) { return of_form(parts.primitive_centers_m[i], form); },
+                              parts.primitives_from_above[i]);
+        },
+        [&](const OctreeBox& box, const Placement& placement) {
+            return of_form(box.center_m, box_from_above(Box{box.size_m}, placement));
+        },
+        [&](const Triangle& triangle) { return downwash::vertical_extent(triangle, x_m, y_m); });
 }
 
-Interval Scene::shadow_on_line(std::size_t obstacle, double px_m, double py_m, double dx, double dy) const noexcept {
-    const Vector3& center_m = solids_->obstacles[obstacle].center_m;
-    return std::visit([&](const auto& form) { return shadow(px_m - center_m[0], py_m - center_m[1], dx, dy, form); },
-                      solids_->seen_from_above[obstacle]);
+Interval Scene::shadow_on_line(std::size_t part, double px_m, double py_m, double dx, double dy) const noexcept {
+    const auto of_form = [&](const Vector3& center_m, const auto& form) {
+        return shadow(px_m - center_m[0], py_m - center_m[1], dx, dy, form);
+    };
+    const Parts& parts = solids_->parts;
+    return parts.visit(
+        part,
+        [&](std::size_t i) {
+            return std::visit([&](const auto& form) { return of_form(parts.primitive_centers_m[i], form); },
+                              parts.primitives_from_above[i]);
+        },
+        [&](const OctreeBox& box, const Placement& placement) {
+            return of_form(box.center_m, box_from_above(Box{box.size_m}, placement));
+        },
+        [&](const Triangle& triangle) { return downwash::shadow_on_line(triangle, px_m, py_m, dx, dy); });
 }
 
-bool Scene::is_level(std::size_t obstacle) const noexcept {
-    return has_level_faces(solids_->seen_from_above[obstacle]);
+bool Scene::is_level(std::size_t part) const noexcept {
+    const Parts& parts = solids_->parts;
+    return parts.visit(
+        part, [&](std::size_t i) { return has_level_faces(parts.primitives_from_above[i]); },
+        [](const OctreeBox& box, const Placement& placement) {
+            return has_level_faces(box_from_above(Box{box.size_m}, placement));
+        },
+        [](const Triangle& triangle) { return downwash::is_level(triangle); });
 }
 
 }  // namespace downwash

@@ -1,0 +1,60 @@
+#include "downwash/scene/bounds_tree.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+namespace downwash {
+namespace {
+
+/// Fewer parts are asked one by one: testing two boxes costs about as much as testing two parts' own.
+constexpr std::uint32_t most_in_leaf = 8;
+
+Scene::Bounds hull(const Scene::Bounds& a, const Scene::Bounds& b) {
+    Scene::Bounds both{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        both.low_m[k] = std::min(a.low_m[k], b.low_m[k]);
+        both.high_m[k] = std::max(a.high_m[k], b.high_m[k]);
+    }
+    return both;
+}
+
+}  // namespace
+
+BoundsTree::BoundsTree(std::span<const Scene::Bounds> parts) : order_(parts.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (!parts.empty()) {
+        build(parts, 0, static_cast<std::uint32_t>(parts.size()));
+    }
+    nodes_.shrink_to_fit();
+}
+
+/// Halves the parts at the median of their middles along the longest side of their common box.
+void BoundsTree::build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last) {
+    Scene::Bounds all = parts[order_[first]];
+    for (std::uint32_t i = first + 1; i < last; ++i) {
+        all = hull(all, parts[order_[i]]);
+    }
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({all, first, last - first});
+    if (last - first <= most_in_leaf) {
+        return;
+    }
+    std::size_t axis = 0;
+    for (const std::size_t k : {1U, 2U}) {
+        axis = all.high_m[k] - all.low_m[k] > all.high_m[axis] - all.low_m[axis] ? k : axis;
+    }
+    const std::uint32_t middle = first + (last - first) / 2;
+    const auto is_lower = [&](std::uint32_t a, std::uint32_t b) {
+        const double at_a = parts[a].low_m[axis] + parts[a].high_m[axis];
+        const double at_b = parts[b].low_m[axis] + parts[b].high_m[axis];
+        return at_a < at_b || (at_a == at_b && a < b);
+    };
+    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, is_lower);
+    build(parts, first, middle);
+    nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].count = 0;
+    build(parts, middle, last);
+}
+
+}  // namespace downwash

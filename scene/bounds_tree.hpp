@@ -1,0 +1,74 @@
+#pragma once
+
+// Private to scene/.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "downwash/scene/scene.hpp"
+
+namespace downwash {
+
+/// A hierarchy of bounding boxes over numbered parts: finds those in question among millions without asking each. A
+/// few parts are one leaf and are asked one after the other, in their order.
+class BoundsTree {
+ public:
+    BoundsTree() = default;
+    explicit BoundsTree(std::span<const Scene::Bounds> parts);
+
+    /// Calls `visit(part)` for every part whose own box may have a gap of at most `limit`, nearer boxes first, until it
+    /// returns true; whether it did. `limit` may shrink meanwhile.
+    /// @param gap of a box; no box within another has a smaller one than that other
+    template <class Gap, class Visit>
+    bool any(const Gap& gap, const double& limit, const Visit& visit) const {
+        std::array<Entry, most_levels> open;
+        std::size_t count = 0;
+        if (!nodes_.empty()) {
+            open[count++] = {0, gap(nodes_[0].bounds)};
+        }
+        while (count > 0) {
+            const Entry entry = open[--count];
+            if (entry.gap > limit) {
+                continue;
+            }
+            const Node& node = nodes_[entry.node];
+            if (node.count > 0) {
+                for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+                    if (visit(static_cast<std::size_t>(order_[i]))) {
+                        return true;
+                    }
+                }
+                continue;
+            }
+            const Entry left{entry.node + 1, gap(nodes_[entry.node + 1].bounds)};
+            const Entry right{node.first, gap(nodes_[node.first].bounds)};
+            const bool is_left_nearer = left.gap <= right.gap;
+            open[count++] = is_left_nearer ? right : left;
+            open[count++] = is_left_nearer ? left : right;
+        }
+        return false;
+    }
+
+ private:
+    /// A leaf holds `count` parts from `first` on in order_; an inner node (count 0) has its children at the next
+    /// index and at `first`.
+    struct Node {
+        Scene::Bounds bounds;
+        std::uint32_t first, count;
+    };
+    struct Entry {
+        std::uint32_t node;
+        double gap;
+    };
+    /// Halving two thousand million parts takes 31 steps, and each leaves at most one node open.
+    static constexpr std::size_t most_levels = 40;
+
+    void build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last);
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> order_;
+};
+
+}  // namespace downwash

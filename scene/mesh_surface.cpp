@@ -1,0 +1,129 @@
+#include "downwash/scene/mesh_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "downwash/scene/solids.hpp"
+
+namespace downwash {
+namespace {
+
+/// Farther from its own origin no corner is of use, and squares stay finite.
+constexpr double farthest_m = 1e6;
+
+using Corners = std::array<Vector3, 3>;
+
+Corners corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    Corners corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vector3& vertex = mesh.surface->vertices_m[triangle[i]];
+        corners[i] = {mesh.scale * vertex[0], mesh.scale * vertex[1], mesh.scale * vertex[2]};
+    }
+    return corners;
+}
+
+bool has_area(const Corners& t) {
+    const Vector3 ab{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
+    const Vector3 ac{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};
+    return ab[1] * ac[2] != ab[2] * ac[1] || ab[2] * ac[0] != ab[0] * ac[2] || ab[0] * ac[1] != ab[1] * ac[0];
+}
+
+/// For every vertex the first one with the same coordinates.
+std::vector<std::uint32_t> welded(const std::vector<Vector3>& vertices) {
+    std::vector<std::uint32_t> order(vertices.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return vertices[a] < vertices[b] || (vertices[a] == vertices[b] && a < b);
+    });
+    std::vector<std::uint32_t> first(vertices.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool is_known = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+        first[order[i]] = is_known ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+}  // namespace
+
+void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& faults) {
+    const auto require = [&](bool holds, const std::string& name, const std::string& message) {
+        if (!holds) {
+            faults.push_back({key + name, message});
+        }
+        return holds;
+    };
+    const bool has_scale =
+        require(std::isfinite(mesh.scale) && mesh.scale > 0, ".mesh.scale", "must be a finite number above 0");
+    if (!has_scale || !require(mesh.surface != nullptr, ".mesh.file", "must have been read: there is no surface")) {
+        return;
+    }
+    const TriangleMesh& surface = *mesh.surface;
+    const auto is_near = [&](const Vector3& v) {
+        return std::all_of(v.begin(), v.end(), [&](double x) { return std::abs(mesh.scale * x) <= farthest_m; });
+    };
+    const auto is_known = [&](const std::array<std::uint32_t, 3>& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t corner) { return corner < surface.vertices_m.size(); });
+    };
+    const auto has_extent = [&](const std::array<std::uint32_t, 3>& triangle) {
+        return has_area(corners_of(mesh, triangle));
+    };
+    const auto& triangles = surface.triangles;
+    if (require(triangles.size() < too_many_parts, ".mesh.file",
+                "has " + std::to_string(triangles.size()) + " triangles: at most 2000000 are allowed") &&
+        require(std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_near), ".mesh.file",
+                "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin") &&
+        require(std::all_of(triangles.begin(), triangles.end(), is_known), ".mesh.file",
+                "has a triangle with a corner that is not among its vertices")) {
+        require(std::any_of(triangles.begin(), triangles.end(), has_extent), ".mesh.file",
+                "has no triangle with an area");
+    }
+}
+
+bool is_closed(const TriangleMesh& surface) {
+    struct Edge {
+        std::uint32_t low, high;
+        int direction;
+    };
+    const std::vector<std::uint32_t> corner = welded(surface.vertices_m);
+    std::vector<Edge> edges;
+    edges.reserve(3 * surface.triangles.size());
+    for (const auto& triangle : surface.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t from = corner[triangle[i]];
+            const std::uint32_t to = corner[triangle[(i + 1) % 3]];
+            if (from != to) {
+                edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+            }
+        }
+    }
+    const auto ends = [](const Edge& edge) { return std::pair(edge.low, edge.high); };
+    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return ends(a) < ends(b); });
+    int balance = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (i > 0 && ends(edges[i]) != ends(edges[i - 1]) && balance != 0) {
+            return false;
+        }
+        balance += edges[i].direction;
+    }
+    return balance == 0;
+}
+
+std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh) {
+    std::vector<Corners> all;
+    all.reserve(mesh.surface->triangles.size());
+    for (const auto& triangle : mesh.surface->triangles) {
+        const Corners corners = corners_of(mesh, triangle);
+        if (has_area(corners)) {
+            all.push_back(corners);
+        }
+    }
+    return all;
+}
+
+}  // namespace downwash

@@ -1,0 +1,112 @@
+#include "downwash/scene/octree_boxes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+
+#include "downwash/scene/solids.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double farthest_m = 1e6;
+
+/// Cubes `low` to `high` - 1 of the grid of one size.
+struct Block {
+    double side_m;
+    std::array<std::int64_t, 3> low, high;
+};
+
+/// How far off its place a cube may lie, in sides: rounding.
+constexpr double place_tolerance = 1e-9;
+
+/// Adds the cube as a block; whether it lies on the grid of its size.
+bool add_block(const OccupiedCube& cube, std::vector<Block>& blocks) {
+    Block block{cube.side_m, {}, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double place = cube.center_m[k] / cube.side_m - 0.5;
+        if (!(std::abs(place) < 1e9) || std::abs(place - std::round(place)) > place_tolerance) {
+            return false;
+        }
+        block.low[k] = std::llround(place);
+        block.high[k] = block.low[k] + 1;
+    }
+    blocks.push_back(block);
+    return true;
+}
+
+/// Joins blocks that follow one another along an axis and agree along the others.
+void merge_along(std::size_t axis, std::vector<Block>& blocks) {
+    const std::size_t other = (axis + 1) % 3;
+    const std::size_t third = (axis + 2) % 3;
+    const auto profile = [&](const Block& b) {
+        return std::tuple(b.side_m, b.low[other], b.high[other], b.low[third], b.high[third]);
+    };
+    std::sort(blocks.begin(), blocks.end(), [&](const Block& a, const Block& b) {
+        return profile(a) < profile(b) || (profile(a) == profile(b) && a.low[axis] < b.low[axis]);
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+        Block& last = blocks[kept];
+        if (profile(blocks[i]) == profile(last) && blocks[i].low[axis] <= last.high[axis]) {
+            last.high[axis] = std::max(last.high[axis], blocks[i].high[axis]);
+        } else {
+            blocks[++kept] = blocks[i];
+        }
+    }
+    blocks.resize(blocks.empty() ? 0 : kept + 1);
+}
+
+LocalBox box_of(const Block& block) {
+    LocalBox box{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        box.center_m[k] = 0.5 * block.side_m * static_cast<double>(block.low[k] + block.high[k]);
+        box.size_m[k] = block.side_m * static_cast<double>(block.high[k] - block.low[k]);
+    }
+    return box;
+}
+
+}  // namespace
+
+void inspect(const Octomap& octomap, const std::string& key, std::vector<Fault>& faults) {
+    const auto add = [&](const std::string& message) { faults.push_back({key + ".octomap.file", message}); };
+    if (octomap.tree == nullptr) {
+        add("must have been read: there is no octree");
+        return;
+    }
+    const auto& cubes = octomap.tree->cubes;
+    const auto is_sound = [](const OccupiedCube& cube) {
+        const auto is_near = [](double x) { return std::abs(x) <= farthest_m; };
+        return std::all_of(cube.center_m.begin(), cube.center_m.end(), is_near) && cube.side_m > 0 &&
+               cube.side_m <= farthest_m;
+    };
+    if (cubes.empty()) {
+        add("has no occupied cube");
+    } else if (cubes.size() >= too_many_parts) {
+        add("has " + std::to_string(cubes.size()) + " occupied cubes: at most 2000000 are allowed");
+    } else if (!std::all_of(cubes.begin(), cubes.end(), is_sound)) {
+        add("has a cube with a centre or side that is not finite, or beyond 1e6 m");
+    }
+}
+
+std::vector<LocalBox> merged_boxes(const OccupancyTree& tree) {
+    std::vector<Block> blocks;
+    std::vector<LocalBox> boxes;
+    for (const OccupiedCube& cube : tree.cubes) {
+        if (!add_block(cube, blocks)) {
+            boxes.push_back({cube.center_m, {cube.side_m, cube.side_m, cube.side_m}});
+        }
+    }
+    for (const std::size_t axis : {0U, 1U, 2U}) {
+        merge_along(axis, blocks);
+    }
+    for (const Block& block : blocks) {
+        boxes.push_back(box_of(block));
+    }
+    return boxes;
+}
+
+}  // namespace downwash

@@ -1,0 +1,25 @@
+#pragma once
+
+// Private to scene/.
+
+#include <string>
+#include <vector>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/shapes.hpp"
+
+namespace downwash {
+
+/// Adds what is wrong with an octree, under keys such as `key`.octomap.file.
+void inspect(const Octomap& octomap, const std::string& key, std::vector<Fault>& faults);
+
+/// A box in the local frame.
+struct LocalBox {
+    Vector3 center_m, size_m;
+};
+
+/// Boxes that fill exactly what the cubes fill: neighbours of equal size in a row, rows in a slab and slabs in a block
+/// become one box. Cubes that do not lie on the grid of their size stay as they are.
+[[nodiscard]] std::vector<LocalBox> merged_boxes(const OccupancyTree& tree);
+
+}  // namespace downwash
