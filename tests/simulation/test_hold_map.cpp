@@ -1,0 +1,86 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/simulation/hold_map.hpp"
+
+using namespace downwash;
+
+namespace {
+
+constexpr double quarter_turn = 1.57079632679489661923;
+
+}  // namespace
+
+TEST_CASE("a hold map holds the analysis of each of its nodes") {
+    const auto model = make_flight_model(test::ceiling_problem());
+    const HoldMap map = make_hold_map(*model, {-1, 1, 1, 5}, 0.25, quarter_turn);
+    REQUIRE(map.columns == 9);
+    REQUIRE(map.rows == 17);
+    REQUIRE(map.verdicts.size() == 9 * 17);
+    for (std::size_t k = 0; k < map.rows; ++k) {
+        for (std::size_t i = 0; i < map.columns; ++i) {
+            const HoverAnalysis a = analyse_hover(*model, -1 + 0.25 * static_cast<double>(i),
+                                                  1 + 0.25 * static_cast<double>(k), quarter_turn);
+            CHECK(map.verdicts[k * map.columns + i] == a.verdict);
+            const double rate_1_s = map.growth_rates_1_s[k * map.columns + i];
+            if (a.verdict >= HoldVerdict::unstable) {
+                CHECK(rate_1_s == a.stability.growth_rate_1_s);
+            } else {
+                CHECK(std::isnan(rate_1_s));
+            }
+        }
+    }
+    // From the top: in the ceiling, under it (0.19 m, unstable), farther away, the arm in the ground.
+    const auto verdict_at_row = [&](std::size_t row) { return map.verdicts[row * map.columns + 4]; };
+    CHECK(verdict_at_row(16) == HoldVerdict::not_flyable);
+    CHECK(verdict_at_row(15) == HoldVerdict::unstable);
+    CHECK(verdict_at_row(12) == HoldVerdict::stable);
+    CHECK(verdict_at_row(0) == HoldVerdict::in_collision);
+}
+
+TEST_CASE("a hold map does not depend on the number of threads") {
+    const auto model = make_flight_model(test::ceiling_problem());
+    const HoldMap one = make_hold_map(*model, {-3, 3, 1, 5}, 0.2, 0.3, 1);
+    const HoldMap three = make_hold_map(*model, {-3, 3, 1, 5}, 0.2, 0.3, 3);
+    CHECK(one.verdicts == three.verdicts);
+    REQUIRE(one.growth_rates_1_s.size() == three.growth_rates_1_s.size());
+    CHECK(std::memcmp(one.growth_rates_1_s.data(), three.growth_rates_1_s.data(),
+                      one.growth_rates_1_s.size() * sizeof(double)) == 0);
+}
+
+TEST_CASE("the last node of a hold map lies on the bound where the step divides it") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles.clear();
+    const auto model = make_flight_model(problem);
+    const HoldMap fits = make_hold_map(*model, {0, 0.3, 0, 0.7}, 0.1, 0);
+    CHECK(fits.columns == 4);
+    CHECK(fits.rows == 8);
+    const HoldMap does_not = make_hold_map(*model, {0, 0.39, 0, 0.05}, 0.1, 0);
+    CHECK(does_not.columns == 4);
+    CHECK(does_not.rows == 1);
+}
+
+TEST_CASE("hold maps without extent, step or measure are refused") {
+    const auto model = make_flight_model(test::ceiling_problem());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Bounds bounds{-1, 1, 1, 5};
+    CHECK_THROWS_WITH(make_hold_map(*model, {1, 1, 0, 1}, 0.1, 0), Catch::Contains("low end below the high one"));
+    CHECK_THROWS_WITH(make_hold_map(*model, {nan, 1, 0, 1}, 0.1, 0), Catch::Contains("low end below the high one"));
+    for (const double step_m : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()}) {
+        CHECK_THROWS_WITH(make_hold_map(*model, bounds, step_m, 0), Catch::Contains("expected a distance above 0 m"));
+    }
+    CHECK_THROWS_WITH(make_hold_map(*model, bounds, 1e-4, 0), Catch::Contains("at most 1048576"));
+    CHECK_THROWS_WITH(make_hold_map(*model, bounds, 1e-300, 0), Catch::Contains("at most 1048576"));
+    CHECK_THROWS_AS(make_hold_map(*model, {-1e308, 1e308, 0, 1}, 0.1, 0), InputError);
+}
+
+TEST_CASE("verdicts and limits have names") {
+    CHECK(name_of(HoldVerdict::not_flyable) == "not_flyable");
+    CHECK(name_of(HoldVerdict::stable) == "stable");
+    CHECK(name_of(HoldLimit::none) == "none");
+    CHECK(name_of(HoldLimit::gain) == "gain");
+}

@@ -1,0 +1,134 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/random.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
+
+// The vehicle of the tests: four rotors of R = 0.1905 m at x = +-0.32 m, 0.06 m over its centre of mass; 4.95 kg.
+
+using namespace downwash;
+
+namespace {
+
+constexpr double radius_m = 0.1905;
+constexpr double reach_m = 0.32;
+constexpr double hub_height_m = 0.06;
+constexpr double weight_n = 4.95 * 9.80665;
+
+std::shared_ptr<const FlightModel> model_among(std::vector<Obstacle> obstacles) {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles = std::move(obstacles);
+    return make_flight_model(problem);
+}
+
+/// Cheeseman and Bennett, and its slope.
+double ground_factor(double z_m) {
+    const double r = radius_m / (4 * z_m);
+    return 1 / (1 - r * r);
+}
+double ground_slope_1_m(double z_m) {
+    const double k = ground_factor(z_m);
+    const double r = radius_m / (4 * z_m);
+    return -2 * k * k * r * r / z_m;
+}
+
+/// The fit of the ceiling effect, and its slope over the height of a rotor `gap_m` below.
+double ceiling_factor(double gap_m) {
+    const double r = radius_m / (gap_m + 0.3168 * radius_m);
+    return 1 / (1 - r * r / 6.924);
+}
+double ceiling_slope_1_m(double gap_m) {
+    const double k = ceiling_factor(gap_m);
+    const double r = radius_m / (gap_m + 0.3168 * radius_m);
+    return 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * radius_m);
+}
+
+}  // namespace
+
+TEST_CASE("far from everything a vehicle feels no surface") {
+    const VehicleEffect effect = vehicle_effect(*model_among({}), {1, 2, 0.2, 0});
+    CHECK(effect.force_factor == Approx(1).epsilon(1e-14));
+    CHECK(std::abs(effect.pitch_torque_nm) < 1e-13);
+    CHECK(std::abs(effect.force_slope_n_m) < 1e-9);
+    CHECK(std::abs(effect.torque_slope_nm_rad) < 1e-9);
+}
+
+TEST_CASE("two rotors of four over a plate carry more and push the nose up") {
+    // The plate ends below the centre of mass; the front rotors' discs lie over it one radius high, the others beside
+    // it.
+    const auto model = model_among({test::box("plate", {4, 4, 1}, {2, 0, 0.5})});
+    const VehicleEffect effect = vehicle_effect(*model, {0, 1 + radius_m - hub_height_m, 0, 0});
+    // K = 1 / (1 - 1/16) = 16/15 for the two in front, each carrying a quarter of the weight.
+    CHECK(effect.force_factor == Approx(31.0 / 30).epsilon(1e-9));
+    CHECK(effect.pitch_torque_nm == Approx(-reach_m * weight_n / 2 / 15).epsilon(1e-9));  // -0.518 Nm
+    CHECK(effect.pitch_torque_factor == Approx(-reach_m / 30 / radius_m).epsilon(1e-9));
+}
+
+TEST_CASE("a ceiling over the front rotors alone pulls the nose up, one over the rear rotors the tail") {
+    const double z_m = 2 - 1.5 * radius_m - hub_height_m;
+    const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * radius_m) - 1);
+    const auto front = model_among({test::box("slab", {4, 4, 1}, {2, 0, 2.5})});
+    CHECK(vehicle_effect(*front, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-torque_nm).epsilon(1e-9));
+    const auto rear = model_among({test::box("slab", {4, 4, 1}, {-2, 0, 2.5})});
+    CHECK(vehicle_effect(*rear, {0, z_m, 0, 0}).pitch_torque_nm == Approx(torque_nm).epsilon(1e-9));
+}
+
+TEST_CASE("wide ground carries like a spring and rights the vehicle") {
+    const auto model = model_among({test::box("ground", {30, 20, 1}, {0, 0, -0.5})});
+    for (const double height_m : {0.15, 0.3, 0.6}) {
+        const VehicleEffect effect = vehicle_effect(*model, {0.4, height_m - hub_height_m, 0, 0});
+        CHECK(effect.force_factor == Approx(ground_factor(height_m)).epsilon(1e-9));
+        CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
+        const double slope_n_m = weight_n * ground_slope_1_m(height_m);
+        CHECK(effect.force_slope_n_m == Approx(slope_n_m).epsilon(1e-3));
+        CHECK(effect.force_slope_n_m < 0);
+        // Every rotor moves by reach per radian: the spring with its lever twice.
+        CHECK(effect.torque_slope_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a wide ceiling pulls away from the height that is held and tips the vehicle over") {
+    const auto model = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
+    for (const double gap_m : {0.1, 0.2, 0.5}) {
+        const VehicleEffect effect = vehicle_effect(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
+        CHECK(effect.force_factor == Approx(ceiling_factor(gap_m)).epsilon(1e-9));
+        const double slope_n_m = weight_n * ceiling_slope_1_m(gap_m);
+        CHECK(effect.force_slope_n_m == Approx(slope_n_m).epsilon(1e-3));
+        CHECK(effect.torque_slope_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
+        CHECK(effect.torque_slope_nm_rad > 0);
+    }
+}
+
+TEST_CASE("mirroring scene and vehicle mirrors the parasitic torque and nothing else") {
+    test::Random random(3);
+    for (int scene = 0; scene < 40; ++scene) {
+        std::vector<Obstacle> here;
+        std::vector<Obstacle> mirrored;
+        for (int i = 0; i < 4; ++i) {
+            const Vector3 size_m = {random.uniform(0.2, 2), random.uniform(0.2, 2), random.uniform(0.1, 1)};
+            const Vector3 center_m = {random.uniform(-2, 2), random.uniform(-0.5, 0.5), random.uniform(0, 4)};
+            here.push_back(test::box("box", size_m, center_m));
+            mirrored.push_back(test::box("box", size_m, {-center_m[0], center_m[1], center_m[2]}));
+        }
+        const PlanarPose pose{random.uniform(-2, 2), random.uniform(0, 4), random.uniform(-0.5, 0.5), 0};
+        const VehicleEffect a = vehicle_effect(*model_among(here), pose);
+        const VehicleEffect b = vehicle_effect(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
+        CHECK(a.force_factor == Approx(b.force_factor).epsilon(1e-9));
+        CHECK(a.pitch_torque_nm == Approx(-b.pitch_torque_nm).margin(1e-7));
+        CHECK(a.force_slope_n_m == Approx(b.force_slope_n_m).epsilon(1e-6).margin(1e-4));
+        CHECK(a.torque_slope_nm_rad == Approx(b.torque_slope_nm_rad).epsilon(1e-6).margin(1e-4));
+    }
+}
+
+TEST_CASE("a vehicle is flyable as long as its outermost disc is") {
+    const auto model = model_among({test::box("wall", {1, 8, 8}, {3.5, 0, 0})});  // its face at x = 3
+    const double least_x_m = 3 - (1.3 * radius_m + reach_m);                      // min_distance_radii is 0.3
+    CHECK(is_flyable(*model, {least_x_m - 1e-6, 2, 0, 0}));
+    CHECK_FALSE(is_flyable(*model, {least_x_m + 1e-6, 2, 0, 0}));
+    // Tilted, its hubs come nearer by 0.32 cos(0.3) + 0.06 sin(0.3).
+    const double tilted_x_m = 3 - (1.3 * radius_m + reach_m * std::cos(0.3) + hub_height_m * std::sin(0.3));
+    CHECK(is_flyable(*model, {tilted_x_m - 1e-6, 2, 0.3, 0}));
+    CHECK_FALSE(is_flyable(*model, {tilted_x_m + 1e-6, 2, 0.3, 0}));
+}
