@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "downwash/base/text.hpp"
+#include "downwash/simulation/grid_contour.hpp"
 
 namespace downwash {
 namespace {
@@ -43,17 +44,39 @@ HoldMap empty_map(const Bounds& bounds, double step_m, double arm_rad) {
     return map;
 }
 
+HoldPoint node_of(const HoldMap& map, std::size_t column, std::size_t row) {
+    return {map.x_low_m + static_cast<double>(column) * map.step_m,
+            map.z_low_m + static_cast<double>(row) * map.step_m};
+}
+
 void fill_row(const FlightModel& model, std::size_t row, HoldMap& map) {
     for (std::size_t column = 0; column < map.columns; ++column) {
-        const double x_m = map.x_low_m + static_cast<double>(column) * map.step_m;
-        const double z_m = map.z_low_m + static_cast<double>(row) * map.step_m;
-        const HoverAnalysis analysis = analyse_hover(model, x_m, z_m, map.arm_rad);
+        const HoldPoint at = node_of(map, column, row);
+        const HoverAnalysis analysis = analyse_hover(model, at.x_m, at.z_m, map.arm_rad);
         const std::size_t node = row * map.columns + column;
         map.verdicts[node] = analysis.verdict;
         if (analysis.verdict >= HoldVerdict::unstable) {
             map.growth_rates_1_s[node] = analysis.stability.growth_rate_1_s;
         }
     }
+}
+
+/// Where hover turns from stable to unstable between two nodes, by bisection.
+HoldPoint crossing_of(const FlightModel& model, const HoldMap& map, const simulation::GridEdge& edge) {
+    constexpr double tolerance_m = 1e-4;
+    const auto is_stable_at = [&](const HoldPoint& at) {
+        return analyse_hover(model, at.x_m, at.z_m, map.arm_rad).verdict == HoldVerdict::stable;
+    };
+    HoldPoint from = node_of(map, edge.column, edge.row);
+    HoldPoint to = node_of(map, edge.column + (edge.is_upright ? 0 : 1), edge.row + (edge.is_upright ? 1 : 0));
+    const bool is_stable_first = is_stable_at(from);
+    double length_m = map.step_m;
+    HoldPoint middle = from;
+    for (; length_m > tolerance_m; length_m *= 0.5) {
+        middle = {0.5 * (from.x_m + to.x_m), 0.5 * (from.z_m + to.z_m)};
+        (is_stable_at(middle) == is_stable_first ? from : to) = middle;
+    }
+    return middle;
 }
 
 }  // namespace
@@ -74,6 +97,21 @@ HoldMap make_hold_map(const FlightModel& model, const Bounds& bounds, double ste
         work();
     }
     return map;
+}
+
+std::vector<std::vector<HoldPoint>> stability_boundary(const FlightModel& model, const HoldMap& map) {
+    const auto side = [&map](std::size_t column, std::size_t row) {
+        const HoldVerdict verdict = map.verdicts[row * map.columns + column];
+        return verdict == HoldVerdict::stable ? -1 : verdict == HoldVerdict::unstable ? 1 : 0;
+    };
+    std::vector<std::vector<HoldPoint>> lines;
+    for (const auto& edges : simulation::grid_contour(map.columns, map.rows, side)) {
+        std::vector<HoldPoint>& line = lines.emplace_back();
+        for (const simulation::GridEdge& edge : edges) {
+            line.push_back(crossing_of(model, map, edge));
+        }
+    }
+    return lines;
 }
 
 }  // namespace downwash

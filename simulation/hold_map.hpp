@@ -16,7 +16,7 @@ struct HoldMap {
     std::size_t columns = 0, rows = 0;  ///< nodes along x and z
     /// One entry a node, along x first.
     std::vector<HoldVerdict> verdicts;
-    /// [1/s], of HoverStability; NaN where there is no equilibrium. The stability boundary is its contour at 0.
+    /// [1/s], of HoverStability; NaN where there is no equilibrium.
     std::vector<double> growth_rates_1_s;
 };
 
@@ -28,5 +28,17 @@ inline constexpr double most_hold_nodes = 1048576;
 /// @throws InputError when the bounds are empty, the step is not a positive number, or there would be too many nodes
 [[nodiscard]] DOWNWASH_EXPORT HoldMap make_hold_map(const FlightModel& model, const Bounds& bounds, double step_m,
                                                     double arm_rad, int threads = 1);
+
+/// A point of the plane of motion [m].
+struct HoldPoint {
+    double x_m = 0, z_m = 0;
+};
+
+/// The lines between stable and unstable hover, as their crossings with the grid, each found to 1e-4 m along its edge.
+/// Where either side is bounded by something else (not flyable, no equilibrium) there is no line. A closed line ends
+/// with its first point.
+/// @param model,map the map was made from this model
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::vector<HoldPoint>> stability_boundary(const FlightModel& model,
+                                                                                     const HoldMap& map);
 
 }  // namespace downwash
