@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -22,7 +23,7 @@ bool is_range(double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low < high;
 }
 
-void require_valid(double grid_m, const MapExtent& extent, const std::vector<double>& lateral_offsets_m) {
+void require_valid(double grid_m, const MapExtent& extent, const std::vector<MapLayer>& layers) {
     std::vector<Fault> faults;
     if (!(std::isfinite(grid_m) && grid_m > 0)) {
         faults.push_back({"aero.grid_m", "must be a finite length above 0 in metres"});
@@ -33,8 +34,8 @@ void require_valid(double grid_m, const MapExtent& extent, const std::vector<dou
     if (!is_range(extent.z_low_m, extent.z_high_m)) {
         faults.push_back({"environment.bounds.z_m", "must be two finite numbers, the lower one first"});
     }
-    for (const double offset : lateral_offsets_m) {
-        if (!std::isfinite(offset)) {
+    for (const MapLayer& layer : layers) {
+        if (!std::isfinite(layer.lateral_m)) {
             faults.push_back({"robot.rotors.positions_m", "must be finite numbers in metres"});
         }
     }
@@ -50,14 +51,17 @@ double cells_over(double length_m, double cells_per_m) {
 
 /// Does task 0, 1, ... count - 1 on some threads, in any order; rethrows what a task threw.
 template <class Task>
-void run_parallel(std::size_t count, int threads, const Task& task) {
+void run_parallel(std::size_t count, int threads, const Task& task, const std::function<void(double)>& on_progress) {
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure;
     std::mutex failure_mutex;
-    const auto work = [&] {
+    const auto work = [&](bool reports) {
         try {
             for (std::size_t i = next++; i < count; i = next++) {
                 task(i);
+                if (reports && on_progress) {
+                    on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
+                }
             }
         } catch (...) {
             next = count;
@@ -67,86 +71,92 @@ void run_parallel(std::size_t count, int threads, const Task& task) {
     };
     std::vector<std::jthread> helpers;
     for (int t = 1; t < threads; ++t) {
-        helpers.emplace_back(work);
+        helpers.emplace_back(work, false);
     }
-    work();
+    work(true);
     helpers.clear();  // joins
     if (failure) {
         std::rethrow_exception(failure);
     }
 }
 
-double cell_side_m(const AeroSettings& settings, double rotor_radius_m) {
-    const double parts = std::ceil(settings.grid_m / longest_cell_side_m(settings, rotor_radius_m));
-    return settings.grid_m / std::max(1.0, parts);
+double cell_side_m(const std::vector<MapLayer>& layers) {
+    double side_m = std::numeric_limits<double>::infinity();
+    for (const MapLayer& layer : layers) {
+        side_m = std::min(side_m, longest_cell_side_m(*layer.effect));
+    }
+    const double grid_m = layers.front().effect->settings().grid_m;
+    return grid_m / std::max(1.0, std::ceil(grid_m / side_m));
 }
 
 }  // namespace
 
-double map_cells(const AeroSettings& settings, double rotor_radius_m, const MapExtent& extent, std::size_t layers) {
-    const double cells_per_m = 1 / cell_side_m(settings, rotor_radius_m);
+double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent) {
+    const double cells_per_m = 1 / cell_side_m(layers);
     return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m) *
-           cells_over(extent.z_high_m - extent.z_low_m, cells_per_m) * static_cast<double>(layers);
+           cells_over(extent.z_high_m - extent.z_low_m, cells_per_m) * static_cast<double>(layers.size());
 }
 
-AeroMap::AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
-                 std::vector<double> lateral_offsets_m, int threads)
-    : effect_(std::move(effect)), plane_(plane), extent_(extent), lateral_offsets_m_(std::move(lateral_offsets_m)) {
-    const AeroSettings& settings = effect_->settings();
-    require_valid(settings.grid_m, extent_, lateral_offsets_m_);
-    cell_m_ = cell_side_m(settings, effect_->rotor_radius_m());
+AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads,
+                 const std::function<void(double)>& on_progress)
+    : layers_(std::move(layers)), plane_(plane), extent_(extent) {
+    assert(!layers_.empty());
+    require_valid(layers_.front().effect->settings().grid_m, extent_, layers_);
+    cell_m_ = cell_side_m(layers_);
     cells_per_m_ = 1 / cell_m_;
-    const double columns = cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_);
-    const double rows = cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_);
-    if (!(map_cells(settings, effect_->rotor_radius_m(), extent_, lateral_offsets_m_.size()) <= most_map_cells)) {
+    if (!(map_cells(layers_, extent_) <= most_map_cells)) {
         throw InputError(std::vector<Fault>{
             {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
     }
-    columns_ = static_cast<std::size_t>(columns);
-    rows_ = static_cast<std::size_t>(rows);
-    build(threads);
+    columns_ = static_cast<std::size_t>(cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_));
+    rows_ = static_cast<std::size_t>(cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_));
+    build(threads, on_progress);
 }
 
-void AeroMap::build(int threads) {
+void AeroMap::build(int threads, const std::function<void(double)>& on_progress) {
     std::vector<LayerGrid> grids;
-    for (const double lateral_m : lateral_offsets_m_) {
-        grids.push_back({*effect_, plane_, lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_, rows_});
+    for (const MapLayer& layer : layers_) {
+        grids.push_back(
+            {*layer.effect, plane_, layer.lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_, rows_});
     }
     const std::size_t tasks_per_layer = (rows_ + rows_per_task - 1) / rows_per_task;
     std::vector<CellRows> parts(tasks_per_layer * grids.size());
-    run_parallel(parts.size(), threads, [&](std::size_t task) {
-        const std::size_t first = (task % tasks_per_layer) * rows_per_task;
-        parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min(first + rows_per_task, rows_));
-    });
+    run_parallel(
+        parts.size(), threads,
+        [&](std::size_t task) {
+            const std::size_t first = (task % tasks_per_layer) * rows_per_task;
+            parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min(first + rows_per_task, rows_));
+        },
+        on_progress);
 
-    layers_.resize(grids.size());
+    rasters_.resize(grids.size());
     for (std::size_t task = 0; task < parts.size(); ++task) {
-        Layer& layer = layers_[task / tasks_per_layer];
-        std::size_t node = layer.nodes.size();
+        Raster& raster = rasters_[task / tasks_per_layer];
+        std::size_t node = raster.nodes.size();
         for (const CellSteps& steps : parts[task].steps) {
-            layer.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
+            raster.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
             node += std::size_t{steps.x + 1U} * (steps.z + 1U);
         }
         if (node > std::numeric_limits<std::uint32_t>::max()) {
             throw InputError(
                 std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
         }
-        layer.flyability.insert(layer.flyability.end(), parts[task].flyability.begin(), parts[task].flyability.end());
-        layer.nodes.insert(layer.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
+        raster.flyability.insert(raster.flyability.end(), parts[task].flyability.begin(), parts[task].flyability.end());
+        raster.nodes.insert(raster.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
         parts[task] = {};
     }
-    for (Layer& layer : layers_) {
-        layer.cells.shrink_to_fit();
-        layer.flyability.shrink_to_fit();
-        layer.nodes.shrink_to_fit();
+    for (Raster& raster : rasters_) {
+        raster.cells.shrink_to_fit();
+        raster.flyability.shrink_to_fit();
+        raster.nodes.shrink_to_fit();
     }
 }
 
 std::size_t AeroMap::memory_bytes() const noexcept {
     std::size_t bytes = sizeof(*this);
-    for (const Layer& layer : layers_) {
-        bytes += layer.cells.capacity() * sizeof(Cell) + layer.flyability.capacity() +
-                 layer.nodes.capacity() * sizeof(float);
+    for (const Raster& raster : rasters_) {
+        bytes += raster.cells.capacity() * sizeof(Cell) + raster.flyability.capacity() +
+                 raster.nodes.capacity() * sizeof(float);
     }
     return bytes;
 }
@@ -155,7 +165,7 @@ double AeroMap::factor_outside(std::size_t layer, double x_m, double z_m) const 
     if (!(std::isfinite(x_m) && std::isfinite(z_m))) {
         return 1;
     }
-    return effect_->factor(plane_.to_world(x_m, lateral_offsets_m_[layer], z_m));
+    return layers_[layer].effect->factor(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
 }
 
 bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
@@ -163,12 +173,12 @@ bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
     const double w = (z_m - extent_.z_low_m) * cells_per_m_;
     if (u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_)) {
         const std::size_t cell = static_cast<std::size_t>(w) * columns_ + static_cast<std::size_t>(u);
-        const CellFlyability flyability = layers_[layer].flyability[cell];
+        const CellFlyability flyability = rasters_[layer].flyability[cell];
         if (flyability != CellFlyability::mixed) {
             return flyability == CellFlyability::flyable;
         }
     }
-    return effect_->is_flyable(plane_.to_world(x_m, lateral_offsets_m_[layer], z_m));
+    return layers_[layer].effect->is_flyable(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
 }
 
 }  // namespace downwash

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,9 +17,14 @@ struct MapExtent {
     double z_low_m = 0, z_high_m = 0;
 };
 
+/// What one layer of a map stores: an effect, along the plane of motion shifted sideways.
+struct MapLayer {
+    std::shared_ptr<const DirectEffect> effect;
+    double lateral_m = 0;  ///< to the left of the plane
+};
+
 /// Cells that a map would have, all layers together. A cell is grid_m or a whole part of it, as steep models need.
-[[nodiscard]] DOWNWASH_EXPORT double map_cells(const AeroSettings& settings, double rotor_radius_m,
-                                               const MapExtent& extent, std::size_t layers);
+[[nodiscard]] DOWNWASH_EXPORT double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent);
 
 /// The most cells a map may have: 2^24, some hundred megabytes.
 inline constexpr double most_map_cells = 16777216;
@@ -26,7 +32,7 @@ inline constexpr double most_map_cells = 16777216;
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
-/// K stored over rotor positions in the plane of motion, one layer per distinct lateral offset of a rotor.
+/// K stored over rotor positions in the plane of motion, one layer for all rotors that share lateral offset and effect.
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
 /// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
@@ -39,18 +45,17 @@ enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 class DOWNWASH_EXPORT AeroMap {
  public:
     /// Builds every layer. The bytes do not depend on the number of threads.
-    /// @param lateral_offsets_m distinct distances of rotors to the left of the plane
     /// @param threads at least 1
+    /// @param on_progress called now and then with the share that is built, from the calling thread
     /// @throws InputError when the extent is empty or not finite, grid_m or an offset is out of range, or when the map
     /// would have too many cells
-    AeroMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& plane, const MapExtent& extent,
-            std::vector<double> lateral_offsets_m, int threads = 1);
+    AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads = 1,
+            const std::function<void(double)>& on_progress = {});
 
     /// As given. The cells may reach beyond its upper ends by less than one cell.
     [[nodiscard]] const MapExtent& extent() const noexcept { return extent_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
-    [[nodiscard]] const std::vector<double>& lateral_offsets_m() const noexcept { return lateral_offsets_m_; }
-    [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
+    [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
     /// K at a rotor hub in the plane coordinates (x, z) of a layer: interpolated inside the extent, evaluated directly
@@ -65,12 +70,12 @@ class DOWNWASH_EXPORT AeroMap {
         }
         const auto i = static_cast<std::size_t>(u);
         const auto k = static_cast<std::size_t>(w);
-        const Cell& cell = layers_[layer].cells[k * columns_ + i];
+        const Cell& cell = rasters_[layer].cells[k * columns_ + i];
         const double a = (u - static_cast<double>(i)) * cell.steps_x;
         const double b = (w - static_cast<double>(k)) * cell.steps_z;
         const auto ia = static_cast<std::uint32_t>(a);
         const auto ib = static_cast<std::uint32_t>(b);
-        const float* node = layers_[layer].nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
+        const float* node = rasters_[layer].nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
         const double s = a - ia;
         const double t = b - ib;
         const double low = node[0] + s * (static_cast<double>(node[1]) - node[0]);
@@ -88,24 +93,24 @@ class DOWNWASH_EXPORT AeroMap {
         std::uint16_t steps_x;  ///< intervals along x, a power of two
         std::uint16_t steps_z;  ///< intervals along z, a power of two
     };
-    struct Layer {
+    /// The values of one layer.
+    struct Raster {
         std::vector<Cell> cells;
         std::vector<CellFlyability> flyability;  ///< of each cell
         std::vector<float> nodes;
     };
 
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
-    void build(int threads);
+    void build(int threads, const std::function<void(double)>& on_progress);
 
-    std::shared_ptr<const DirectEffect> effect_;
+    std::vector<MapLayer> layers_;
     PlaneOfMotion plane_;
     MapExtent extent_;
-    std::vector<double> lateral_offsets_m_;
     double cell_m_;  ///< side of a cell
     double cells_per_m_;
     std::size_t columns_;
     std::size_t rows_;
-    std::vector<Layer> layers_;
+    std::vector<Raster> rasters_;  ///< one per layer
 };
 
 }  // namespace downwash

@@ -1,6 +1,7 @@
 #include "downwash/aeromap/direct_effect.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "downwash/aeromap/footprint.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -18,15 +20,25 @@ bool is_at_least(double x, double least) {
 }
 
 void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<Fault>& faults) {
-    if (!(std::isfinite(effect.k1) && effect.k1 > 0)) {
-        faults.push_back({key + ".k1", "must be a finite number above 0"});
+    if (effect.model == EffectModel::table && !effect.table) {
+        faults.push_back({key + ".file", "must name a table of K"});
     }
-    if (!is_at_least(effect.k2_over_radius, 0)) {
-        faults.push_back({key + ".k2_over_radius", "must be a finite number of at least 0"});
+    if (effect.d_over_r && !is_at_least(*effect.d_over_r, 0)) {
+        faults.push_back({key + ".d_over_r", "must be a finite number of at least 0"});
+    }
+    const auto& parameters = info(effect.model).parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const ModelParameter& parameter = parameters[i];
+        const double value = effect.parameters[i];
+        if (!(value >= parameter.low && value <= parameter.high) || (parameter.is_open && value == parameter.low)) {
+            faults.push_back({key + "." + std::string(parameter.name),
+                              "must be a number " + std::string(parameter.is_open ? "above " : "of at least ") +
+                                  to_text(parameter.low) + " and at most " + to_text(parameter.high)});
+        }
     }
 }
 
-void require_valid(const AeroSettings& settings, double radius_m) {
+const AeroSettings& checked(const AeroSettings& settings, double radius_m) {
     std::vector<Fault> faults;
     inspect(settings.ground, "aero.ground", faults);
     inspect(settings.ceiling, "aero.ceiling", faults);
@@ -42,6 +54,12 @@ void require_valid(const AeroSettings& settings, double radius_m) {
     if (!faults.empty()) {
         throw InputError(std::move(faults));
     }
+    return settings;
+}
+
+/// In a scene the fountain of multirotor_body pushes the body, not the rotors.
+SurfaceEffect on_rotor(const SurfaceEffect& effect) {
+    return effect.model == EffectModel::multirotor_body ? SurfaceEffect(EffectModel::multirotor_images) : effect;
 }
 
 std::vector<Footprint> footprints_of(const Scene& scene) {
@@ -55,14 +73,26 @@ std::vector<Footprint> footprints_of(const Scene& scene) {
 
 }  // namespace
 
-DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m)
+DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m,
+                           const RotorNeighbours& neighbours)
     : scene_(std::move(scene)),
-      settings_(settings),
-      radius_m_(rotor_radius_m),
-      footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {
-    require_valid(settings, rotor_radius_m);
-    ground_kink_m_ = radius_m_ * kink_of(settings.ground, settings.max_factor);
-    ceiling_kink_m_ = radius_m_ * kink_of(settings.ceiling, settings.max_factor);
+      settings_(checked(settings, rotor_radius_m)),
+      rotor_radius_m_(rotor_radius_m),
+      disc_radius_m_(rotor_radius_m),
+      least_clearance_m_(settings.min_distance_radii * rotor_radius_m),
+      ground_(on_rotor(settings.ground), settings.max_factor, neighbours),
+      ceiling_(settings.ceiling, settings.max_factor, neighbours),
+      footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {}
+
+DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                    double rotor_radius_m, const RotorNeighbours& neighbours) {
+    DirectEffect effect(std::move(scene), settings, rotor_radius_m, neighbours);
+    const double b_over_radius = settings.ground.parameters[1];
+    effect.disc_radius_m_ = rotor_radius_m * (b_over_radius > 0 ? b_over_radius : neighbours.center_radii);
+    effect.least_clearance_m_ = -std::numeric_limits<double>::infinity();
+    effect.ground_ = EffectCurve::fountain(settings.ground, settings.max_factor, neighbours);
+    effect.ceiling_ = EffectCurve(EffectModel::none, settings.max_factor);
+    return effect;
 }
 
 DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
@@ -70,15 +100,14 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     if (!settings_.enabled) {
         return factors;
     }
-    const auto one_sided = [&](Side side, const SurfaceEffect& effect, double kink_m) {
-        if (effect.model == EffectModel::none) {
-            return 1.0;
-        }
-        return disc_average({*scene_, hub_m, radius_m_, side, effect, settings_.max_factor, kink_m}, *footprints_);
+    const auto one_sided = [&](Side side, const EffectCurve& curve) {
+        return curve.is_none()
+                   ? 1.0
+                   : disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_}, *footprints_);
     };
-    factors.ground = one_sided(Side::below, settings_.ground, ground_kink_m_);
-    factors.ceiling = one_sided(Side::above, settings_.ceiling, ceiling_kink_m_);
-    factors.total = lane::min(1 + (factors.ground - 1) + (factors.ceiling - 1), settings_.max_factor);
+    factors.ground = one_sided(Side::below, ground_);
+    factors.ceiling = one_sided(Side::above, ceiling_);
+    factors.total = lane::clamp(1 + (factors.ground - 1) + (factors.ceiling - 1), 0.0, settings_.max_factor);
     return factors;
 }
 
@@ -86,7 +115,8 @@ bool DirectEffect::is_flyable(const Vector3& hub_m) const {
     if (!(std::isfinite(hub_m[0]) && std::isfinite(hub_m[1]) && std::isfinite(hub_m[2]))) {
         return false;
     }
-    return !settings_.enabled || disc_is_clear(*scene_, hub_m, radius_m_, settings_.min_distance_radii * radius_m_);
+    return !settings_.enabled || least_clearance_m_ < 0 ||
+           disc_is_clear(*scene_, hub_m, disc_radius_m_, least_clearance_m_);
 }
 
 }  // namespace downwash

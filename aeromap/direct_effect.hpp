@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
+#include "downwash/aeromap/effect_curve.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/scene.hpp"
 
@@ -15,9 +16,17 @@ struct Footprint;
 /// flight of a reported plan is flown with. The disc is level and rays are vertical (model 4.1). Immutable.
 class DOWNWASH_EXPORT DirectEffect {
  public:
-    /// @param rotor_radius_m R > 0
+    /// The effect on a rotor.
+    /// @param rotor_radius_m R > 0   @param neighbours the vehicle's other rotors, for the multirotor models
     /// @throws InputError when a setting or the radius is out of its range
-    DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m);
+    DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m,
+                 const RotorNeighbours& neighbours = {});
+
+    /// The fountain's push on a vehicle's body at its centre between the rotors: 1 + (K_whole - K_images), averaged
+    /// over the disc through the rotors' axes (model 4.3). Defined everywhere, so that everything is flyable.
+    /// @param neighbours of any of its rotors   @pre settings.ground.model is multirotor_body
+    [[nodiscard]] static DirectEffect fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                               double rotor_radius_m, const RotorNeighbours& neighbours);
 
     /// The two one-sided factors and their superposition at a rotor hub.
     struct Factors {
@@ -40,13 +49,22 @@ class DOWNWASH_EXPORT DirectEffect {
 
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
     [[nodiscard]] const AeroSettings& settings() const noexcept { return settings_; }
-    [[nodiscard]] double rotor_radius_m() const noexcept { return radius_m_; }
+    [[nodiscard]] double rotor_radius_m() const noexcept { return rotor_radius_m_; }
+    /// Radius of the disc that the effect is averaged over: the rotor's, or that of the circle through all axes.
+    [[nodiscard]] double disc_radius_m() const noexcept { return disc_radius_m_; }
+    /// Least distance of the disc from every obstacle in the flyable area; negative: everything is flyable.
+    [[nodiscard]] double least_clearance_m() const noexcept { return least_clearance_m_; }
+    /// K of wide flat surfaces below and above.
+    [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
+    [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
 
  private:
     std::shared_ptr<const Scene> scene_;
     AeroSettings settings_;
-    double radius_m_;
-    double ground_kink_m_ = -1, ceiling_kink_m_ = -1;  ///< distances at which the models meet their cap
+    double rotor_radius_m_;
+    double disc_radius_m_;
+    double least_clearance_m_;
+    EffectCurve ground_, ceiling_;
     std::shared_ptr<const std::vector<Footprint>> footprints_;
 };
 

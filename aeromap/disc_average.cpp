@@ -50,7 +50,8 @@ class DiscQuadrature {
                   [](const Candidate& a, const Candidate& b) { return a.gap_m < b.gap_m; });
         const ShadowOutline& first = candidates.front().footprint->outline;
         frame_ = {query.hub_m[0], query.hub_m[1], query.radius_m, first.slope_x, first.slope_y};
-        const double stake = std::abs(candidates.front().factor - background_);
+        const double stake =
+            query.curve.largest_difference(candidates.front().gap_m / query.unit_m, background_m / query.unit_m);
         is_far_ = stake < far_stake;
         const double weight = is_far_ ? 0.12 : stake < 0.1 ? 0.5 : 1;
         const bool is_level = std::all_of(candidates.begin(), candidates.end(),
@@ -183,7 +184,7 @@ class DiscQuadrature {
             return least;
         };
         const auto excess = [&](double u) { return query_.factor(gap(u)) - background_; };
-        if (stretches_.front().candidate->gap_m >= query_.kink_m) {
+        if (stretches_.front().candidate->gap_m >= query_.kink_m()) {
             return integral(low, high, excess);
         }
         const double nearest = nearest_between(low, high, gap);
@@ -211,13 +212,13 @@ class DiscQuadrature {
     /// Where the gap passes the kink on the way from an end of a piece to its nearest point; the end when it does not.
     template <class Gap>
     double kink_between(double end, double nearest, const Gap& gap) const {
-        const bool is_beyond = gap(nearest) > query_.kink_m;
-        if ((gap(end) > query_.kink_m) == is_beyond) {
+        const bool is_beyond = gap(nearest) > query_.kink_m();
+        if ((gap(end) > query_.kink_m()) == is_beyond) {
             return end;
         }
         for (int halving = 0; halving < 8; ++halving) {
             const double u = 0.5 * (end + nearest);
-            ((gap(u) > query_.kink_m) == is_beyond ? nearest : end) = u;
+            ((gap(u) > query_.kink_m()) == is_beyond ? nearest : end) = u;
         }
         return 0.5 * (end + nearest);
     }
@@ -304,20 +305,6 @@ double by_quadrature(const DiscQuery& query, std::span<const Footprint> footprin
 }
 
 }  // namespace
-
-double kink_of(const SurfaceEffect& effect, double max_factor) {
-    double capped = 0;
-    double free = 1e3;  // no model of a surface effect reaches that far
-    if (surface_factor(effect, capped, max_factor) < max_factor ||
-        surface_factor(effect, free, max_factor) >= max_factor) {
-        return -1;
-    }
-    for (int halving = 0; halving < 60; ++halving) {
-        const double zeta = 0.5 * (capped + free);
-        (surface_factor(effect, zeta, max_factor) < max_factor ? free : capped) = zeta;
-    }
-    return free;
-}
 
 double disc_average(const DiscQuery& query, std::span<const Footprint> footprints) {
     const Nearest nearest = nearest_of(query, footprints);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/aeromap/effect_curve.hpp"
 #include "downwash/aeromap/footprint.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
 
@@ -15,11 +15,10 @@ namespace downwash {
 struct DiscQuery {
     const Scene& scene;
     Vector3 hub_m;
-    double radius_m;
+    double radius_m;  ///< of the disc
     Side side;
-    const SurfaceEffect& effect;
-    double max_factor;
-    double kink_m;  ///< distance at which the model meets its cap, negative when it never does; see kink_of
+    const EffectCurve& curve;
+    double unit_m;  ///< what the curve's distances are measured in: the rotor radius
 
     /// Distance from the rotor plane to a stretch of a vertical line: 0 when the plane cuts it, infinite when the
     /// stretch lies on the other side.
@@ -28,12 +27,11 @@ struct DiscQuery {
         const double far = side == Side::below ? hub_m[2] - low_m : high_m - hub_m[2];
         return near > 0 ? near : (far >= 0 ? 0 : std::numeric_limits<double>::infinity());
     }
-    /// The model's factor at that distance.
-    [[nodiscard]] double factor(double gap_m) const { return surface_factor(effect, gap_m / radius_m, max_factor); }
+    /// The curve's factor at that distance.
+    [[nodiscard]] double factor(double gap_m) const { return curve(gap_m / unit_m); }
+    /// The distance at which the curve meets its cap, negative when it never does.
+    [[nodiscard]] double kink_m() const { return unit_m * curve.cap_distance(); }
 };
-
-/// Distance in rotor radii down to which the model stays below max_factor; negative when it does so at contact.
-[[nodiscard]] double kink_of(const SurfaceEffect& effect, double max_factor);
 
 /// The average over the disc of k(z(p)), z(p) the distance from p to the first surface on the side asked for.
 [[nodiscard]] double disc_average(const DiscQuery& query, std::span<const Footprint> footprints);

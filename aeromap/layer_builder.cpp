@@ -5,14 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
 namespace {
 
 /// A cell whose K cannot differ more than this from 1 is not looked at closer.
-constexpr double quiet_factor = 1.006;
+constexpr double quiet_change = 0.006;
 /// How exact clearances are taken to be: the cell's verdict and the exact test must never disagree.
 constexpr double clearance_slack_m = 1e-6;
 
@@ -22,8 +22,8 @@ class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
         : grid_(grid),
-          radius_m_(grid.effect.rotor_radius_m()),
-          least_clearance_m_(grid.effect.settings().min_distance_radii * radius_m_),
+          radius_m_(grid.effect.disc_radius_m()),
+          least_clearance_m_(grid.effect.least_clearance_m()),
           first_(first),
           last_(last) {
         forget(lines_[2]);
@@ -92,9 +92,9 @@ class RowsBuilder {
         }
     }
 
-    /// No rotor hub in the cell has a larger K: each side counts as covered by a flat surface at the least vertical
-    /// gap. Needs models that fall with distance.
-    [[nodiscard]] double largest_factor(const CellSquare& cell) const {
+    /// Nowhere in the cell does K differ more from 1: each side counts as covered by a flat surface somewhere from the
+    /// least vertical gap on.
+    [[nodiscard]] double largest_change(const CellSquare& cell) const {
         const Scene& scene = grid_.effect.scene();
         const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
         const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);
@@ -116,9 +116,9 @@ class RowsBuilder {
                 above_m = std::min(above_m, std::max(0.0, bounds.low_m[2] - to[2]));
             }
         }
-        const AeroSettings& settings = grid_.effect.settings();
-        return surface_factor(settings.ground, below_m / radius_m_, settings.max_factor) +
-               surface_factor(settings.ceiling, above_m / radius_m_, settings.max_factor) - 1;
+        const double unit_m = grid_.effect.rotor_radius_m();
+        return grid_.effect.ground().largest_change_beyond(below_m / unit_m) +
+               grid_.effect.ceiling().largest_change_beyond(above_m / unit_m);
     }
 
     void add_cell(std::size_t i, std::size_t k) {
@@ -130,7 +130,7 @@ class RowsBuilder {
             return;
         }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
-        const bool is_quiet = !grid_.effect.settings().enabled || largest_factor(cell) <= quiet_factor;
+        const bool is_quiet = !grid_.effect.settings().enabled || largest_change(cell) <= quiet_change;
         const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, probes(i, k), field);
         rows_.steps.push_back(steps);
         if (steps.x == 1 && steps.z == 1) {
@@ -179,15 +179,18 @@ class RowsBuilder {
     std::array<std::vector<double>, 3> lines_;
 };
 
-/// Largest |dk/d(z/R)| of one side within the flyable area.
-double steepest(const SurfaceEffect& effect, const AeroSettings& settings) {
+/// Largest |dK/d(z/R)| of one side from a distance on.
+double steepest(const EffectCurve& curve, double from_radii) {
     constexpr double step = 1e-3;
     double largest = 0;
+    if (curve.depends_on_wall()) {
+        for (const double d_over_r : curve.effect().table->d_over_r()) {
+            largest = std::max(largest, steepest(curve.at_wall(d_over_r), from_radii));
+        }
+    }
     for (int j = 0; j < 4000; ++j) {
-        const double zeta = settings.min_distance_radii + j * step;
-        const double change = surface_factor(effect, zeta + step, settings.max_factor) -
-                              surface_factor(effect, zeta, settings.max_factor);
-        largest = std::max(largest, std::abs(change) / step);
+        const double zeta = from_radii + j * step;
+        largest = std::max(largest, std::abs(curve(zeta + step) - curve(zeta)) / step);
     }
     return largest;
 }
@@ -198,11 +201,12 @@ CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) 
     return RowsBuilder(grid, first, last).build();
 }
 
-double longest_cell_side_m(const AeroSettings& settings, double rotor_radius_m) {
-    const double slope = std::max(steepest(settings.ground, settings), steepest(settings.ceiling, settings));
+double longest_cell_side_m(const DirectEffect& effect) {
+    const double from_radii = effect.settings().min_distance_radii;
+    const double slope = std::max(steepest(effect.ground(), from_radii), steepest(effect.ceiling(), from_radii));
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
     const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);
-    return rotor_radius_m * std::clamp(resolved_radii, 0.02, 0.45);
+    return effect.rotor_radius_m() * std::clamp(resolved_radii, 0.02, 0.45);
 }
 
 }  // namespace downwash

@@ -5,6 +5,7 @@
 // That needs a build without contraction (-ffp-contract=off). sqrt is exact by IEEE 754 and may be used.
 
 #include <cmath>
+#include <initializer_list>
 
 namespace downwash::lane {
 
@@ -119,6 +120,42 @@ T atan2(T y, T x) {
 template <class T>
 T power_three_halves(T x) {
     return x * sqrt(x);
+}
+
+/// e^x to 2 ulp, for one double; infinite beyond the greatest one, 0 below the smallest normal one.
+inline double exp(double x) {
+    if (!(x > -708)) {
+        return x <= -708 ? 0 : x;  // NaN stays
+    }
+    if (x > 709.78) {
+        return 2 * 0x1p1023;
+    }
+    const double k = round_to_integer(x * 1.44269504088896340736);
+    // ln 2 in 33 bits and a rest: k times the first is exact.
+    const double r = (x - k * 0x1.62e42feep-1) - k * 0x1.a39ef35793c76p-33;
+    double sum = 1.0 / 6227020800.0;  // Taylor, 13! first: |r| <= ln 2 / 2 leaves less than 2^-58
+    for (const double factorial :
+         {479001600.0, 39916800.0, 3628800.0, 362880.0, 40320.0, 5040.0, 720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0}) {
+        sum = sum * r + 1 / factorial;
+    }
+    return std::ldexp(sum, static_cast<int>(k));
+}
+
+/// The real cube root to 2 ulp, for one double.
+inline double cube_root(double x) {
+    if (x == 0 || x - x != 0) {  // 0, infinite or no number
+        return x;
+    }
+    int exponent = 0;
+    double m = std::frexp(abs(x), &exponent);
+    for (; exponent % 3 != 0; ++exponent) {
+        m *= 0.5;
+    }
+    double root = 0.37 + 0.65 * m;  // within 10 % for 1/8 <= m < 1
+    for (int i = 0; i < 5; ++i) {   // Newton
+        root = (2 * root + m / (root * root)) * (1.0 / 3.0);
+    }
+    return std::ldexp(x < 0 ? -root : root, exponent / 3);
 }
 
 /// The angle in (-pi, pi] that differs from x by whole turns. @pre |x| <= 1e5 rad

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/aeromap/effect_curve.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
@@ -40,9 +40,9 @@ class Effects {
     explicit Effects(const Problem& problem) : problem_(problem), model_(make_flight_model(problem)) {}
 
     PointEffect at(const std::array<double, 3>& point_m) {
-        PointEffect effect{point_m, model_->direct().is_flyable(point_m), {}, {}, {}};
+        PointEffect effect{point_m, model_->effect(0).is_flyable(point_m), {}, {}, {}};
         if (effect.is_flyable) {
-            const DirectEffect::Factors factors = model_->direct().factors(point_m);
+            const DirectEffect::Factors factors = model_->effect(0).factors(point_m);
             effect.ground = factors.ground;
             effect.ceiling = factors.ceiling;
             effect.factor = map_factor(point_m).value_or(factors.total);
@@ -131,8 +131,8 @@ const EffectModelInfo& find_model(const std::string& name) {
     const EffectModelInfo* model = find_effect_model(name);
     if (model == nullptr) {
         std::string names;
-        for (int i = 0; i <= static_cast<int>(EffectModel::sanchez_cuevas); ++i) {
-            names += (i > 0 ? ", " : "") + std::string(info(static_cast<EffectModel>(i)).name);
+        for (const EffectModelInfo& known : effect_models()) {
+            names += (names.empty() ? "" : ", ") + std::string(known.name);
         }
         throw UsageError("--model '" + name + "' is not known: expected one of " + names);
     }
@@ -151,9 +151,7 @@ void query_model(const QueryArguments& arguments) {
         if (!(z_over_r >= 0 && std::isfinite(z_over_r))) {
             throw UsageError(fmt::format("--z-over-r {}: expected a finite distance in radii, at least 0", z_over_r));
         }
-        SurfaceEffect effect;
-        effect.model = model.model;
-        points.push_back({{"z_over_r", z_over_r}, {"factor", surface_factor(effect, z_over_r, max_factor)}});
+        points.push_back({{"z_over_r", z_over_r}, {"factor", EffectCurve(model.model, max_factor)(z_over_r)}});
     }
     if (arguments.as_json) {
         fmt::print("{}\n", Json{{"model", model.name}, {"points", std::move(points)}}.dump(2));

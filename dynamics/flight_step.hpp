@@ -37,8 +37,9 @@ struct RotorWrench {
     T pitch_torque_nm;
 };
 
-/// The wrench at a configuration.
-/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane
+/// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
+/// centre between them (model 4.3).
+/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane; rotor_count stands for the body
 template <class T, class Factor>
 RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
                             const Factor& factor) {
@@ -48,6 +49,17 @@ RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m
         const T acting_n = factor(i, hub.x, hub.z) * thrust_n[i];
         wrench.thrust_n = wrench.thrust_n + acting_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
+    }
+    if (model.has_fountain) {
+        const int body = model.rotor_count;
+        const PlanePoint<T> center = rotor_position(model, a, x_m, z_m, body);
+        T free_air_n(0);
+        for (int i = 0; i < body; ++i) {
+            free_air_n = free_air_n + thrust_n[i];
+        }
+        const T push_n = (factor(body, center.x, center.z) - T(1)) * free_air_n;
+        wrench.thrust_n = wrench.thrust_n + push_n;
+        wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[body]) * push_n;
     }
     return wrench;
 }

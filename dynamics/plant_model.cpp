@@ -29,7 +29,7 @@ bool allocation_has_full_rank(const RotorParameters& rotors) {
 }
 
 PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmParameters& arm,
-                            const RotorParameters& rotors) {
+                            const RotorParameters& rotors, bool has_fountain) {
     assert(rotors.positions_m.size() <= static_cast<std::size_t>(max_rotors));
     PlantModel model{};
     model.multirotor_mass_kg = multirotor.mass_kg;
@@ -55,6 +55,11 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
         model.rotor_z_m[i] = position_m[2];
         model.force_share[i] = (s.xx - position_m[0] * s.x) / determinant;
         model.torque_share_1_m[i] = (s.x - position_m[0] * s.count) / determinant;
+    }
+    model.has_fountain = has_fountain;
+    for (const Vector3& position_m : rotors.positions_m) {
+        model.rotor_x_m[model.rotor_count] += position_m[0] / s.count;
+        model.rotor_z_m[model.rotor_count] += position_m[2] / s.count;
     }
     model.min_thrust_n = rotors.min_thrust_n;
     model.max_thrust_n = rotors.max_thrust_n;

@@ -21,7 +21,10 @@ struct PlantModel {
     double max_joint_torque_nm;
 
     int rotor_count;
-    double rotor_x_m[max_rotors], rotor_z_m[max_rotors];
+    /// Hubs in the body frame; behind the last rotor stands the centre between all of them.
+    double rotor_x_m[max_rotors + 1], rotor_z_m[max_rotors + 1];
+    /// Near the ground the air that rises between the rotors pushes the body at that centre (thesis (2.17)).
+    bool has_fountain;
     double force_share[max_rotors];       ///< thrust of rotor i per newton of F3
     double torque_share_1_m[max_rotors];  ///< thrust of rotor i per newton metre of T2
     double min_thrust_n, max_thrust_n;
@@ -32,7 +35,8 @@ struct PlantModel {
 /// Prepares a plant.
 /// @pre the parameters are sound (robot_faults() finds nothing) and no more than max_rotors rotors are given
 [[nodiscard]] DOWNWASH_EXPORT PlantModel make_plant_model(const MultirotorParameters& multirotor,
-                                                          const ArmParameters& arm, const RotorParameters& rotors);
+                                                          const ArmParameters& arm, const RotorParameters& rotors,
+                                                          bool has_fountain = false);
 
 /// Whether the rotor positions let total thrust and pitch torque be commanded apart (rank 2 of model 3's allocation).
 [[nodiscard]] DOWNWASH_EXPORT bool allocation_has_full_rank(const RotorParameters& rotors);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -59,12 +60,39 @@ std::vector<Fault> shapeless_cylinders(const Problem& p) {
     return faults;
 }
 
+/// What shows when obstacles are placed: a mesh without area, coordinates that a scale makes huge.
+std::vector<Fault> unplaceable_obstacles(const Problem& p) {
+    constexpr double most_m = 1e6;
+    std::vector<Fault> faults;
+    try {
+        const Scene scene(p.obstacles);
+        for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+            const Scene::Bounds& bounds = scene.bounds(i);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double reach_m = std::max(std::abs(bounds.low_m[axis]), std::abs(bounds.high_m[axis]));
+                if (!(reach_m <= most_m)) {
+                    faults.push_back(
+                        {"environment.obstacles[" + std::to_string(i) + "]",
+                         "reaches " + rounded(reach_m) + " m from the origin: expected at most " + rounded(most_m)});
+                    break;
+                }
+            }
+        }
+    } catch (const InputError& error) {
+        for (const Fault& fault : error.faults()) {
+            faults.push_back({"environment." + fault.key, fault.message});
+        }
+    }
+    return faults;
+}
+
 std::vector<Fault> too_large_map(const Problem& p) {
     if (!p.aero.enabled) {
         return {};
     }
-    const double cells = map_cells(p.aero, p.robot.rotors.radius_m, rotor_extent(p.robot.rotors, p.bounds),
-                                   lateral_offsets_m(p.robot.rotors).size());
+    const auto no_obstacles = std::make_shared<const Scene>(std::vector<Obstacle>{});
+    const double cells =
+        map_cells(effect_layers(p.robot.rotors, no_obstacles, p.aero).layers, rotor_extent(p.robot.rotors, p.bounds));
     if (cells <= most_map_cells) {
         return {};
     }
@@ -230,10 +258,11 @@ std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
              "nearer to it than planner.safety_margin_m"}};
 }
 
-const std::array<Check<Problem>, 14> checks{{
+const std::array<Check<Problem>, 15> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
+    {{"environment.obstacles"}, unplaceable_obstacles},
     {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
     {{"environment.bounds", "start"}, start_outside_bounds},
     {{"start", "motion"}, start_too_fast},

@@ -5,17 +5,15 @@
 
 #include "downwash/aeromap/effect_models.hpp"
 #include "downwash/base/parameter_factories.hpp"
+#include "downwash/planner/obstacle_parameters.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/scene/shape_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 
 namespace downwash {
 namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
-
-constexpr double farthest_m = 1e5;  ///< from the origin; farther out, positions lose their millimetres
 
 // The factories for this table's Model; the members are named by lambdas.
 template <class Member>
@@ -67,31 +65,6 @@ void add_plane(Rows& rows) {
     rows.push_back(std::move(heading).at_least(-360).at_most(360));
 }
 
-void add_obstacles(Rows& rows) {
-    rows.push_back(parameters::list<Problem>(
-        "environment.obstacles", "solids in the world frame", [](auto& p) -> auto& { return p.obstacles; }));
-    rows.push_back(parameters::text<Problem>(
-        "environment.obstacles[].name", "name, used once",
-        [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].name; }));
-    add_shape_rows<Problem>(
-        rows, "environment.obstacles[]", [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].shape; },
-        [](Rows& to, const std::string& path) {
-            to.push_back(parameters::vector<Problem>(
-                             path + ".center_m", "centre", {"x", "y", "z"},
-                             [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_m; })
-                             .is_required()
-                             .at_least(-farthest_m)
-                             .at_most(farthest_m));
-            to.push_back(parameters::vector<Problem>(
-                             path + ".rpy_deg", "orientation, R = Rz(yaw) Ry(pitch) Rx(roll)", {"roll", "pitch", "yaw"},
-                             [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].rpy_rad; })
-                             .at_least(-360)
-                             .at_most(360));
-        });
-    rows.push_back(parameters::planned<Problem>("environment.obstacles[].mesh", "a triangle mesh from a file"));
-    rows.push_back(parameters::planned<Problem>("environment.obstacles[].octomap", "an octree from a file"));
-}
-
 void add_environment(Rows& rows) {
     rows.push_back(group("environment", "the world and where the vehicle may be").is_required());
     add_plane(rows);
@@ -110,38 +83,44 @@ void add_environment(Rows& rows) {
                        .is_required()
                        .at_least(-farthest_m)
                        .at_most(farthest_m));
-    add_obstacles(rows);
+    add_obstacle_rows(rows);
 }
 
 /// One side's surface effect; `effect` names it in a Problem.
 template <class Effect>
 void add_surface(Rows& rows, const std::string& path, const std::string& description, Effect effect) {
-    std::vector<std::pair<EffectModel, std::string_view>> models;
-    for (const EffectModel model : {EffectModel::none, EffectModel::cheeseman_bennett, EffectModel::sanchez_cuevas}) {
-        models.emplace_back(model, info(model).name);
+    std::vector<std::string_view> names;
+    for (const EffectModelInfo& model : effect_models()) {
+        names.push_back(model.name);
     }
     auto surface = group(path, description).or_none();
     surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
         if (count == 0) {
-            effect(p).model = EffectModel::none;
+            effect(p) = EffectModel::none;
         }
     };
-    const auto has_fit = [effect](const Problem& p, std::size_t) {
-        return effect(p).model == EffectModel::sanchez_cuevas;
-    };
-    const std::string when = "with the model " + std::string(info(EffectModel::sanchez_cuevas).name);
     rows.push_back(std::move(surface));
-    rows.push_back(parameters::choice<Problem>(
-        path + ".model", "the formula", models, [effect](auto& p) -> auto& { return effect(p).model; }));
-    rows.push_back(positive(
-                       path + ".k1", "divisor of the fit", 1e6, [effect](auto& p) -> auto& { return effect(p).k1; })
-                       .only(when, has_fit));
-    rows.push_back(number(
-                       path + ".k2_over_radius",
-                       "offset of the fit", [effect](auto& p) -> auto& { return effect(p).k2_over_radius; })
-                       .at_least(0)
-                       .at_most(100)
-                       .only(when, has_fit));
+    auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
+    model.names = names;
+    model.get = [effect](const Problem& p, std::size_t) { return Value(std::string(info(effect(p).model).name)); };
+    model.set = [effect](Problem& p, std::size_t, const Value& value) {
+        if (const EffectModelInfo* named = find_effect_model(std::get<std::string>(value))) {
+            effect(p) = named->model;
+        }
+    };
+    rows.push_back(std::move(model));
+    for (const EffectModelInfo& known : effect_models()) {
+        for (std::size_t i = 0; i < known.parameters.size(); ++i) {
+            const ModelParameter& parameter = known.parameters[i];
+            auto row = number(
+                path + "." + std::string(parameter.name), parameter.description,
+                [ effect, i ](auto& p) -> auto& { return effect(p).parameters[i]; });
+            row.range = {parameter.low, parameter.high, parameter.is_open, false};
+            rows.push_back(std::move(row).only(
+                "with the model " + std::string(known.name),
+                [effect, which = known.model](const Problem& p, std::size_t) { return effect(p).model == which; }));
+        }
+    }
 }
 
 void add_aero(Rows& rows) {

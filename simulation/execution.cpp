@@ -93,7 +93,7 @@ class Recorder {
  private:
     [[nodiscard]] bool is_flyable(const FlightState& state) const {
         return simulation::all_rotors(model_, state, [&](int rotor, double x_m, double z_m) {
-            return model_.direct().is_flyable(model_.plane().to_world(x_m, model_.rotor_lateral_m(rotor), z_m));
+            return model_.effect(rotor).is_flyable(model_.plane().to_world(x_m, model_.rotor_lateral_m(rotor), z_m));
         });
     }
 
@@ -187,7 +187,7 @@ bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& st
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                   const Goal& goal, bool aero) {
     assert(!knots.empty() && knots.front().tick == 0);
-    if (aero && model.direct().settings().enabled) {
+    if (aero && model.has_effects()) {
         return execute_with(model, start, knots, goal, true, simulation::DirectFactor{model});
     }
     return execute_with(model, start, knots, goal, false, simulation::NoEffect{});

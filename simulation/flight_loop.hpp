@@ -25,9 +25,7 @@ struct MapEffect {
 /// The effect evaluated exactly.
 struct DirectFactor {
     const FlightModel& model;
-    double operator()(int rotor, double x_m, double z_m) const {
-        return model.direct().factor(model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
-    }
+    double operator()(int rotor, double x_m, double z_m) const { return model.direct_factor(rotor, x_m, z_m); }
 };
 
 inline controllers::Setpoint<double> setpoint(const ReferencePoint& point) noexcept {

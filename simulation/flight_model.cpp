@@ -2,28 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace downwash {
+namespace {
+
+bool has_fountain(const AeroSettings& aero) {
+    return aero.enabled && aero.ground.model == EffectModel::multirotor_body;
+}
+
+bool sees_neighbours(const AeroSettings& aero) {
+    const auto is_multirotor = [](const SurfaceEffect& effect) {
+        return effect.model == EffectModel::multirotor_images || effect.model == EffectModel::multirotor_body;
+    };
+    return is_multirotor(aero.ground) || is_multirotor(aero.ceiling);
+}
+
+}  // namespace
 
 FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::shared_ptr<const Scene> scene,
                          const AeroSettings& aero)
     : robot_(robot),
       plane_(plane),
-      tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors), robot.controller,
+      tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)), robot.controller,
             1 / robot.controller.rate_hz},
-      collisions_(scene, plane, robot.shape()),
-      direct_(std::make_shared<const DirectEffect>(scene, aero, robot.rotors.radius_m)),
-      lateral_offsets_m_(lateral_offsets_m(robot.rotors)) {
-    for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
-        rotor_lateral_m_[i] = robot.rotors.positions_m[i][1];
-        const auto layer = std::find(lateral_offsets_m_.begin(), lateral_offsets_m_.end(), rotor_lateral_m_[i]);
-        rotor_layer_[i] = static_cast<std::size_t>(layer - lateral_offsets_m_.begin());
-    }
+      collisions_(scene, plane, robot.shape()) {
+    EffectLayers effects = effect_layers(robot.rotors, scene, aero);
+    layers_ = std::move(effects.layers);
+    std::copy(effects.layer_of.begin(), effects.layer_of.end(), rotor_layer_);
 }
 
-std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads) const {
-    return std::make_shared<const AeroMap>(direct_, plane_, rotor_extent(robot_.rotors, bounds), lateral_offsets_m_,
-                                           threads);
+std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,
+                                                     const std::function<void(double)>& on_progress) const {
+    return std::make_shared<const AeroMap>(layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
 }
 
 MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
@@ -34,14 +46,41 @@ MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
     return {bounds.x_low_m - reach_m, bounds.x_high_m + reach_m, bounds.z_low_m - reach_m, bounds.z_high_m + reach_m};
 }
 
-std::vector<double> lateral_offsets_m(const RotorParameters& rotors) {
-    std::vector<double> offsets_m;
-    for (const Vector3& hub_m : rotors.positions_m) {
-        if (std::find(offsets_m.begin(), offsets_m.end(), hub_m[1]) == offsets_m.end()) {
-            offsets_m.push_back(hub_m[1]);
+EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<const Scene>& scene,
+                           const AeroSettings& aero) {
+    const std::vector<Vector3>& hubs_m = rotors.positions_m;
+    std::vector<std::pair<RotorNeighbours, std::shared_ptr<const DirectEffect>>> effects;
+    EffectLayers all;
+    const auto find_or_add = [&all](const std::shared_ptr<const DirectEffect>& effect, double lateral_m) {
+        const auto found = std::find_if(all.layers.begin(), all.layers.end(), [&](const MapLayer& layer) {
+            return layer.effect == effect && layer.lateral_m == lateral_m;
+        });
+        all.layer_of.push_back(static_cast<std::size_t>(found - all.layers.begin()));
+        if (found == all.layers.end()) {
+            all.layers.push_back({effect, lateral_m});
         }
+    };
+    for (std::size_t i = 0; i < hubs_m.size(); ++i) {
+        const RotorNeighbours neighbours =
+            sees_neighbours(aero) ? neighbours_of(hubs_m, i, rotors.radius_m) : RotorNeighbours{};
+        auto known = std::find_if(effects.begin(), effects.end(), [&](const auto& e) { return e.first == neighbours; });
+        if (known == effects.end()) {
+            effects.emplace_back(neighbours,
+                                 std::make_shared<const DirectEffect>(scene, aero, rotors.radius_m, neighbours));
+            known = std::prev(effects.end());
+        }
+        find_or_add(known->second, hubs_m[i][1]);
     }
-    return offsets_m;
+    if (has_fountain(aero)) {
+        double center_y_m = 0;
+        for (const Vector3& hub_m : hubs_m) {
+            center_y_m += hub_m[1] / static_cast<double>(hubs_m.size());
+        }
+        find_or_add(std::make_shared<const DirectEffect>(DirectEffect::fountain(
+                        scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m))),
+                    center_y_m);
+    }
+    return all;
 }
 
 FlightState FlightModel::state_at(const double q[4], const double u[4]) const noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "downwash/aeromap/aero_map.hpp"
@@ -26,14 +27,22 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const simulation::TickModel& tick() const noexcept { return tick_; }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
-    [[nodiscard]] const DirectEffect& direct() const noexcept { return *direct_; }
-
+    /// The surface effect on rotor i, or on the body when i is the number of rotors (see rotor_wrench).
+    [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
     /// Distance of rotor i to the left of the plane [m], and its layer in the aero map.
-    [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return rotor_lateral_m_[rotor]; }
+    [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
+    /// Whether surfaces act on the rotors at all.
+    [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
+    /// K evaluated exactly at a hub in plane coordinates.
+    [[nodiscard]] double direct_factor(int rotor, double x_m, double z_m) const {
+        return effect(rotor).factor(plane_.to_world(x_m, rotor_lateral_m(rotor), z_m));
+    }
 
     /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
-    [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds, int threads = 1) const;
+    /// @param on_progress see AeroMap
+    [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds, int threads = 1,
+                                                          const std::function<void(double)>& on_progress = {}) const;
 
     /// The vehicle at q = (x, z, pitch, arm) [m, m, rad, rad] with speeds u, controller rested, no energy spent.
     [[nodiscard]] FlightState state_at(const double q[4], const double u[4]) const noexcept;
@@ -43,17 +52,22 @@ class DOWNWASH_EXPORT FlightModel {
     PlaneOfMotion plane_;
     simulation::TickModel tick_;
     CollisionChecker collisions_;
-    std::shared_ptr<const DirectEffect> direct_;
-    std::vector<double> lateral_offsets_m_;
-    double rotor_lateral_m_[max_rotors] = {};
-    std::size_t rotor_layer_[max_rotors] = {};
+    std::vector<MapLayer> layers_;
+    std::size_t rotor_layer_[max_rotors + 1] = {};
 };
 
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
 [[nodiscard]] DOWNWASH_EXPORT MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
 
-/// The distinct distances of rotors to the left of the plane [m], in the order of the rotors.
-[[nodiscard]] DOWNWASH_EXPORT std::vector<double> lateral_offsets_m(const RotorParameters& rotors);
+/// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle and, where the ground
+/// model has a fountain, its body.
+struct EffectLayers {
+    std::vector<MapLayer> layers;
+    std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body, if the fountain pushes it
+};
+[[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
+                                                         const std::shared_ptr<const Scene>& scene,
+                                                         const AeroSettings& aero);
 
 /// The pose whose collisions a state stands for.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {

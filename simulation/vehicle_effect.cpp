@@ -36,7 +36,7 @@ bool is_flyable(const FlightModel& model, const PlanarPose& pose) {
     const double q[4] = {pose.x_m, pose.z_m, pose.pitch_rad, pose.arm_rad};
     const double u[4] = {};
     return simulation::all_rotors(model, model.state_at(q, u), [&](int rotor, double x_m, double z_m) {
-        return model.direct().is_flyable(model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
+        return model.effect(rotor).is_flyable(model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
     });
 }
 

@@ -49,7 +49,8 @@ std::vector<Obstacle> bridge() {
 
 DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, int side) {
     const AeroSettings& settings = effect.settings();
-    const double radius = effect.rotor_radius_m();
+    const double radius = effect.disc_radius_m();
+    const double unit_m = effect.rotor_radius_m();
     double below_sum = 0;
     double above_sum = 0;
     long rays = 0;
@@ -72,13 +73,21 @@ DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, 
                     above = std::min(above, std::max(0.0, extent.low - hub_m[2]));
                 }
             }
-            below_sum += surface_factor(settings.ground, below / radius, settings.max_factor);
-            above_sum += surface_factor(settings.ceiling, above / radius, settings.max_factor);
+            below_sum += effect.ground()(below / unit_m);
+            above_sum += effect.ceiling()(above / unit_m);
         }
     }
     const auto count = static_cast<double>(rays);
     return {below_sum / count, above_sum / count,
             std::min(below_sum / count + above_sum / count - 1, settings.max_factor)};
+}
+
+std::vector<MapLayer> layers(const std::shared_ptr<const DirectEffect>& effect, const std::vector<double>& lateral_m) {
+    std::vector<MapLayer> all;
+    for (const double lateral : lateral_m) {
+        all.push_back({effect, lateral});
+    }
+    return all;
 }
 
 std::shared_ptr<const Scene> scene_of(std::vector<Obstacle> obstacles) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../support/random.hpp"
-#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash::test {
@@ -14,6 +14,9 @@ Obstacle any_obstacle(Random& random, const Vector3& center_m);
 
 /// Ground, deck with girders, pier, pipes, a ball and a tilted block, over 24 m by 12 m.
 std::vector<Obstacle> bridge();
+
+/// The same effect at some lateral offsets, as layers of a map.
+std::vector<MapLayer> layers(const std::shared_ptr<const DirectEffect>& effect, const std::vector<double>& lateral_m);
 
 /// The disc average of k by 10^6 rays on a square grid (fewer for a smaller `side`), from vertical extents only.
 DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, int side = 1128);

@@ -27,16 +27,16 @@ Comparison compare(const AeroMap& map, int points, unsigned seed) {
     for (long tries = 0; result.points < points && tries < 400L * points; ++tries) {
         const double x = random.uniform(extent.x_low_m, extent.x_high_m);
         const double z = random.uniform(extent.z_low_m, extent.z_high_m);
-        const auto layer =
-            static_cast<std::size_t>(random.integer(0, static_cast<int>(map.lateral_offsets_m().size()) - 1));
+        const auto layer = static_cast<std::size_t>(random.integer(0, static_cast<int>(map.layers().size()) - 1));
         const bool wants_effect = tries % 40 != 0;
         if (wants_effect && map.factor(layer, x, z) < 1.05) {
             continue;
         }
-        const Vector3 hub = map.plane().to_world(x, map.lateral_offsets_m()[layer], z);
-        REQUIRE(map.is_flyable(layer, x, z) == map.effect().is_flyable(hub));
+        const DirectEffect& direct = *map.layers()[layer].effect;
+        const Vector3 hub = map.plane().to_world(x, map.layers()[layer].lateral_m, z);
+        REQUIRE(map.is_flyable(layer, x, z) == direct.is_flyable(hub));
         if (map.is_flyable(layer, x, z)) {
-            result.worst = std::max(result.worst, std::abs(map.factor(layer, x, z) - map.effect().factor(hub)));
+            result.worst = std::max(result.worst, std::abs(map.factor(layer, x, z) - direct.factor(hub)));
             ++result.points;
             result.near_surfaces += wants_effect;
         }
@@ -66,8 +66,8 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
     for (int scene = 0; scene < 8; ++scene) {
         const double radius = random.uniform(0.06, 0.25);
         const double grid_m = scene % 4 == 3 ? 0.3 : 0.05;
-        const AeroMap map(effect_in(random_obstacles(random, 6), radius, grid_m),
-                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, {-0.2, 0.1}, 2);
+        const AeroMap map(test::layers(effect_in(random_obstacles(random, 6), radius, grid_m), {-0.2, 0.1}),
+                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, 2);
         const Comparison found = compare(map, 20000, 100U + static_cast<unsigned>(scene));
         CAPTURE(scene, radius, grid_m, found.worst);
         CHECK(found.points == 20000);
@@ -76,7 +76,7 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
 }
 
 TEST_CASE("A map of a bridge is within 0.01 of the direct effect wherever one may fly") {
-    const AeroMap map(effect_in(test::bridge(), 0.15), {}, {-12, 12, 0, 12}, {-0.18, 0.18}, 2);
+    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {-0.18, 0.18}), {}, {-12, 12, 0, 12}, 2);
     const Comparison found = compare(map, 40000, 21);
     CAPTURE(found.worst);
     CHECK(found.points == 40000);
@@ -92,7 +92,7 @@ TEST_CASE("Another cap and another distance are met as well") {
     const auto effect = std::make_shared<const DirectEffect>(
         scene_of({{"", Box{{4, 4, 1}}, {0, 0, -0.5}, {}}, {"", Cylinder{0.2, 2, {0, 1, 0}}, {0, 0, 1}, {}}}), settings,
         0.12);
-    const AeroMap map(effect, {}, {-1, 1, 0, 2}, {0}, 1);
+    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 0, 2}, 1);
     const Comparison found = compare(map, 20000, 31);
     CAPTURE(found.worst);
     CHECK(found.worst <= 0.01);
@@ -101,9 +101,9 @@ TEST_CASE("Another cap and another distance are met as well") {
 TEST_CASE("A map is the same to the bit for any number of threads") {
     test::Random random(12);
     const auto effect = effect_in(random_obstacles(random, 5), 0.15);
-    const AeroMap one(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 1);
-    const AeroMap two(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 2);
-    const AeroMap five(effect, {}, {-2, 2, -1.5, 1.5}, {-0.2, 0.2}, 5);
+    const AeroMap one(test::layers(effect, {-0.2, 0.2}), {}, {-2, 2, -1.5, 1.5}, 1);
+    const AeroMap two(test::layers(effect, {-0.2, 0.2}), {}, {-2, 2, -1.5, 1.5}, 2);
+    const AeroMap five(test::layers(effect, {-0.2, 0.2}), {}, {-2, 2, -1.5, 1.5}, 5);
     CHECK(one.memory_bytes() == two.memory_bytes());
     for (int i = 0; i < 200000; ++i) {
         const double x = random.uniform(-2, 2);
@@ -120,7 +120,7 @@ TEST_CASE("A map is the same to the bit for any number of threads") {
 TEST_CASE("Outside its extent a map evaluates directly") {
     const auto effect = effect_in(test::bridge(), 0.15);
     const PlaneOfMotion plane({0, 0, 0}, 0.2);
-    const AeroMap map(effect, plane, {-1, 1, 1, 2}, {0.18}, 1);
+    const AeroMap map(test::layers(effect, {0.18}), plane, {-1, 1, 1, 2}, 1);
     for (const double x : {-7.0, -1.001, 1.06, 3.0}) {
         for (const double z : {0.1, 0.4, 2.06, 8.0}) {
             CHECK(map.factor(0, x, z) == effect->factor(plane.to_world(x, 0.18, z)));
@@ -131,7 +131,7 @@ TEST_CASE("Outside its extent a map evaluates directly") {
 }
 
 TEST_CASE("A position that is not finite has the factor 1 in a map and is not flyable") {
-    const AeroMap map(effect_in(test::bridge(), 0.15), {}, {-1, 1, 0, 1}, {0}, 1);
+    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {0}), {}, {-1, 1, 0, 1}, 1);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     for (const double bad : {nan, infinity, -infinity}) {
@@ -143,7 +143,7 @@ TEST_CASE("A position that is not finite has the factor 1 in a map and is not fl
 
 TEST_CASE("Map borders belong to the map and stay inside its memory") {
     const auto effect = effect_in(test::bridge(), 0.15, 0.07);
-    const AeroMap map(effect, {}, {-1, 1, 0.06, 1}, {0}, 1);
+    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 0.06, 1}, 1);
     for (const double x : {-1.0, std::nextafter(1.0, 0.0), 1.0}) {
         for (const double z : {0.06, 0.2, std::nextafter(1.0, 0.0), 1.0}) {
             CHECK(map.factor(0, x, z) == Approx(effect->factor({x, 0, z})).margin(0.01));
@@ -154,8 +154,8 @@ TEST_CASE("Map borders belong to the map and stay inside its memory") {
 TEST_CASE("With the effects disabled a map is 1 and flyable throughout") {
     AeroSettings settings;
     settings.enabled = false;
-    const AeroMap map(std::make_shared<const DirectEffect>(scene_of(test::bridge()), settings, 0.15), {},
-                      {-12, 12, 0, 12}, {0}, 1);
+    const AeroMap map(test::layers(std::make_shared<const DirectEffect>(scene_of(test::bridge()), settings, 0.15), {0}),
+                      {}, {-12, 12, 0, 12}, 1);
     CHECK(map.factor(0, 3, 5) == 1);
     CHECK(map.is_flyable(0, 3, 5));
 }
@@ -163,12 +163,12 @@ TEST_CASE("With the effects disabled a map is 1 and flyable throughout") {
 TEST_CASE("Maps that make no sense are refused") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto effect = effect_in({}, 0.15);
-    CHECK_THROWS_AS(AeroMap(effect, {}, {1, 1, 0, 1}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect, {}, {1, -1, 0, 1}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1, nan, 1}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1, 0, 1}, {nan}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect, {}, {0, 1e6, 0, 1e6}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, 0), {}, {0, 1, 0, 1}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, -0.05), {}, {0, 1, 0, 1}, {0}, 1), InputError);
-    CHECK_THROWS_AS(AeroMap(effect_in({}, 0.15, nan), {}, {0, 1, 0, 1}, {0}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, {1, 1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, {1, -1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, {0, 1, nan, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {nan}), {}, {0, 1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, {0, 1e6, 0, 1e6}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect_in({}, 0.15, 0), {0}), {}, {0, 1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect_in({}, 0.15, -0.05), {0}), {}, {0, 1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect_in({}, 0.15, nan), {0}), {}, {0, 1, 0, 1}, 1), InputError);
 }

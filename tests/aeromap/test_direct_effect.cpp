@@ -29,7 +29,7 @@ TEST_CASE("Over a wide floor the model itself acts, and falls with distance to 1
     double last = 2;
     for (double z = 0.01; z < 20; z += 0.01) {
         const double factor = effect.factor({1, 2, z});
-        REQUIRE(factor == surface_factor(settings.ground, z / radius, settings.max_factor));
+        REQUIRE(factor == EffectCurve(settings.ground, settings.max_factor)(z / radius));
         REQUIRE(factor <= last);
         last = factor;
     }
@@ -54,16 +54,16 @@ TEST_CASE("Only the part of an obstacle that no other hides has an effect") {
     // Half of the disc sees the table, the other half the floor.
     const AeroSettings settings;
     const DirectEffect effect(scene_of({floor_slab, {"table", Box{{2, 4, 0.1}}, {1, 0, 0.45}, {}}}), settings, radius);
-    const double table = surface_factor(settings.ground, 0.2 / radius, 2);
-    const double floor = surface_factor(settings.ground, 0.7 / radius, 2);
+    const double table = EffectCurve(settings.ground, 2)(0.2 / radius);
+    const double floor = EffectCurve(settings.ground, 2)(0.7 / radius);
     CHECK(effect.factor({0, 0, 0.7}) == Approx(0.5 * (table + floor)).margin(1e-6));
 }
 
 TEST_CASE("Effects from below and above add up to the cap") {
     const AeroSettings settings;
     const DirectEffect effect(scene_of({floor_slab, roof_at(0.5)}), settings, radius);
-    const double below = surface_factor(settings.ground, 0.3 / radius, 2);
-    const double above = surface_factor(settings.ceiling, 0.2 / radius, 2);
+    const double below = EffectCurve(settings.ground, 2)(0.3 / radius);
+    const double above = EffectCurve(settings.ceiling, 2)(0.2 / radius);
     const DirectEffect::Factors factors = effect.factors({0, 0, 0.3});
     CHECK(factors.ground == below);
     CHECK(factors.ceiling == above);
@@ -161,8 +161,9 @@ TEST_CASE("Settings out of their range are refused with every fault") {
     AeroSettings settings;
     settings.max_factor = 0.5;
     settings.min_distance_radii = -1;
-    settings.ceiling.k1 = 0;
-    settings.ground.k2_over_radius = std::numeric_limits<double>::quiet_NaN();
+    settings.ceiling.parameters[0] = 0;
+    settings.ground = EffectModel::he;
+    settings.ground.parameters[1] = std::numeric_limits<double>::quiet_NaN();
     try {
         const DirectEffect effect(scene_of({}), settings, 0);
         FAIL("nothing was thrown");

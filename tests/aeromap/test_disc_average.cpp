@@ -32,8 +32,8 @@ TEST_CASE("The edge of a half plane covers a circular segment, whatever its dire
             const double covered = 0.5 + (std::asin(inside) + inside * std::sqrt(1 - inside * inside)) / pi;
             const double x = s * radius * along[0];
             const double y = s * radius * along[1];
-            const double over = 1 + covered * (surface_factor(settings.ground, 0.8, 2) - 1);
-            const double under = 1 + covered * (surface_factor(settings.ceiling, 0.8, 2) - 1);
+            const double over = 1 + covered * (EffectCurve(settings.ground, 2)(0.8) - 1);
+            const double under = 1 + covered * (EffectCurve(settings.ceiling, 2)(0.8) - 1);
             REQUIRE(effect.factors({x, y, 0.8 * radius}).ground == Approx(over).epsilon(0).margin(1e-11));
             REQUIRE(effect.factors({x, y, -1 - 0.8 * radius}).ceiling == Approx(under).epsilon(0).margin(1e-11));
             // Where the rotor plane cuts the slab the covered part counts as touching, on both sides.

@@ -229,3 +229,36 @@ TEST_CASE("Selections compare as their names say") {
     CHECK(lane::clamp(0.5, -1.0, 1.0) == 0.5);
     CHECK(lane::sqrt(2.0) == std::sqrt(2.0));
 }
+
+TEST_CASE("The exponential function is within 2 ulp of the exact one over its whole range") {
+    Random random(8);
+    Worst worst;
+    for (int i = 0; i < 400000; ++i) {
+        const double x = i % 2 == 0 ? random.uniform(-707, 709) : random.uniform(-3, 3);
+        worst.add(ulps(lane::exp(x), std::exp(static_cast<long double>(x))), x);
+    }
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+    const double infinity = std::numeric_limits<double>::infinity();
+    CHECK(lane::exp(0.0) == 1);
+    CHECK(lane::exp(-infinity) == 0);
+    CHECK(lane::exp(-1000.0) == 0);
+    CHECK(lane::exp(infinity) == infinity);
+    CHECK(lane::exp(710.0) == infinity);
+    CHECK(std::isnan(lane::exp(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST_CASE("The cube root is within 2 ulp of the exact one for any size and sign") {
+    Random random(9);
+    Worst worst;
+    for (int i = 0; i < 400000; ++i) {
+        const double x = std::ldexp(random.uniform(-1, 1), random.integer(-900, 900));
+        worst.add(ulps(lane::cube_root(x), std::cbrt(static_cast<long double>(x))), x);
+    }
+    CAPTURE(worst.at);
+    CHECK(worst.error_ulp <= 2);
+    CHECK(lane::cube_root(27.0) == 3);
+    CHECK(lane::cube_root(-8.0) == -2);
+    CHECK(lane::cube_root(0.0) == 0);
+    CHECK(lane::cube_root(std::numeric_limits<double>::infinity()) == std::numeric_limits<double>::infinity());
+}

@@ -71,18 +71,16 @@ const Edit edits[] = {
     {"cylinder: {", "cilinder: {",
      "problem.yaml:8:20: unknown key 'cilinder' in environment.obstacles[1]: did you mean 'cylinder'?"},
     {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}", "name: pole",
-     "problem.yaml:8:7: environment.obstacles[1] needs exactly one of box, cylinder or sphere"},
+     "problem.yaml:8:7: environment.obstacles[1] needs exactly one of box, cylinder, sphere, mesh or octomap"},
     {"name: pole, cylinder: {", "name: pole, sphere: {radius_m: 1, center_m: [4, 3, 2]}, cylinder: {",
-     "problem.yaml:8:64: environment.obstacles[1] has both sphere and cylinder: expected exactly one of box, cylinder "
-     "or sphere"},
+     "problem.yaml:8:64: environment.obstacles[1] has both sphere and cylinder: expected exactly one of box, cylinder, "
+     "sphere, mesh or octomap"},
     {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}",
      "name: girder, mesh: {file: girder.stl}",
-     "problem.yaml:8:22: environment.obstacles[1] is made of a triangle mesh from a file, which comes with a later "
-     "version: expected box, cylinder or sphere for now"},
+     "problem.yaml:8:35: environment.obstacles[1].mesh.file 'girder.stl' cannot be read: there is no such file"},
     {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}",
      "name: scan, octomap: {file: pier.bt}",
-     "problem.yaml:8:20: environment.obstacles[1] is made of an octree from a file, which comes with a later version: "
-     "expected box, cylinder or sphere for now"},
+     "problem.yaml:8:36: environment.obstacles[1].octomap.file 'pier.bt' cannot be read: there is no such file"},
     {"name: pole", "name: ground",
      "problem.yaml:8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used "
      "once"},
@@ -123,8 +121,9 @@ const Edit edits[] = {
      "problem.yaml:14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"hold_s: 5", "hold_s: 0.5", "problem.yaml:15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},
     {"cheeseman-bennett", "cheesman-bennett",
-     "problem.yaml:10:19: aero.ground.model is 'cheesman-bennett': expected one of none, cheeseman-bennett or "
-     "sanchez-cuevas; did you mean 'cheeseman-bennett'?"},
+     "problem.yaml:10:19: aero.ground.model is 'cheesman-bennett': expected one of none, cheeseman-bennett, "
+     "multirotor-images, multirotor-body, hayden, li, he, sanchez-cuevas, fairing-cfd, momentum-theory or table; did "
+     "you mean 'cheeseman-bennett'?"},
     {"{model: cheeseman-bennett}", "{model: cheeseman-bennett, k1: 3}",
      "problem.yaml:10:38: aero.ground.k1 has a meaning only with the model sanchez-cuevas: remove it"},
     {"{model: cheeseman-bennett}", "off", "problem.yaml:10:11: aero.ground is 'off': expected a group of keys or none"},

@@ -27,7 +27,7 @@ TEST_CASE("a problem is read as it is written, angles in radians") {
     REQUIRE(problem.obstacles.size() == 2);
     CHECK(std::get<Cylinder>(problem.obstacles[1].shape).length_m == 5);
     CHECK(problem.obstacles[1].center_m == Vector3{4, 3, 2.5});
-    CHECK(problem.aero.ceiling.k1 == 6.9);
+    CHECK(problem.aero.ceiling.parameters[0] == 6.9);
     CHECK(problem.start.arm_rad == 1.5707963267948966);
     CHECK(problem.goal.end_effector.has_value());
     CHECK_FALSE(problem.goal.configuration.has_value());
@@ -37,7 +37,7 @@ TEST_CASE("what a file leaves out has the default of its member") {
     const Problem problem = good();
     const Problem fresh;
     CHECK(problem.aero.grid_m == fresh.aero.grid_m);
-    CHECK(problem.aero.ceiling.k2_over_radius == fresh.aero.ceiling.k2_over_radius);
+    CHECK(problem.aero.ceiling.parameters[1] == fresh.aero.ceiling.parameters[1]);
     CHECK(problem.motion.max_arm_rate_rad_s == fresh.motion.max_arm_rate_rad_s);
     CHECK(problem.planner.safety_margin_m == fresh.planner.safety_margin_m);
     CHECK_FALSE(problem.planner.max_iterations.has_value());

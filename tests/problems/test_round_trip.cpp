@@ -60,8 +60,10 @@ class ProblemMaker {
         problem.planner.objective = coin() ? Objective::length : Objective::clearance;
         problem.planner.seed = static_cast<std::uint32_t>(engine_());
         problem.planner.max_iterations = coin() ? std::optional<std::uint64_t>{} : 1 + engine_() % 1000000;
-        problem.aero.ceiling.model = coin() ? EffectModel::sanchez_cuevas : EffectModel::none;
-        problem.aero.ceiling.k1 = problem.aero.ceiling.model == EffectModel::none ? SurfaceEffect{}.k1 : 1 + uniform();
+        problem.aero.ceiling = coin() ? EffectModel::sanchez_cuevas : EffectModel::none;
+        if (problem.aero.ceiling.model == EffectModel::sanchez_cuevas) {
+            problem.aero.ceiling.parameters[0] = 1 + uniform();
+        }
         problem.aero.max_factor = 1 + uniform();
         return problem;
     }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/vector3.hpp"
+
+namespace downwash {
+
+/// Where the other rotors of a vehicle are, seen from one of them, in rotor radii in the rotor plane. Empty: one rotor
+/// alone.
+struct RotorNeighbours {
+    std::vector<double> distances_radii;  ///< to every other rotor's axis, ascending
+    double center_radii = 0;              ///< mean distance of all rotors' axes from the centre between them
+
+    [[nodiscard]] std::size_t rotors() const noexcept { return distances_radii.size() + 1; }
+    friend bool operator==(const RotorNeighbours&, const RotorNeighbours&) = default;
+};
+
+/// The neighbours of rotor `which` at these hubs (body frame, metres; z does not count). Distances are rounded to 1e-9
+/// of a radius, so that the rotors of a symmetric vehicle agree. @pre radius_m > 0
+[[nodiscard]] DOWNWASH_EXPORT RotorNeighbours neighbours_of(const std::vector<Vector3>& hubs_m, std::size_t which,
+                                                            double radius_m);
+
+/// Of any rotor of a square quadrotor with adjacent axes `spacing_radii` apart.
+[[nodiscard]] DOWNWASH_EXPORT RotorNeighbours square_quadrotor(double spacing_radii);
+
+}  // namespace downwash
