@@ -52,9 +52,10 @@ class DOWNWASH_EXPORT CollisionChecker {
 [[nodiscard]] DOWNWASH_EXPORT bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                  double distance_m);
 
-/// Distance from a point to the nearest obstacle within the horizontal plane through the point [m], to 1e-8: that to
-/// walls, not to ground and ceiling. 0 inside an obstacle, infinity when the plane cuts none. Where the plane just
-/// grazes a round solid it may be less than the truth, by up to a hundredth of the solid's radius.
+/// Distance from a point to the nearest obstacle within the horizontal plane through the point [m]: that to walls, not
+/// to ground and ceiling. 0 inside an obstacle, infinity when the plane cuts none. Never above the truth but for
+/// rounding, and below it by at most 1e-8 m before a wall, 1e-6 m before a slope of one in a hundred; where the plane
+/// grazes a round solid by up to a hundredth of its radius.
 [[nodiscard]] DOWNWASH_EXPORT double horizontal_clearance_m(const Scene& scene, const Vector3& point_m);
 
 }  // namespace downwash

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/shapes.hpp"
 
@@ -14,7 +15,7 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& fault
 
 /// Whether a surface has no rim, so that it separates an inside from an outside: along every edge it is gone through
 /// as often one way as the other. Corners of equal coordinates are one corner.
-[[nodiscard]] bool is_closed(const TriangleMesh& surface);
+[[nodiscard]] DOWNWASH_EXPORT bool is_closed(const TriangleMesh& surface);
 
 /// The triangles that have an area, corners scaled, in the local frame.
 [[nodiscard]] std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh);

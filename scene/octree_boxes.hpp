@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/shapes.hpp"
 
@@ -20,6 +21,6 @@ struct LocalBox {
 
 /// Boxes that fill exactly what the cubes fill: neighbours of equal size in a row, rows in a slab and slabs in a block
 /// become one box. Cubes that do not lie on the grid of their size stay as they are.
-[[nodiscard]] std::vector<LocalBox> merged_boxes(const OccupancyTree& tree);
+[[nodiscard]] DOWNWASH_EXPORT std::vector<LocalBox> merged_boxes(const OccupancyTree& tree);
 
 }  // namespace downwash

@@ -102,3 +102,58 @@ TEST_CASE("A disc is clear where its clearance says so") {
     }
     CHECK(clear > 300);
 }
+
+TEST_CASE("The distance to walls is measured within the horizontal plane") {
+    const auto at = [](const Shape& shape, const Vector3& rpy_rad, const Vector3& point) {
+        return horizontal_clearance_m(scene_of(shape, {}, rpy_rad), point);
+    };
+    const auto is = [](double expected) { return Approx(expected).epsilon(0).margin(1e-8); };
+    SECTION("to the face, edge and corner of an upright box, at any height that cuts it") {
+        for (const double z : {-0.9, 0.0, 0.999, 1.0}) {
+            CHECK(at(Box{{2, 4, 2}}, {}, {3, 0.5, z}) == is(2));
+            CHECK(at(Box{{2, 4, 2}}, {}, {4, 6, z}) == is(5));
+            CHECK(at(Box{{2, 4, 2}}, {}, {0.5, 1, z}) == 0);
+        }
+        CHECK(std::isinf(at(Box{{2, 4, 2}}, {}, {3, 0, 1.001})));
+        CHECK(std::isinf(at(Box{{2, 4, 2}}, {}, {0, 0, -1.001})));
+        CHECK(std::isinf(horizontal_clearance_m(Scene({}), {0, 0, 0})));
+    }
+    SECTION("to a wall that leans") {
+        for (const double lean : {0.1, 0.5, 1.0, 1.4}) {
+            // The face x = 1 of the box turned about y meets height z at x = 1 / cos + z tan.
+            CHECK(at(Box{{2, 40, 400}}, {0, lean, 0}, {9, 0.3, 0.2}) ==
+                  is(9 - 1 / std::cos(lean) - 0.2 * std::tan(lean)));
+        }
+    }
+    SECTION("to a ball and to a pipe along y, which circles and strips cut") {
+        for (const double z : {0.0, 0.3, 0.6, -0.8}) {
+            CHECK(at(Sphere{1}, {}, {3, 4, z}) == is(5 - std::sqrt(1 - z * z)));
+            CHECK(at(Cylinder{1, 10, {0, 1, 0}}, {}, {3, 4, z}) == is(3 - std::sqrt(1 - z * z)));
+            CHECK(at(Cylinder{1, 10, {0, 0, 1}}, {}, {3, 4, z}) == is(4));
+        }
+    }
+    SECTION("to the nearest of several") {
+        const Scene scene(
+            {{"", Sphere{1}, {5, 0, 0}, {}}, {"", Box{{1, 1, 1}}, {0, 2, 0}, {}}, {"", Sphere{1}, {}, {}}});
+        CHECK(horizontal_clearance_m(scene, {3, 0, 0}) == is(1));
+        CHECK(horizontal_clearance_m(scene, {1, 3, 0}) == is(std::sqrt(0.5)));
+    }
+}
+
+TEST_CASE("No point of a circle within the distance to walls touches, and beyond it one does") {
+    reference::Dice dice(13);
+    int cut = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const Scene scene(dice.obstacles(3));
+        const Vector3 p = dice.vector(-2, 2);
+        const double distance = horizontal_clearance_m(scene, p);
+        const double bounded = std::min(distance, 10.0);
+        CAPTURE(round, distance);
+        REQUIRE((bounded == 0 || disc_clearance_m(scene, p, 0.9999 * bounded) > 0));
+        if (distance < 10) {
+            REQUIRE(disc_clearance_m(scene, p, distance + 1e-4) < 1e-6);
+            ++cut;
+        }
+    }
+    CHECK(cut > 500);
+}

@@ -60,6 +60,9 @@ Solid placed(const downwash::Primitive& shape, const Vector3& center_m, const st
 }
 
 double support(const Solid& solid, const Vector3& n) {
+    if (solid.kind == Solid::Kind::triangle) {
+        return std::max({dot(solid.axes[0], n), dot(solid.axes[1], n), dot(solid.axes[2], n)});
+    }
     const double x = dot(solid.axes[0], n);
     const double y = dot(solid.axes[1], n);
     const double z = dot(solid.axes[2], n);
@@ -68,9 +71,41 @@ double support(const Solid& solid, const Vector3& n) {
     return dot(solid.center_m, n) + across + std::abs(z) * solid.half_m[2] + norm(n) * solid.ball_m;
 }
 
+/// The nearest point inside the triangle when the foot in its plane lies there, else on one of its edges.
+Vector3 project_on_triangle(const std::array<Vector3, 3>& t, const Vector3& p) {
+    const Vector3 ab = plus(t[1], -1, t[0]);
+    const Vector3 ac = plus(t[2], -1, t[0]);
+    const Vector3 ap = plus(p, -1, t[0]);
+    const double bb = dot(ab, ab);
+    const double bc = dot(ab, ac);
+    const double cc = dot(ac, ac);
+    const double whole = bb * cc - bc * bc;
+    const double s = (cc * dot(ab, ap) - bc * dot(ac, ap)) / whole;
+    const double r = (bb * dot(ac, ap) - bc * dot(ab, ap)) / whole;
+    if (s >= 0 && r >= 0 && s + r <= 1) {
+        return plus(plus(t[0], s, ab), r, ac);
+    }
+    Vector3 nearest{};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vector3 edge = plus(t[(i + 1) % 3], -1, t[i]);
+        const double part = std::clamp(dot(plus(p, -1, t[i]), edge) / dot(edge, edge), 0.0, 1.0);
+        const Vector3 foot = plus(t[i], part, edge);
+        const double distance = norm(plus(p, -1, foot));
+        if (distance < least) {
+            least = distance;
+            nearest = foot;
+        }
+    }
+    return nearest;
+}
+
 }  // namespace
 
 Vector3 project(const Solid& solid, const Vector3& p_m) {
+    if (solid.kind == Solid::Kind::triangle) {
+        return project_on_triangle(solid.axes, p_m);
+    }
     const Vector3 offset = plus(p_m, -1, solid.center_m);
     Vector3 local{dot(offset, solid.axes[0]), dot(offset, solid.axes[1]), dot(offset, solid.axes[2])};
     local[2] = std::clamp(local[2], -solid.half_m[2], solid.half_m[2]);
@@ -130,6 +165,10 @@ Solid solid_of(const downwash::Obstacle& obstacle) {
     return placed(primitive_of(obstacle.shape), obstacle.center_m,
                   {rolled_pitched_yawed({1, 0, 0}, rpy), rolled_pitched_yawed({0, 1, 0}, rpy),
                    rolled_pitched_yawed({0, 0, 1}, rpy)});
+}
+
+Solid triangle(const std::array<Vector3, 3>& corners_m) {
+    return {Solid::Kind::triangle, {0, 0, 0}, corners_m, {0, 0, 0}, 0};
 }
 
 Solid disc(const Vector3& center_m, double radius_m) {

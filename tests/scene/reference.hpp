@@ -14,12 +14,14 @@ namespace reference {
 
 using downwash::Vector3;
 
-/// A rounded box, cylinder or point in the world: `ball_m` is added all around.
+/// A rounded box, cylinder or point in the world, `ball_m` added all around; or a triangle.
 struct Solid {
-    enum class Kind { box, cylinder } kind = Kind::box;
+    enum class Kind { box, cylinder, triangle } kind = Kind::box;
     Vector3 center_m{};
-    std::array<Vector3, 3> axes{};  ///< right-handed unit vectors in the world; a cylinder's axis is the third
-    Vector3 half_m{};               ///< box: half edges; cylinder: radius, -, half length
+    /// Right-handed unit vectors in the world; a cylinder's axis is the third. Of a triangle the corners, from the
+    /// centre.
+    std::array<Vector3, 3> axes{};
+    Vector3 half_m{};  ///< box: half edges; cylinder: radius, -, half length
     double ball_m = 0;
 };
 
@@ -38,6 +40,7 @@ downwash::Primitive primitive_of(const downwash::Shape& shape);
 
 /// Of an obstacle that is a primitive.
 Solid solid_of(const downwash::Obstacle& obstacle);
+Solid triangle(const std::array<Vector3, 3>& corners_m);
 Solid disc(const Vector3& center_m, double radius_m);
 std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
                             const downwash::RobotShape& robot);

@@ -1,0 +1,323 @@
+// Triangle meshes as obstacles.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "../support/meshes.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/mesh_surface.hpp"
+#include "reference.hpp"
+
+using namespace downwash;
+using test::box_mesh;
+using test::first_triangles;
+using test::joined;
+using test::mesh_of;
+using test::reversed;
+
+namespace {
+
+CollisionChecker checker_of(std::vector<Obstacle> obstacles, const RobotShape& robot, const PlaneOfMotion& plane = {}) {
+    return {std::make_shared<const Scene>(std::move(obstacles)), plane, robot};
+}
+
+/// A ball of 0.1 m with an arm of 0.1 m inside of it.
+RobotShape ball() {
+    return {{{Sphere{0.1}, {}}}, 0, 0, 0.05, 0.02};
+}
+
+PlaneOfMotion some_plane(reference::Dice& dice) {
+    return {dice.vector(-0.5, 0.5), dice.between(-4, 4)};
+}
+
+/// A triangle with corners in a cube of 4 m.
+std::array<Vector3, 3> some_corners(reference::Dice& dice) {
+    const Vector3 around = dice.vector(-1.5, 1.5);
+    std::array<Vector3, 3> corners{};
+    for (Vector3& corner : corners) {
+        const Vector3 step = dice.vector(-0.5, 0.5);
+        corner = {around[0] + step[0], around[1] + step[1], around[2] + step[2]};
+    }
+    return corners;
+}
+
+Mesh soup_of(const std::vector<std::array<Vector3, 3>>& all) {
+    TriangleMesh surface;
+    for (const auto& corners : all) {
+        const auto first = static_cast<std::uint32_t>(surface.vertices_m.size());
+        surface.vertices_m.insert(surface.vertices_m.end(), corners.begin(), corners.end());
+        surface.triangles.push_back({first, first + 1, first + 2});
+    }
+    return {"", 1, std::make_shared<const TriangleMesh>(std::move(surface))};
+}
+
+std::string refusal_of(Mesh mesh) {
+    try {
+        const Scene scene({{"", Sphere{1}, {}, {}}, {"", std::move(mesh), {}, {}}});
+    } catch (const InputError& error) {
+        return error.faults().at(0).key + " " + error.faults().at(0).message;
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("Meshes that cannot stand in a scene are refused with their place") {
+    using Catch::Matchers::Contains;
+    const Vector3 a{0, 0, 0};
+    const Vector3 b{1, 0, 0};
+    const Vector3 c{0, 1, 0};
+    CHECK(refusal_of(mesh_of({a, b, c}, {{0, 1, 2}})).empty());
+    CHECK_THAT(refusal_of({}), Contains("obstacles[1].mesh.file must have been read"));
+    CHECK_THAT(refusal_of(mesh_of({a, b, c}, {})), Contains("obstacles[1].mesh.file has no triangle with an area"));
+    CHECK_THAT(refusal_of(mesh_of({a, b, c}, {{0, 1, 3}})), Contains("a corner that is not among its vertices"));
+    CHECK_THAT(refusal_of(mesh_of({a, b, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 1}})), Contains("no triangle with an area"));
+    CHECK_THAT(refusal_of(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})), Contains("vertex that is not finite"));
+    CHECK_THAT(refusal_of(mesh_of({a, b, {0, 2e6, 0}}, {{0, 1, 2}})), Contains("farther than 1e6 m"));
+    Mesh scaled = mesh_of({a, b, c}, {{0, 1, 2}});
+    for (const double scale : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
+        scaled.scale = scale;
+        CHECK_THAT(refusal_of(scaled), Contains("obstacles[1].mesh.scale must be a finite number above 0"));
+    }
+    const std::vector<std::array<std::uint32_t, 3>> many(1'100'000, {0, 1, 2});
+    CHECK_THAT(refusal_of(joined(mesh_of({a, b, c}, many), mesh_of({a, b, c}, many))),
+               Contains("has 2200000 triangles: at most 2000000"));
+}
+
+TEST_CASE("Two meshes that are too many together are refused") {
+    const std::vector<std::array<std::uint32_t, 3>> many(1'000'001, {0, 1, 2});
+    const Mesh half = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, many);
+    CHECK_THROWS_WITH(Scene({{"", half, {}, {}}, {"", half, {}, {}}}), Catch::Contains("above 2000000"));
+}
+
+TEST_CASE("A surface is closed when every edge is gone through both ways") {
+    const Mesh box = box_mesh({1, 2, 3});
+    CHECK(is_closed(*box.surface));
+    CHECK(is_closed(*reversed(box).surface));
+    CHECK_FALSE(is_closed(*first_triangles(box, 11).surface));
+    SECTION("corners of their own for each triangle are joined where they meet") {
+        std::vector<std::array<Vector3, 3>> all;
+        for (const auto& t : box.surface->triangles) {
+            const auto& v = box.surface->vertices_m;
+            all.push_back({v[t[0]], v[t[1]], v[t[2]]});
+        }
+        CHECK(is_closed(*soup_of(all).surface));
+        std::swap(all[5][0], all[5][1]);
+        CHECK_FALSE(is_closed(*soup_of(all).surface));
+    }
+    SECTION("zero has two signs and one place") {
+        const Mesh flap = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, -0.0, 0}, {1, -0.0, 0}, {-0.0, 1, 0}},
+                                  {{0, 1, 2}, {3, 5, 4}});
+        CHECK(is_closed(*flap.surface));
+    }
+    SECTION("triangles that have shrunk to an edge leave no hole") {
+        TriangleMesh surface = *box.surface;
+        surface.triangles.push_back({0, 0, 1});
+        CHECK(is_closed(surface));
+    }
+    SECTION("boxes that touch along an edge") {
+        Mesh moved = box_mesh({1, 2, 3});
+        TriangleMesh surface = *moved.surface;
+        for (Vector3& vertex : surface.vertices_m) {
+            vertex[0] += 1;
+            vertex[1] += 2;
+        }
+        moved.surface = std::make_shared<const TriangleMesh>(surface);
+        CHECK(is_closed(*joined(box, moved).surface));
+    }
+}
+
+TEST_CASE("A box of triangles is as near as the same box as a primitive, from outside and from inside") {
+    reference::Dice dice(31);
+    int inside = 0;
+    for (int round = 0; round < 300; ++round) {
+        const Obstacle box{"", Box{dice.vector(0.1, 3)}, dice.vector(-1, 1), dice.vector(-4, 4)};
+        Obstacle mesh = box;
+        mesh.shape = box_mesh(std::get<Box>(box.shape).size_m);
+        const RobotShape robot = dice.robot();
+        const PlaneOfMotion plane = some_plane(dice);
+        const CollisionChecker expected = checker_of({box}, robot, plane);
+        const CollisionChecker found = checker_of({mesh}, robot, plane);
+        const Scene box_scene({box});
+        const Scene mesh_scene({mesh});
+        for (int i = 0; i < 20; ++i) {
+            const PlanarPose pose = dice.pose();
+            CAPTURE(round, i);
+            const double clearance = expected.clearance_m(pose);
+            REQUIRE(std::max(0.0, found.clearance_m(pose)) == Approx(std::max(0.0, clearance)).epsilon(0).margin(1e-9));
+            REQUIRE((found.clearance_m(pose) <= 0) == (clearance <= 0));
+            REQUIRE(found.is_nearer_than(pose, 0) == (clearance <= 0));
+            if (std::abs(clearance - 0.3) > 1e-8) {
+                REQUIRE(found.is_nearer_than(pose, 0.3) == (clearance < 0.3));
+            }
+            inside += clearance <= 0;
+
+            const Vector3 hub = dice.vector(-2, 2);
+            const double radius = dice.between(0.05, 0.5);
+            const double distance = disc_clearance_m(box_scene, hub, radius);
+            REQUIRE(disc_clearance_m(mesh_scene, hub, radius) == Approx(distance).epsilon(0).margin(1e-9));
+            if (std::abs(distance - 0.2) > 1e-8) {
+                REQUIRE(disc_is_clear(mesh_scene, hub, radius, 0.2) == (distance >= 0.2));
+            }
+            REQUIRE(horizontal_clearance_m(mesh_scene, hub) ==
+                    Approx(horizontal_clearance_m(box_scene, hub)).epsilon(0).margin(1e-5));
+        }
+    }
+    CHECK(inside > 500);
+}
+
+TEST_CASE("Triangles are as far away as alternating projections say") {
+    reference::Dice dice(32);
+    int undecided = 0;
+    for (int round = 0; round < 300; ++round) {
+        std::vector<std::array<Vector3, 3>> corners;
+        std::vector<reference::Solid> solids;
+        for (int i = 0; i < 3; ++i) {
+            corners.push_back(some_corners(dice));
+            solids.push_back(reference::triangle(corners.back()));
+        }
+        const RobotShape robot = dice.robot();
+        const PlaneOfMotion plane = some_plane(dice);
+        const PlanarPose pose = dice.pose();
+        reference::Enclosure truth{1e9, 1e9};
+        for (const reference::Solid& part : reference::robot_at(pose, plane, robot)) {
+            for (const reference::Solid& solid : solids) {
+                const reference::Enclosure pair = reference::distance(part, solid);
+                truth = {std::min(truth.low, pair.low), std::min(truth.high, pair.high)};
+            }
+        }
+        undecided += truth.high - truth.low > 1e-6;
+        const double clearance = checker_of({{"", soup_of(corners), {}, {}}}, robot, plane).clearance_m(pose);
+        CAPTURE(round);
+        REQUIRE(std::max(0.0, clearance) >= truth.low - 1e-9);
+        REQUIRE(clearance <= truth.high + 1e-12);
+    }
+    CHECK(undecided < 15);
+}
+
+TEST_CASE("Among thousands of triangles the nearest is found") {
+    reference::Dice dice(33);
+    std::vector<std::array<Vector3, 3>> corners;
+    for (int i = 0; i < 3000; ++i) {
+        corners.push_back(some_corners(dice));
+        for (Vector3& corner : corners.back()) {  // small ones, in a ball of space around the robot's
+            const Vector3& c = corners.back()[0];
+            corner = {c[0] + 0.05 * (corner[0] - c[0]), c[1] + 0.05 * (corner[1] - c[1]),
+                      c[2] + 0.05 * (corner[2] - c[2])};
+        }
+    }
+    const RobotShape robot{{{Box{{0.1, 0.1, 0.02}}, {}}}, 0, 0, 0.1, 0.01};
+    const CollisionChecker checker = checker_of({{"", soup_of(corners), {}, {}}}, robot);
+    std::vector<CollisionChecker> single;
+    for (const auto& triangle : corners) {
+        single.push_back(checker_of({{"", soup_of({triangle}), {}, {}}}, robot));
+    }
+    int apart = 0;
+    for (int i = 0; i < 40; ++i) {
+        const PlanarPose pose = dice.pose();
+        double least = std::numeric_limits<double>::infinity();
+        for (const CollisionChecker& one : single) {
+            least = std::min(least, one.clearance_m(pose));
+        }
+        const double clearance = checker.clearance_m(pose);
+        CAPTURE(i);
+        REQUIRE(std::max(0.0, clearance) == Approx(std::max(0.0, least)).epsilon(0).margin(1e-9));
+        if (clearance > 0) {
+            ++apart;
+            REQUIRE(checker.is_nearer_than(pose, 0.02) == (clearance < 0.02));
+        }
+    }
+    CHECK(apart > 20);
+}
+
+TEST_CASE("A body inside a closed mesh is in contact, in its cavity it is not") {
+    const Mesh shell = joined(box_mesh({4, 4, 4}), reversed(box_mesh({2, 2, 2})));
+    for (const Mesh& solid : {box_mesh({4, 4, 4}), reversed(box_mesh({4, 4, 4}))}) {
+        const CollisionChecker checker = checker_of({{"", solid, {10, 0, 0}, {0.3, 0.2, 0.1}}}, ball());
+        CHECK(checker.clearance_m({10.1, 0.2, 0, 0}) <= 0);
+        CHECK(checker.is_nearer_than({10.1, 0.2, 0, 0}, 0));
+        CHECK(checker.clearance_m({6, 0, 0, 0}) > 1);
+        CHECK_FALSE(checker.is_nearer_than({6, 0, 0, 0}, 1));
+    }
+    const Scene scene({{"", shell, {}, {}}});
+    const CollisionChecker checker = checker_of({{"", shell, {}, {}}}, ball());
+    CHECK(checker.clearance_m({0.2, 0, 0, 0}) == Approx(0.7).epsilon(0).margin(1e-9));
+    CHECK(checker.clearance_m({1.5, 0, 0, 0}) <= 0);
+    CHECK(disc_clearance_m(scene, {0, 0, 0.5}, 0.3) == Approx(0.5).epsilon(0).margin(1e-9));
+    CHECK(disc_clearance_m(scene, {0, 0, 1.5}, 0.3) == 0);
+    CHECK_FALSE(disc_is_clear(scene, {0, 0, 1.5}, 0.3, 0));
+    CHECK(horizontal_clearance_m(scene, {1.5, 0, 0}) == 0);
+}
+
+TEST_CASE("An open mesh is a sheet: nothing is inside it") {
+    const CollisionChecker checker = checker_of({{"", first_triangles(box_mesh({4, 4, 4}), 11), {}, {}}}, ball());
+    CHECK(checker.clearance_m({0, 0, 0, 0}) == Approx(1.9).epsilon(0).margin(1e-9));
+    CHECK_FALSE(checker.is_nearer_than({0, 0, 0, 0}, 1));
+}
+
+TEST_CASE("Points are inside a mesh where they are inside its shape, also straight below its corners and edges") {
+    reference::Dice dice(34);
+    const Mesh pipe = test::pipe_mesh(1, 2, 6, 2);  // a hexagonal prism along y with corners straight above others
+    const Scene scene({{"", pipe, {}, {}}});
+    const double apothem = std::sqrt(0.75);
+    int inside = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Vector3 p = dice.vector(-1.2, 1.2);
+        if (dice.coin()) {  // on the grid of the corners
+            p[0] = apothem * std::round(dice.between(-1.2, 1.2));
+            p[1] = std::round(p[1]);
+        }
+        double outside_by = std::abs(p[1]) - 1;
+        for (int side = 0; side < 3; ++side) {
+            const double angle = (30 + 60 * side) * 3.14159265358979323846 / 180;
+            outside_by = std::max(outside_by, std::abs(p[0] * std::sin(angle) + p[2] * std::cos(angle)) - apothem);
+        }
+        if (std::abs(outside_by) > 1e-12) {
+            CAPTURE(p[0], p[1], p[2]);
+            REQUIRE((disc_clearance_m(scene, p, 1e-9) == 0) == (outside_by < 1e-9));
+            inside += outside_by < 0;
+        }
+    }
+    CHECK(inside > 2000);
+}
+
+TEST_CASE("A vertical line meets a triangle at one height, and its shadow is where lines meet it") {
+    reference::Dice dice(35);
+    const Mesh roof = mesh_of({{0, 0, 1}, {4, 0, 1}, {0, 4, 3}, {0, 0, -1}}, {{0, 1, 2}, {0, 3, 1}});
+    const Scene scene({{"", roof, {}, {}}});
+    REQUIRE(scene.part_count() == 2);
+    CHECK(scene.vertical_extent(0, 1, 1).low == Approx(1.5));
+    CHECK(scene.vertical_extent(0, 1, 1).high == scene.vertical_extent(0, 1, 1).low);
+    CHECK(scene.vertical_extent(0, 3, 2).empty());
+    CHECK(scene.vertical_extent(1, 1, 0).empty());  // upright
+    CHECK(scene.shadow_on_line(0, 0, 1, 1, 0).low == Approx(0).margin(1e-15));
+    CHECK(scene.shadow_on_line(0, 0, 1, 1, 0).high == Approx(3));
+    CHECK(scene.shadow_on_line(0, 5, 1, 0, 1).empty());
+    CHECK(scene.shadow_on_line(1, 0, 0, 1, 0).empty());
+    CHECK_FALSE(scene.is_level(0));
+    CHECK(Scene({{"", box_mesh({1, 1, 1}), {}, {0, 0, 0.7}}}).is_level(0));
+    CHECK(scene.bounds(0).low_m == Vector3{0, 0, -1});
+    CHECK(scene.bounds(0).high_m == Vector3{4, 4, 3});
+    for (int round = 0; round < 300; ++round) {
+        const Scene one({{"", soup_of({some_corners(dice)}), dice.vector(-1, 1), dice.vector(-3, 3)}});
+        const Vector3 p = dice.vector(-2, 2);
+        const double angle = dice.between(0, 6.3);
+        const double dx = std::cos(angle);
+        const double dy = std::sin(angle);
+        const Interval shadow = one.shadow_on_line(0, p[0], p[1], dx, dy);
+        for (double s = -4; s < 4; s += 0.037) {
+            const bool is_met = !one.vertical_extent(0, p[0] + s * dx, p[1] + s * dy).empty();
+            REQUIRE(is_met == (shadow.low <= s && s <= shadow.high));
+        }
+    }
+}
+
+TEST_CASE("A mesh is scaled before it is placed") {
+    Mesh small = box_mesh({1, 1, 1});
+    small.scale = 3;
+    const Scene scene({{"", small, {10, 0, 0}, {}}});
+    CHECK(scene.bounds(0).low_m == Vector3{8.5, -1.5, -1.5});
+    CHECK(scene.bounds(0).high_m == Vector3{11.5, 1.5, 1.5});
+}

@@ -1,0 +1,144 @@
+// Octrees as obstacles, and the boxes that stand for their cubes.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/meshes.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/scene/octree_boxes.hpp"
+#include "reference.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// Cubes of 0.25 m and 0.5 m on their grids, about half of the places taken.
+OccupancyTree some_tree(reference::Dice& dice) {
+    OccupancyTree tree{0.25, {}};
+    for (int i = 0; i < 60; ++i) {
+        const double side = dice.coin() ? 0.25 : 0.5;
+        const auto place = [&] { return (std::floor(dice.between(-1, 1) / side) + 0.5) * side; };
+        tree.cubes.push_back({{place(), place(), place()}, side});
+    }
+    return tree;
+}
+
+Octomap octomap_of(OccupancyTree tree) {
+    return {"", std::make_shared<const OccupancyTree>(std::move(tree))};
+}
+
+/// Each cube as an obstacle of its own, placed as the octree is.
+std::vector<Obstacle> cubes_of(const OccupancyTree& tree, const Obstacle& place) {
+    const reference::Solid frame = reference::solid_of({"", Box{{1, 1, 1}}, {}, place.rpy_rad});
+    std::vector<Obstacle> cubes;
+    for (const OccupiedCube& cube : tree.cubes) {
+        Obstacle one = place;
+        one.shape = Box{{cube.side_m, cube.side_m, cube.side_m}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                one.center_m[k] += cube.center_m[axis] * frame.axes[axis][k];
+            }
+        }
+        cubes.push_back(one);
+    }
+    return cubes;
+}
+
+bool is_in(const Vector3& p, const Vector3& center, const Vector3& size) {
+    bool is_inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        is_inside = is_inside && std::abs(p[k] - center[k]) <= 0.5 * size[k];
+    }
+    return is_inside;
+}
+
+std::string refusal_of(Octomap octomap) {
+    try {
+        const Scene scene({{"", std::move(octomap), {}, {}}});
+    } catch (const InputError& error) {
+        return error.faults().at(0).key + " " + error.faults().at(0).message;
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("Octrees that cannot stand in a scene are refused with their place") {
+    using Catch::Matchers::Contains;
+    CHECK(refusal_of(octomap_of({1, {{{0, 0, 0}, 1}}})).empty());
+    CHECK_THAT(refusal_of({}), Contains("obstacles[0].octomap.file must have been read"));
+    CHECK_THAT(refusal_of(octomap_of({1, {}})), Contains("obstacles[0].octomap.file has no occupied cube"));
+    for (const OccupiedCube& bad : {OccupiedCube{{0, std::nan(""), 0}, 1}, OccupiedCube{{0, 0, 0}, 0},
+                                    OccupiedCube{{0, 0, 0}, std::nan("")}, OccupiedCube{{2e6, 0, 0}, 1}}) {
+        CHECK_THAT(refusal_of(octomap_of({1, {bad}})), Contains("has a cube with a centre or side"));
+    }
+    CHECK_THAT(refusal_of(octomap_of({1, std::vector<OccupiedCube>(2'000'001, {{0, 0, 0}, 1})})),
+               Contains("at most 2000000 are allowed"));
+}
+
+TEST_CASE("Cubes that fill a block become one box, twice the same cube is one") {
+    const Octomap block = test::octree_of([](const Vector3&) { return true; }, {-1, 0.5, 2}, {1, 2, 3.5}, 0.25);
+    REQUIRE(block.tree->cubes.size() == 8 * 6 * 6);
+    std::vector<LocalBox> boxes = merged_boxes(*block.tree);
+    REQUIRE(boxes.size() == 1);
+    CHECK(boxes[0].center_m == Vector3{0, 1.25, 2.75});
+    CHECK(boxes[0].size_m == Vector3{2, 1.5, 1.5});
+    CHECK(merged_boxes({1, {{{0.5, 0.5, 0.5}, 1}, {{0.5, 0.5, 0.5}, 1}}}).size() == 1);
+    CHECK(merged_boxes({1, {{{0.5, 0.5, 0.5}, 1}, {{1.6, 0.5, 0.5}, 1}}}).size() == 2);
+}
+
+TEST_CASE("Boxes fill exactly what the cubes fill") {
+    reference::Dice dice(41);
+    for (int round = 0; round < 40; ++round) {
+        const OccupancyTree tree = some_tree(dice);
+        const std::vector<LocalBox> boxes = merged_boxes(tree);
+        REQUIRE(boxes.size() <= tree.cubes.size());
+        for (int i = 0; i < 2000; ++i) {
+            const Vector3 p = dice.vector(-1.6, 1.6);
+            const bool is_occupied = std::any_of(tree.cubes.begin(), tree.cubes.end(), [&](const OccupiedCube& cube) {
+                return is_in(p, cube.center_m, {cube.side_m, cube.side_m, cube.side_m});
+            });
+            const bool is_filled = std::any_of(boxes.begin(), boxes.end(),
+                                               [&](const LocalBox& box) { return is_in(p, box.center_m, box.size_m); });
+            REQUIRE(is_occupied == is_filled);
+        }
+    }
+}
+
+TEST_CASE("An octree is as near as all of its cubes one by one") {
+    reference::Dice dice(42);
+    int apart = 0;
+    for (int round = 0; round < 60; ++round) {
+        const OccupancyTree tree = some_tree(dice);
+        const Obstacle octree{"", octomap_of(tree), dice.vector(-1, 1), dice.coin() ? Vector3{} : dice.vector(-4, 4)};
+        const std::vector<Obstacle> cubes = cubes_of(tree, octree);
+        const Scene scene({octree});
+        const Scene expected_scene(cubes);
+        const RobotShape robot = dice.robot();
+        const PlaneOfMotion plane(dice.vector(-0.5, 0.5), dice.between(-4, 4));
+        const CollisionChecker found(std::make_shared<const Scene>(std::vector<Obstacle>{octree}), plane, robot);
+        const CollisionChecker expected(std::make_shared<const Scene>(cubes), plane, robot);
+        for (int i = 0; i < 20; ++i) {
+            const PlanarPose pose = dice.pose();
+            const double clearance = std::max(0.0, expected.clearance_m(pose));
+            CAPTURE(round, i);
+            REQUIRE(std::max(0.0, found.clearance_m(pose)) == Approx(clearance).epsilon(0).margin(1e-9));
+            REQUIRE(found.is_nearer_than(pose, 0) == (clearance == 0));
+            apart += clearance > 0;
+            const Vector3 p = dice.vector(-2, 2);
+            REQUIRE(disc_clearance_m(scene, p, 0.2) ==
+                    Approx(disc_clearance_m(expected_scene, p, 0.2)).epsilon(0).margin(1e-9));
+            double highest = -1e9;
+            double expected_highest = -1e9;
+            for (std::size_t part = 0; part < scene.part_count(); ++part) {
+                highest = std::max(highest, scene.vertical_extent(part, p[0], p[1]).high);
+            }
+            for (std::size_t part = 0; part < expected_scene.part_count(); ++part) {
+                expected_highest = std::max(expected_highest, expected_scene.vertical_extent(part, p[0], p[1]).high);
+            }
+            REQUIRE(highest == Approx(expected_highest).epsilon(0).margin(1e-9));
+        }
+    }
+    CHECK(apart > 200);
+}
