@@ -1,16 +1,13 @@
 #include "downwash/aeromap/measurements.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "downwash/aeromap/csv_table.hpp"
 
 namespace downwash {
 namespace {
-
-std::optional<std::size_t> find(const std::vector<std::string>& columns, std::string_view column) {
-    const auto found = std::find(columns.begin(), columns.end(), column);
-    return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
-}
 
 std::size_t required(const CsvTable& csv, const std::string& column, LineFaults& faults) {
     const auto found = csv.find(column);
@@ -22,16 +19,18 @@ std::size_t required(const CsvTable& csv, const std::string& column, LineFaults&
 
 }  // namespace
 
-bool Measurements::has(std::string_view column) const {
-    return find(columns, column).has_value();
+std::optional<std::size_t> Measurements::index(std::string_view column) const {
+    const auto found = std::find(columns.begin(), columns.end(), column);
+    return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
 }
 
 std::vector<std::string> Measurements::entries(std::string_view column) const {
     std::vector<std::string> found;
-    if (const auto index = find(columns, column)) {
+    if (const auto cell = index(column)) {
+        std::set<std::string_view> seen;
         for (const Measurement& point : points) {
-            if (std::find(found.begin(), found.end(), point.cells[*index]) == found.end()) {
-                found.push_back(point.cells[*index]);
+            if (seen.insert(point.cells[*cell]).second) {
+                found.push_back(point.cells[*cell]);
             }
         }
     }
@@ -40,9 +39,9 @@ std::vector<std::string> Measurements::entries(std::string_view column) const {
 
 Measurements Measurements::with(std::string_view column, std::string_view entry) const {
     Measurements chosen{columns, {}};
-    if (const auto index = find(columns, column)) {
+    if (const auto cell = index(column)) {
         for (const Measurement& point : points) {
-            if (point.cells[*index] == entry) {
+            if (point.cells[*cell] == entry) {
                 chosen.points.push_back(point);
             }
         }

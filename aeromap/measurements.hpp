@@ -25,7 +25,8 @@ struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
     std::vector<Measurement> points;   ///< in the order of the file
 
-    [[nodiscard]] bool has(std::string_view column) const;
+    /// Where a column stands among `columns`; empty when there is none of that name.
+    [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;
     /// The distinct entries of a column, in the order of their first appearance; none without such a column.
     [[nodiscard]] std::vector<std::string> entries(std::string_view column) const;
     /// The points that have this entry in that column; none without such a column.
