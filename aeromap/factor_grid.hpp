@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+
+namespace downwash {
+
+/// Equally spaced coordinates [m], both ends included. One that has no extent holds a single coordinate.
+struct GridAxis {
+    double low_m = 0, high_m = 0;
+    std::size_t count = 1;
+
+    [[nodiscard]] double step_m() const noexcept {
+        return count > 1 ? (high_m - low_m) / static_cast<double>(count - 1) : 0;
+    }
+    [[nodiscard]] double at(std::size_t i) const noexcept {
+        return i + 1 < count ? low_m + static_cast<double>(i) * step_m() : high_m;
+    }
+    bool operator==(const GridAxis&) const = default;
+};
+
+/// A number at every node of a grid: node (i, j, k) of layer l stands at ((l * nz + k) * ny + j) * nx + i.
+struct GridField {
+    std::string name;
+    std::vector<double> values;
+    bool operator==(const GridField&) const = default;
+};
+
+/// What made a grid, as ordered pairs of key and value: program, problem, models and their sources, radius, ...
+using Provenance = std::vector<std::pair<std::string, std::string>>;
+
+/// What a grid of thrust factors consists of.
+struct FactorGridParts {
+    /// Where the coordinates x, y, z of the grid begin and which way they run; y runs to the left, z up.
+    PlaneOfMotion frame;
+    GridAxis x, y, z;
+    /// Of a planar grid: the distances to the left of the plane [m] at which its layers hold, rising. Empty: one
+    /// layer, which holds at any distance.
+    std::vector<double> lateral_offsets_m;
+    /// "factor" and any of "ground", "ceiling" (one-sided factors) and "flyable" (0 or 1), each once.
+    std::vector<GridField> fields;
+    Provenance provenance;
+};
+
+/// K on a regular grid of rotor hub positions, from a map of ours, a simulation or a measurement. Planar (nx x 1 x nz
+/// nodes in a vertical plane, one layer or one per lateral offset) or a volume (nx x ny x nz). Immutable.
+class DOWNWASH_EXPORT FactorGrid {
+ public:
+    /// @throws InputError when an axis is not finite, is larger than 1e6 m, or has high <= low (y of a planar grid: not
+    /// 0, 0, 1), when the grid has more than 2^27 nodes, a field is unknown, missing, of another length or out of
+    /// range (factors: 0 to 100), or a piece of provenance holds what cannot stand in one line of text
+    explicit FactorGrid(FactorGridParts parts);
+
+    [[nodiscard]] bool is_planar() const noexcept { return parts_.y.count == 1; }
+    [[nodiscard]] const PlaneOfMotion& frame() const noexcept { return parts_.frame; }
+    [[nodiscard]] const GridAxis& x() const noexcept { return parts_.x; }
+    [[nodiscard]] const GridAxis& y() const noexcept { return parts_.y; }
+    [[nodiscard]] const GridAxis& z() const noexcept { return parts_.z; }
+    [[nodiscard]] const std::vector<double>& lateral_offsets_m() const noexcept { return parts_.lateral_offsets_m; }
+    /// "factor" first.
+    [[nodiscard]] const std::vector<GridField>& fields() const noexcept { return parts_.fields; }
+    [[nodiscard]] const Provenance& provenance() const noexcept { return parts_.provenance; }
+
+    /// One layer, or as many as lateral offsets.
+    [[nodiscard]] std::size_t layers() const noexcept;
+    /// Nodes of all layers together.
+    [[nodiscard]] std::size_t nodes() const noexcept;
+
+    /// The values of the field of that name; nullptr when there is none.
+    [[nodiscard]] const std::vector<double>* field(std::string_view name) const noexcept;
+
+    /// Whether K is known at the world position of a rotor hub: between the outermost nodes (within 1e-9 m), and on a
+    /// layer (within 1e-6 m) where the layers have lateral offsets.
+    [[nodiscard]] bool contains(const Vector3& hub_m) const noexcept;
+
+    /// K at the world position of a rotor hub, linear along each axis between the nodes; NaN where the grid does not
+    /// contain it: nothing is extrapolated.
+    [[nodiscard]] double factor(const Vector3& hub_m) const noexcept;
+
+ private:
+    /// The layer and the cell that hold a position, and where in the cell it lies, 0 to 1.
+    struct Place {
+        std::size_t layer;
+        std::size_t i, j, k;
+        double s, t, u;
+    };
+    [[nodiscard]] std::optional<Place> place_of(const Vector3& hub_m) const noexcept;
+
+    FactorGridParts parts_;
+};
+
+/// The most nodes a grid may have, all layers together.
+inline constexpr std::size_t most_grid_nodes = std::size_t{1} << 27U;
+
+/// The names a field may have, "factor" first.
+[[nodiscard]] DOWNWASH_EXPORT std::span<const std::string_view> grid_field_names();
+
+}  // namespace downwash
