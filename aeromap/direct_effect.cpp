@@ -100,10 +100,17 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     if (!settings_.enabled) {
         return factors;
     }
+    const auto averaged = [&](Side side, const EffectCurve& curve) {
+        return disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_}, *footprints_);
+    };
     const auto one_sided = [&](Side side, const EffectCurve& curve) {
-        return curve.is_none()
-                   ? 1.0
-                   : disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_}, *footprints_);
+        if (curve.is_none()) {
+            return 1.0;
+        }
+        if (curve.depends_on_wall()) {
+            return averaged(side, curve.at_wall(horizontal_clearance_m(*scene_, hub_m) / rotor_radius_m_));
+        }
+        return averaged(side, curve);
     };
     factors.ground = one_sided(Side::below, ground_);
     factors.ceiling = one_sided(Side::above, ceiling_);

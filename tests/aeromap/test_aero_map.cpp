@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
 #include "scenes.hpp"
 
@@ -96,6 +97,35 @@ TEST_CASE("Another cap and another distance are met as well") {
     const Comparison found = compare(map, 20000, 31);
     CAPTURE(found.worst);
     CHECK(found.worst <= 0.01);
+}
+
+TEST_CASE("A map of a table with values below one and of wall distances is within 0.01 as well") {
+    AeroSettings settings;
+    settings.ground = EffectModel::table;
+    settings.ground.table = std::make_shared<const EffectTable>(
+        std::vector<double>{0.4, 0.8, 1.5, 2.5, 4}, std::vector<double>{1, 1.5, 3},
+        std::vector<double>{1.4, 1.35, 1.3, 1.1, 1.12, 1.15, 0.9, 0.93, 1.02, 0.97, 0.98, 1, 1, 1, 1});
+    const auto effect =
+        std::make_shared<const DirectEffect>(scene_of({{"floor", Box{{6, 6, 1}}, {0, 0, -0.5}, {}},
+                                                       {"wall", Box{{0.5, 4, 3}}, {0.8, 0, 1.5}, {}},
+                                                       {"pipe", Cylinder{0.2, 2, {0, 1, 0}}, {-0.6, 0, 1}, {}}}),
+                                             settings, 0.15);
+    const AeroMap map(test::layers(effect, {0, 0.2}), {}, {-1.5, 1.5, 0, 2}, 1);
+    double worst = 0;
+    double least = 1;
+    test::Random random(51);
+    for (int i = 0; i < 20000; ++i) {
+        const double x = random.uniform(-1.5, 1.5);
+        const double z = random.uniform(0, 2);
+        if (map.is_flyable(1, x, z)) {
+            const double direct = effect->factor({x, 0.2, z});
+            worst = std::max(worst, std::abs(map.factor(1, x, z) - direct));
+            least = std::min(least, direct);
+        }
+    }
+    CAPTURE(worst);
+    CHECK(worst <= 0.01);
+    CHECK(least < 0.94);
 }
 
 TEST_CASE("A map is the same to the bit for any number of threads") {

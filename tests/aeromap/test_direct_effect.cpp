@@ -5,6 +5,7 @@
 
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/aeromap/effect_models.hpp"
+#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "scenes.hpp"
@@ -170,4 +171,45 @@ TEST_CASE("Settings out of their range are refused with every fault") {
     } catch (const InputError& error) {
         CHECK(error.faults().size() == 5);
     }
+}
+
+TEST_CASE("The fountain is averaged over the disc through the rotors' axes") {
+    AeroSettings settings;
+    settings.ground = EffectModel::multirotor_body;
+    const RotorNeighbours quadrotor = square_quadrotor(2.6);
+    // A table that ends under the vehicle: half of the disc is covered.
+    const auto scene = scene_of({floor_slab, {"table", Box{{2, 4, 0.1}}, {1, 0, 0.45}, {}}});
+    const DirectEffect fountain = DirectEffect::fountain(scene, settings, radius, quadrotor);
+    const EffectCurve curve = EffectCurve::fountain(settings.ground, settings.max_factor, quadrotor);
+    CHECK(fountain.disc_radius_m() == Approx(radius * 2.6 / std::sqrt(2.0)).epsilon(1e-8));
+    CHECK(fountain.factor({0, 0, 0.7}) == Approx(0.5 * (curve(0.2 / radius) + curve(0.7 / radius))).epsilon(1e-10));
+    CHECK(fountain.factors({0, 0, 0.7}).ceiling == 1);
+    CHECK(fountain.is_flyable({1, 0, 0.45}));
+    const DirectEffect::Factors counted = test::by_rays(fountain, {0.13, 0.2, 0.66}, 400);
+    CHECK(fountain.factor({0.13, 0.2, 0.66}) == Approx(counted.total).margin(1e-3));
+}
+
+TEST_CASE("A table over wall distance sees walls, not the ground") {
+    AeroSettings settings;
+    settings.ground = EffectModel::table;
+    settings.ground.table = std::make_shared<const EffectTable>(
+        std::vector<double>{0.5, 1, 2}, std::vector<double>{1, 3}, std::vector<double>{1.3, 1.2, 1.1, 0.9, 0.95, 1});
+    const auto with_wall = scene_of({floor_slab, {"wall", Box{{1, 40, 40}}, {2, 0, 0}, {}}});  // its face at x = 1.5
+    const DirectEffect effect(with_wall, settings, radius);
+    const EffectTable& table = *settings.ground.table;
+    for (const double d : {1.0, 1.4, 2.0, 2.9, 3.0, 5.0}) {
+        for (const double zeta : {0.6, 0.9, 1.0, 1.3, 1.9}) {
+            CAPTURE(d, zeta);
+            CHECK(effect.factor({1.5 - d * radius, 0, zeta * radius}) == Approx(table.at(d)(zeta)).epsilon(1e-6));
+        }
+    }
+    CHECK(effect.factor({1.5 - 1.2 * radius, 0, 1.2 * radius}) != Approx(effect.factor({0, 0, 1.2 * radius})));
+    settings.ground.d_over_r = 1.4;  // now a constant, for example the spacing of a tandem
+    CHECK(DirectEffect(with_wall, settings, radius).factor({-3, 0, radius}) == Approx(table.at(1.4)(1)).epsilon(1e-9));
+}
+
+TEST_CASE("A table without values is refused") {
+    AeroSettings settings;
+    settings.ceiling = EffectModel::table;
+    CHECK_THROWS_AS(DirectEffect(scene_of({}), settings, radius), InputError);
 }

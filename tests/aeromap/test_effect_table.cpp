@@ -10,7 +10,7 @@
 
 #include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
-#include "support/random.hpp"
+#include "../support/random.hpp"
 
 using namespace downwash;
 using Catch::Matchers::Equals;

@@ -309,6 +309,30 @@ TEST_CASE("A surface factor multiplies each rotor's thrust at its own place") {
     CHECK(wrench.pitch_torque_nm == Approx(-0.32 * (1.5 * 21 - 25)));
 }
 
+TEST_CASE("A fountain pushes the body along its axis at the centre between the rotors") {
+    auto robot = test_robot();
+    for (downwash::Vector3& hub_m : robot.rotors.positions_m) {
+        hub_m[0] += 0.05;  // the centre between the rotors lies ahead of the centre of mass
+    }
+    const PlantModel calm = make_plant_model(robot.multirotor, robot.arm, robot.rotors);
+    const PlantModel model = make_plant_model(robot.multirotor, robot.arm, robot.rotors, true);
+    const double thrust_n[max_rotors] = {10, 11, 12, 13};
+    const double pitch = -0.2;
+    const auto a = dynamics::attitude(model, pitch, 0.0);
+    const auto factor = [&](int rotor, double x_m, double z_m) {
+        if (rotor < 4) {
+            return 1.1;
+        }
+        CHECK(x_m == Approx(5 + std::cos(pitch) * 0.05 + std::sin(pitch) * 0.06));
+        CHECK(z_m == Approx(2 - std::sin(pitch) * 0.05 + std::cos(pitch) * 0.06));
+        return 1.25;
+    };
+    const auto without = dynamics::rotor_wrench(calm, a, 5.0, 2.0, thrust_n, factor);
+    const auto with = dynamics::rotor_wrench(model, a, 5.0, 2.0, thrust_n, factor);
+    CHECK(with.thrust_n - without.thrust_n == Approx(0.25 * 46));
+    CHECK(with.pitch_torque_nm - without.pitch_torque_nm == Approx(-0.05 * 0.25 * 46));
+}
+
 TEST_CASE("The surface factor is read at every stage of a step, not held") {
     // K = 1 - b (z - z0) under a thrust of the weight is a spring: z oscillates with omega^2 = g b. A factor held over
     // the step would turn this into growing oscillations of the first order in the step.

@@ -1,0 +1,80 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+
+using namespace downwash;
+
+namespace {
+
+const auto no_obstacles = std::make_shared<const Scene>(std::vector<Obstacle>{});
+
+RotorParameters rotors_at(std::vector<Vector3> hubs_m) {
+    RotorParameters rotors;
+    rotors.radius_m = 0.15;
+    rotors.positions_m = std::move(hubs_m);
+    return rotors;
+}
+
+}  // namespace
+
+TEST_CASE("Rotors share a layer when lateral offset and effect agree") {
+    const RotorParameters quadrotor = rotors_at({{0.3, 0.3, 0}, {0.3, -0.3, 0}, {-0.3, 0.3, 0}, {-0.3, -0.3, 0}});
+    AeroSettings aero;
+    CHECK(effect_layers(quadrotor, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0, 1});
+    aero.ground = EffectModel::multirotor_images;
+    CHECK(effect_layers(quadrotor, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0, 1});
+    aero.ground = EffectModel::multirotor_body;
+    const EffectLayers with_body = effect_layers(quadrotor, no_obstacles, aero);
+    CHECK(with_body.layer_of == std::vector<std::size_t>{0, 1, 0, 1, 2});
+    CHECK(with_body.layers[2].lateral_m == 0);
+
+    // Three rotors in a row: the middle one has nearer neighbours.
+    const RotorParameters row = rotors_at({{-0.4, 0, 0}, {0, 0, 0}, {0.4, 0, 0}});
+    aero.ground = EffectModel::cheeseman_bennett;
+    CHECK(effect_layers(row, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 0, 0});
+    aero.ground = EffectModel::multirotor_images;
+    CHECK(effect_layers(row, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0});
+}
+
+TEST_CASE("Over wide ground a hovering vehicle with the fountain model lifts as (2.17) says") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles = {{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}};
+    problem.aero.ground = EffectModel::multirotor_body;
+    const auto model = make_flight_model(problem);
+    const RotorNeighbours neighbours =
+        neighbours_of(problem.robot.rotors.positions_m, 0, problem.robot.rotors.radius_m);
+    const EffectCurve whole(EffectModel::multirotor_body, 2, neighbours);
+    const int body = model->tick().plant.rotor_count;
+    for (const double zeta : {0.8, 1.0, 1.5, 3.0}) {
+        const double hub_z = zeta * problem.robot.rotors.radius_m;
+        const double on_rotors = model->direct_factor(0, 0.5, hub_z);
+        const double on_body = model->direct_factor(body, 0.5, hub_z);
+        CHECK(on_rotors + on_body - 1 == Approx(whole(zeta)).epsilon(1e-9));
+        CHECK(on_body > 1.02);
+    }
+}
+
+TEST_CASE("The map of the fountain is within 0.01 of the direct effect, inside obstacles too") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles = {{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}},
+                         {"step", Box{{1.2, 3, 0.5}}, {1, 0.4, 0.25}, {}}};
+    problem.aero.ground = EffectModel::multirotor_body;
+    problem.bounds = {-1, 3, 0.1, 2};
+    const auto model = make_flight_model(problem);
+    const auto map = model->make_map(problem.bounds);
+    const int body = model->tick().plant.rotor_count;
+    const std::size_t layer = model->rotor_layer(body);
+    double worst = 0;
+    for (int i = 0; i < 150; ++i) {
+        for (int k = 0; k < 150; ++k) {
+            const double x = -1 + 4 * (i + 0.37) / 150;
+            const double z = 0.05 + 1.9 * (k + 0.61) / 150;
+            worst = std::max(worst, std::abs(map->factor(layer, x, z) - model->direct_factor(body, x, z)));
+            REQUIRE(map->is_flyable(layer, x, z));
+        }
+    }
+    CAPTURE(worst);
+    CHECK(worst <= 0.01);
+}
