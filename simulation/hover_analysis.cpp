@@ -28,11 +28,11 @@ constexpr int most_coordinates = 8 + 7 + max_rotors;
 class Coordinates {
  public:
     Coordinates(const TickModel& model, const HoverTrim& trim, FlightState& state) {
-        for (int i = 0; i < 4; ++i) {
-            add(state.plant.q[i]);
+        for (double& coordinate : state.plant.q) {
+            add(coordinate);
         }
-        for (int i = 0; i < 4; ++i) {
-            add(state.plant.u[i]);
+        for (double& rate : state.plant.u) {
+            add(rate);
         }
         if (model.plant.rotor_time_constant_s > 0) {
             for (int i = 0; i < model.plant.rotor_count; ++i) {

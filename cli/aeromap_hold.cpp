@@ -1,0 +1,155 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/commands.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/hover_analysis.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
+
+namespace downwash::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees_per_radian = 57.295779513082320877;
+
+struct HoldArguments {
+    std::string problem;
+    double arm_deg = 0;
+    std::vector<std::array<double, 2>> at;
+    bool as_json = false;
+};
+
+/// What is known of one point; everything but the place and the verdict may be missing.
+struct HoldAnswer {
+    double x_m, z_m;
+    HoverAnalysis analysis;
+    VehicleEffect effect;
+
+    [[nodiscard]] bool is_defined() const { return analysis.verdict != HoldVerdict::not_flyable; }
+    [[nodiscard]] bool has_trim() const { return analysis.verdict >= HoldVerdict::no_equilibrium; }
+    [[nodiscard]] bool has_modes() const { return analysis.verdict >= HoldVerdict::unstable; }
+};
+
+Json trim_json(const HoverTrim& trim, int rotors) {
+    const double* reference = trim.reference.position;
+    Json commands = Json::array();
+    for (int i = 0; i < rotors; ++i) {
+        commands.push_back(trim.rotor_command_n[i]);
+    }
+    return {
+        {"reference", {{"x_m", reference[0]}, {"z_m", reference[1]}, {"arm_deg", reference[2] * degrees_per_radian}}},
+        {"pitch_reference_deg", trim.pitch_reference_rad * degrees_per_radian},
+        {"rotor_commands_n", std::move(commands)},
+        {"joint_torque_nm", trim.joint_torque_nm},
+        {"saturation", trim.saturation}};
+}
+
+Json stability_json(const HoverStability& stability) {
+    return {
+        {"spectral_radius", stability.spectral_radius},         {"growth_rate_1_s", stability.growth_rate_1_s},
+        {"frequency_rad_s", stability.frequency_rad_s},         {"growing_modes", stability.growing_modes},
+        {"force_slope_n_m", stability.force_slope_n_m},         {"force_gain_n_m", stability.force_gain_n_m},
+        {"torque_slope_nm_rad", stability.torque_slope_nm_rad}, {"torque_gain_nm_rad", stability.torque_gain_nm_rad}};
+}
+
+Json json_of(const HoldAnswer& answer, int rotors) {
+    Json point = {{"x_m", answer.x_m},
+                  {"z_m", answer.z_m},
+                  {"verdict", name_of(answer.analysis.verdict)},
+                  {"limit", name_of(answer.analysis.trim.limit)},
+                  {"effect", nullptr},
+                  {"trim", nullptr},
+                  {"stability", nullptr}};
+    if (answer.is_defined()) {
+        point["effect"] = {{"force_factor", answer.effect.force_factor},
+                           {"pitch_torque_nm", answer.effect.pitch_torque_nm},
+                           {"pitch_torque_factor", answer.effect.pitch_torque_factor}};
+    }
+    if (answer.has_trim()) {
+        point["trim"] = trim_json(answer.analysis.trim, rotors);
+    }
+    if (answer.has_modes()) {
+        point["stability"] = stability_json(answer.analysis.stability);
+    }
+    return point;
+}
+
+void print_table(const std::vector<HoldAnswer>& answers) {
+    fmt::print("{:>9} {:>9}  {:<14} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "x_m", "z_m", "verdict", "force_K",
+               "torque_nm", "ref_dz_m", "rate_1_s", "dF/dz_n_m", "gain_n_m");
+    for (const HoldAnswer& answer : answers) {
+        fmt::print("{:>9.3f} {:>9.3f}  {:<14}", answer.x_m, answer.z_m, name_of(answer.analysis.verdict));
+        if (answer.is_defined()) {
+            fmt::print(" {:>8.4f} {:>9.4f}", answer.effect.force_factor, answer.effect.pitch_torque_nm);
+        }
+        const HoverStability& stability = answer.analysis.stability;
+        if (answer.has_modes()) {
+            fmt::print(" {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}", answer.analysis.trim.reference.position[1] - answer.z_m,
+                       stability.growth_rate_1_s, stability.force_slope_n_m, stability.force_gain_n_m);
+        } else if (answer.has_trim()) {
+            fmt::print(" {}", name_of(answer.analysis.trim.limit));
+        }
+        fmt::print("\n");
+    }
+}
+
+ExitCode run(const HoldArguments& arguments) {
+    constexpr double most_degrees = 3600;
+    if (!(std::abs(arguments.arm_deg) <= most_degrees)) {
+        throw UsageError(
+            fmt::format("--arm-deg {}: expected an angle of at most {} degrees", arguments.arm_deg, most_degrees));
+    }
+    for (const auto& point : arguments.at) {
+        for (const double coordinate_m : point) {
+            if (!(std::abs(coordinate_m) <= 1e6)) {
+                throw UsageError(fmt::format("--at {}: expected finite coordinates in m, at most 1e6", coordinate_m));
+            }
+        }
+    }
+    const Problem problem = read_problem(arguments.problem);
+    const auto model = make_flight_model(problem);
+    const double arm_rad = arguments.arm_deg / degrees_per_radian;
+    std::vector<HoldAnswer> answers;
+    for (const auto& [x_m, z_m] : arguments.at) {
+        answers.push_back({x_m, z_m, analyse_hover(*model, x_m, z_m, arm_rad),
+                           vehicle_effect(*model, PlanarPose{x_m, z_m, 0, arm_rad})});
+    }
+    if (!arguments.as_json) {
+        print_table(answers);
+        return ExitCode::done;
+    }
+    auto points = Json::array();
+    for (const HoldAnswer& answer : answers) {
+        points.push_back(json_of(answer, model->tick().plant.rotor_count));
+    }
+    fmt::print("{}\n", Json{{"arm_deg", arguments.arm_deg}, {"points", std::move(points)}}.dump(2));
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_aeromap_hold(CLI::App& aeromap, Action& action) {
+    const auto arguments = std::make_shared<HoldArguments>();
+    CLI::App* hold = aeromap.add_subcommand(
+        "hold", "Whether the vehicle can hover at a point: rotor limits, saturation, stability of its closed loop");
+    hold->add_option("PROBLEM", arguments->problem, "problem file")->required();
+    hold->add_option("--arm-deg", arguments->arm_deg, "arm angle relative to the multirotor [deg]")
+        ->required()
+        ->type_name("A");
+    hold->add_option("--at", arguments->at,
+                     "centre of mass in plane coordinates [m]; may be given several times, in the bounds or not")
+        ->required()
+        ->type_name("X Z");
+    hold->add_flag("--json", arguments->as_json, "print JSON");
+    hold->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace downwash::cli
