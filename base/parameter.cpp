@@ -183,10 +183,10 @@ std::string expectation(const ParameterInfo& info) {
             return elements_text(info.elements) + in_unit + range + or_null;
         case ParameterKind::points:
             return "a list of [x, y, z]" + in_unit + range;
-        case ParameterKind::planned:
-            break;
+        case ParameterKind::file:
+            return "the path of a file";
     }
-    return "nothing yet";
+    return "";
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& names) {

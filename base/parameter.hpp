@@ -30,7 +30,7 @@ enum class ParameterKind {
     choice,      ///< one of `names`
     numbers,     ///< a list of as many numbers as `elements`
     points,      ///< a list of [x, y, z]
-    planned,     ///< a key that a later version will understand
+    file,        ///< path of a file whose content belongs to the model, relative to the file that names it
 };
 
 /// Values that make sense, in the unit of the file (degrees where the key says so). Empty: no limit.
@@ -87,11 +87,13 @@ struct ParameterInfo {
 /// A parameter with access to where it lives in a Model. The index is that of the list element that it belongs to.
 template <class Model>
 struct Parameter : ParameterInfo {
-    std::function<Value(const Model&, std::size_t)> get;           ///< empty function for groups and lists
-    std::function<void(Model&, std::size_t, const Value&)> set;    ///< @pre the value is of the parameter's kind
+    std::function<Value(const Model&, std::size_t)> get;  ///< empty function for groups and lists
+    /// @pre the value is of the parameter's kind  @throws InputError when a file cannot be used
+    std::function<void(Model&, std::size_t, const Value&)> set;
     std::function<std::size_t(const Model&, std::size_t)> count;   ///< elements of a list; 1 or 0 for a group
     std::function<void(Model&, std::size_t, std::size_t)> resize;  ///< the third is the new count
     std::function<bool(const Model&, std::size_t)> applies;        ///< empty function: always
+    std::function<std::string(const Model&, std::size_t)> digest;  ///< of a file: SHA-256 of what was read from it
 
     Parameter above(double low) && { return range.low = low, range.excludes_low = true, std::move(*this); }
     Parameter at_least(double low) && { return range.low = low, std::move(*this); }

@@ -230,11 +230,20 @@ Parameter<Model> list(std::string_view path, std::string_view description, Membe
     return parameter;
 }
 
-/// A key that comes with a later version; an alternative to its exclusive siblings.
-template <class Model>
-Parameter<Model> planned(std::string_view path, std::string_view description) {
-    auto parameter = row<Model>(ParameterKind::planned, path, description);
-    parameter.exclusive = true;
+/// A file that is read when its path is set, in the one place that knows how.
+/// @param path_of names the std::string that keeps the path  @param read (Model&, index, path) keeps what is in the
+/// file
+///     and throws InputError when it cannot be used  @param digest (const Model&, index) -> SHA-256 of what was read:
+///     it stands for the file wherever that lies
+template <class Model, class PathOf, class Read, class Digest>
+Parameter<Model> file(std::string_view path, std::string_view description, PathOf path_of, Read read, Digest digest) {
+    auto parameter = member_row<Model, std::string>(ParameterKind::file, path, description, path_of);
+    parameter.set = [path_of, read](Model& model, std::size_t i, const Value& value) {
+        const auto& given = std::get<std::string>(value);
+        read(model, i, given);
+        at(path_of, model, i) = given;
+    };
+    parameter.digest = digest;
     return parameter;
 }
 
@@ -257,6 +266,11 @@ Parameter<Whole> nested(const Parameter<Part>& inner, std::string_view prefix, M
         };
         outer.resize = [member, resize = inner.resize](Whole& whole, std::size_t i, std::size_t n) {
             resize(member(whole), i, n);
+        };
+    }
+    if (inner.digest) {
+        outer.digest = [member, digest = inner.digest](const Whole& whole, std::size_t i) {
+            return digest(member(whole), i);
         };
     }
     if (inner.applies) {

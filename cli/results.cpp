@@ -79,7 +79,7 @@ std::filesystem::path default_folder(const Problem& problem) {
 
 std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
                           const Solution& solution) {
-    const std::string effective = effective_yaml(problem);
+    const std::string effective = effective_yaml(problem, folder.path());
     std::string json = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
     folder.write("effective.yaml", effective);
     folder.write("trajectory.csv", trajectory_csv(solution.execution.value_or(no_flight(problem.robot))));

@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/planner/problem_parameters.hpp"
@@ -16,14 +18,24 @@ Problem with_everything() {
     Problem problem;
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
-    problem.obstacles = {{"", Box{}, {}, {}}, {"", Cylinder{}, {}, {}}, {"", Sphere{}, {}, {}}};
+    problem.obstacles = {{"", Box{}, {}, {}},
+                         {"", Cylinder{}, {}, {}},
+                         {"", Sphere{}, {}, {}},
+                         {"", Mesh{}, {}, {}},
+                         {"", Octomap{}, {}, {}}};
     problem.robot.body = {{Box{}, {}}, {Cylinder{}, {}}, {Sphere{}, {}}};
     return problem;
 }
 
 /// The list element in which a key has a value.
 std::size_t element_of(const std::string& path) {
-    return path.find(".cylinder.") != std::string::npos ? 1 : path.find(".sphere.") != std::string::npos ? 2 : 0;
+    constexpr std::array<std::string_view, 5> shapes{".box.", ".cylinder.", ".sphere.", ".mesh.", ".octomap."};
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (path.find(shapes[i]) != std::string::npos) {
+            return i;
+        }
+    }
+    return 0;
 }
 
 std::string in_file_units(const std::string& path, double value) {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -60,24 +59,11 @@ std::vector<Fault> shapeless_cylinders(const Problem& p) {
     return faults;
 }
 
-/// What shows when obstacles are placed: a mesh without area, coordinates that a scale makes huge.
+/// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
 std::vector<Fault> unplaceable_obstacles(const Problem& p) {
-    constexpr double most_m = 1e6;
     std::vector<Fault> faults;
     try {
-        const Scene scene(p.obstacles);
-        for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
-            const Scene::Bounds& bounds = scene.bounds(i);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double reach_m = std::max(std::abs(bounds.low_m[axis]), std::abs(bounds.high_m[axis]));
-                if (!(reach_m <= most_m)) {
-                    faults.push_back(
-                        {"environment.obstacles[" + std::to_string(i) + "]",
-                         "reaches " + rounded(reach_m) + " m from the origin: expected at most " + rounded(most_m)});
-                    break;
-                }
-            }
-        }
+        static_cast<void>(Scene(p.obstacles));
     } catch (const InputError& error) {
         for (const Fault& fault : error.faults()) {
             faults.push_back({"environment." + fault.key, fault.message});

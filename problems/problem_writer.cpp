@@ -1,7 +1,9 @@
 #include "downwash/problems/problem_writer.hpp"
 
+#include <functional>
 #include <string_view>
-#include <type_traits>
+#include <system_error>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,10 +37,13 @@ std::string quoted(const std::string& text) {
     return out + '"';
 }
 
+/// What is written for a file that a problem refers to.
+using FileText = std::function<std::string(const Parameter<Problem>& row, std::size_t index)>;
+
 /// Writes the groups below a key path, two spaces a level.
 class Writer {
  public:
-    explicit Writer(const Problem& problem) : problem_(problem) {}
+    Writer(const Problem& problem, FileText file_text) : problem_(problem), file_text_(std::move(file_text)) {}
 
     [[nodiscard]] std::string written() {
         write_keys("", 0, "");
@@ -54,7 +59,7 @@ class Writer {
         std::string before = first_indent;
         for (const Row* row : problem_parameters().children(path)) {
             const bool applies = !row->applies || row->applies(problem_, index);
-            if (applies && row->kind != ParameterKind::planned && (row->get || is_written(*row, index))) {
+            if (applies && (row->get || is_written(*row, index))) {
                 out_ += before + std::string(last_name(row->path)) + ":";
                 write_content(*row, index, indent);
                 before = indent;
@@ -71,7 +76,9 @@ class Writer {
     }
 
     void write_content(const Row& row, std::size_t index, const std::string& indent) {
-        if (row.get) {
+        if (row.kind == ParameterKind::file) {
+            out_ += " " + quoted(file_text_(row, index)) + "\n";
+        } else if (row.get) {
             out_ += " " + value_text(row, row.get(problem_, index)) + "\n";
         } else if (row.kind == ParameterKind::list) {
             write_list(row, index, indent);
@@ -135,17 +142,29 @@ class Writer {
     }
 
     const Problem& problem_;
+    FileText file_text_;
     std::string out_;
 };
 
+/// A path as it is seen from a folder, both of which may be reached through symbolic links.
+std::string seen_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::path relative = std::filesystem::relative(file, folder, error);
+    return error || relative.empty() ? std::filesystem::absolute(file).string() : relative.string();
+}
+
 }  // namespace
 
-std::string effective_yaml(const Problem& problem) {
-    return Writer(problem).written();
+std::string effective_yaml(const Problem& problem, const std::filesystem::path& folder) {
+    const auto path = [&](const Parameter<Problem>& row, std::size_t index) {
+        return seen_from(folder, std::get<std::string>(row.get(problem, index)));
+    };
+    return Writer(problem, path).written();
 }
 
 std::string problem_sha256(const Problem& problem) {
-    return sha256_hex(effective_yaml(problem));
+    const auto digest = [&](const Parameter<Problem>& row, std::size_t index) { return row.digest(problem, index); };
+    return sha256_hex(Writer(problem, digest).written());
 }
 
 }  // namespace downwash

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "downwash/base/export.hpp"
@@ -10,10 +11,13 @@ namespace downwash {
 /// The problem as a YAML document with every default filled in and the robot inline. Always the same bytes for the same
 /// problem; reading them gives the very same problem, to the last bit of every number in use (parameters of models
 /// that are switched off are not written).
-/// @pre problem_faults(problem) is empty
-[[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem);
+/// @param folder in which the document will stand: paths of the files that it refers to are relative to it
+/// @pre problem_faults(problem) is empty, and every mesh and octree was read from a file
+[[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem,
+                                                         const std::filesystem::path& folder = ".");
 
-/// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits.
+/// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits. Of files that it refers to, what was read
+/// counts, not where they lie.
 [[nodiscard]] DOWNWASH_EXPORT std::string problem_sha256(const Problem& problem);
 
 }  // namespace downwash

@@ -21,7 +21,7 @@ std::string joined(const std::string& key, std::string_view name) {
 std::vector<std::string_view> alternatives_of(std::string_view path) {
     std::vector<std::string_view> names;
     for (const Parameter<Problem>* child : problem_parameters().children(path)) {
-        if (child->exclusive && child->kind != ParameterKind::planned) {
+        if (child->exclusive) {
             names.push_back(last_name(child->path));
         }
     }
@@ -188,11 +188,6 @@ void TreeReader::read_parameter(const Group& group, const Parameter<Problem>& pa
             places_[key] = {file_, key_node->mark};
             read_list(parameter, *value, key);
             break;
-        case ParameterKind::planned:
-            fault(group.key, key_node->mark,
-                  "is made of " + parameter.description + ", which comes with a later version: expected " +
-                      joined_names(alternatives_of(group.path)) + " for now");
-            break;
         default:
             places_[key] = {file_, value->mark};
             read_single(parameter, *value, key, group.index);
@@ -208,7 +203,7 @@ void TreeReader::read_group(const Parameter<Problem>& parameter, const YamlNode&
     } else if (is_text && parameter.can_be_none && node.text == "none") {
         parameter.resize(problem_, index, 0);
     } else if (is_text && parameter.can_be_file && !node.text.empty()) {
-        read_document((files_[file_].path.parent_path() / node.text).lexically_normal(), parameter.path, node.mark);
+        read_document(path_from_here(node.text), parameter.path, node.mark);
     } else {
         fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter));
     }
@@ -236,10 +231,23 @@ void TreeReader::read_list(const Parameter<Problem>& parameter, const YamlNode& 
 void TreeReader::read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
                              std::size_t index) {
     try {
-        parameter.set(problem_, index, read_value(parameter, node));
+        Value value = read_value(parameter, node);
+        if (parameter.kind == ParameterKind::file) {
+            value = path_from_here(std::get<std::string>(value)).string();
+        }
+        parameter.set(problem_, index, value);
     } catch (const YamlError& error) {
         fault(key, error.mark, error.what());
+    } catch (const InputError& error) {
+        for (const Fault& found : error.faults()) {
+            fault(key, node.mark, found.message);
+        }
     }
+}
+
+/// A path in the file that is read now, which it is relative to. Symbolic links forbid to shorten it.
+std::filesystem::path TreeReader::path_from_here(const std::string& path) const {
+    return files_[file_].path.parent_path() / path;
 }
 
 void TreeReader::fault(const std::string& key, const Mark& mark, const std::string& message) {

@@ -61,6 +61,7 @@ class TreeReader {
     void read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
                      std::size_t index);
 
+    [[nodiscard]] std::filesystem::path path_from_here(const std::string& path) const;
     /// Records a fault of a key; its value is not trusted from now on.
     void fault(const std::string& key, const Mark& mark, const std::string& message);
     void report(const Mark& mark, const std::string& message);

@@ -111,6 +111,7 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
         case ParameterKind::text:
         case ParameterKind::identifier:
         case ParameterKind::choice:
+        case ParameterKind::file:
             return read_text(info, node);
         case ParameterKind::numbers:
             return read_numbers(info, node, info.elements.size());
@@ -118,7 +119,6 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
             return read_points(info, node);
         case ParameterKind::group:
         case ParameterKind::list:
-        case ParameterKind::planned:
             break;
     }
     refuse(info, node);

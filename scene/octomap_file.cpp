@@ -130,7 +130,7 @@ class NodeReader {
                    " as the header's size says");
         }
         if (at_ != bytes_.size()) {
-            refuse(std::to_string(bytes_.size() - at_) + " bytes after the last node: expected none");
+            refuse("the file goes on after its last node: expected its end");
         }
         if (tree_.cubes.empty()) {
             foreign::refuse(name_, "has no occupied leaf: expected at least one");

@@ -25,8 +25,7 @@ std::string digest_of(const TriangleMesh& mesh) {
 }
 
 std::string digest_of(const OccupancyTree& tree) {
-    return sha256_hex(digest_of_bytes(&tree.resolution_m, 1) +
-                      digest_of_bytes(tree.cubes.data(), tree.cubes.size()));
+    return sha256_hex(digest_of_bytes(&tree.resolution_m, 1) + digest_of_bytes(tree.cubes.data(), tree.cubes.size()));
 }
 
 }  // namespace downwash

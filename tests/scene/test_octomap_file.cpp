@@ -160,7 +160,8 @@ TEST_CASE("Faulty streams of nodes are refused with their byte") {
           at + std::to_string(data + 4) + ": one node more than 3: expected as many as the header's size");
     CHECK(said_of(with("size 4", "size 5")) ==
           at + std::to_string(data + 4) + ": the nodes end after 4: expected 5 as the header's size says");
-    CHECK(said_of(sound() + "x") == at + std::to_string(data + 4) + ": 1 bytes after the last node: expected none");
+    CHECK(said_of(sound() + "x") ==
+          at + std::to_string(data + 4) + ": the file goes on after its last node: expected its end");
     CHECK(said_of(sound().substr(0, data + 3)) ==
           at + std::to_string(data + 3) + ": the file ends after 3 of 4 nodes: expected all of them");
     CHECK(said_of(with("size 4", "size 18446744073709551615").substr(0, data + 22)) ==
