@@ -10,6 +10,7 @@
 namespace downwash {
 
 class EffectTable;
+class FactorGrid;
 
 /// A model of how a flat, wide surface changes the thrust of a rotor at distance z = zeta * R, at constant PWM. What
 /// each is, where it comes from and where it holds says info() in effect_models.hpp.
@@ -52,6 +53,8 @@ struct AeroSettings {
     bool enabled = true;                                   ///< false: K = 1 everywhere
     SurfaceEffect ground{EffectModel::cheeseman_bennett};  ///< surfaces below a rotor
     SurfaceEffect ceiling{EffectModel::sanchez_cuevas};    ///< surfaces above a rotor
+    std::string map_file;                                  ///< where `map` comes from
+    std::shared_ptr<const FactorGrid> map;                 ///< K as given, in place of both models; empty: none
     double max_factor = 2.0;                               ///< cap of each side and of their superposition, >= 1
     double min_distance_radii = 0.3;                       ///< flyable area: least distance of the disc, in radii
     double grid_m = 0.05;                                  ///< cell size of the map; cells refine themselves

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/aeromap/disc_average.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/aeromap/footprint.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
@@ -62,10 +63,11 @@ SurfaceEffect on_rotor(const SurfaceEffect& effect) {
     return effect.model == EffectModel::multirotor_body ? SurfaceEffect(EffectModel::multirotor_images) : effect;
 }
 
+/// Of the primitives; those of triangles and boxes of octrees are made when asked for.
 std::vector<Footprint> footprints_of(const Scene& scene) {
     std::vector<Footprint> footprints;
-    footprints.reserve(scene.obstacles().size());
-    for (std::size_t i = 0; i < scene.obstacles().size(); ++i) {
+    footprints.reserve(scene.primitive_count());
+    for (std::size_t i = 0; i < scene.primitive_count(); ++i) {
         footprints.emplace_back(scene, i);
     }
     return footprints;
@@ -100,6 +102,10 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     if (!settings_.enabled) {
         return factors;
     }
+    if (settings_.map) {
+        constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+        return {unknown, unknown, settings_.map->contains(hub_m) ? settings_.map->factor(hub_m) : 1.0};
+    }
     const auto averaged = [&](Side side, const EffectCurve& curve) {
         return disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_}, *footprints_);
     };
@@ -122,7 +128,10 @@ bool DirectEffect::is_flyable(const Vector3& hub_m) const {
     if (!(std::isfinite(hub_m[0]) && std::isfinite(hub_m[1]) && std::isfinite(hub_m[2]))) {
         return false;
     }
-    return !settings_.enabled || least_clearance_m_ < 0 ||
+    if (!settings_.enabled || least_clearance_m_ < 0) {
+        return true;
+    }
+    return (!settings_.map || settings_.map->contains(hub_m)) &&
            disc_is_clear(*scene_, hub_m, disc_radius_m_, least_clearance_m_);
 }
 

@@ -36,15 +36,15 @@ class DOWNWASH_EXPORT DirectEffect {
     };
 
     /// Factors at the world position of a rotor hub; 1 for a position that is not finite. A point of the disc inside an
-    /// obstacle counts as touching it. Absolute quadrature error in the flyable area: below 1e-11 under level faces
+    /// obstacle counts as touching it. A given map has no one-sided factors (NaN) and is 1 where it does not reach. Absolute quadrature error in the flyable area: below 1e-11 under level faces
     /// with straight edges, below 2e-3 for any.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
     /// K, the factor on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
-    /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4). With the effects disabled
-    /// every finite position is flyable.
+    /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4), and a given map reaches
+    /// here. With the effects disabled every finite position is flyable.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
 
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
@@ -54,7 +54,7 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] double disc_radius_m() const noexcept { return disc_radius_m_; }
     /// Least distance of the disc from every obstacle in the flyable area; negative: everything is flyable.
     [[nodiscard]] double least_clearance_m() const noexcept { return least_clearance_m_; }
-    /// K of wide flat surfaces below and above.
+    /// K of wide flat surfaces below and above; without meaning when the settings bring a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
 

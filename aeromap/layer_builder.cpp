@@ -95,6 +95,9 @@ class RowsBuilder {
     /// Nowhere in the cell does K differ more from 1: each side counts as covered by a flat surface somewhere from the
     /// least vertical gap on.
     [[nodiscard]] double largest_change(const CellSquare& cell) const {
+        if (grid_.effect.settings().map) {
+            return std::numeric_limits<double>::infinity();
+        }
         const Scene& scene = grid_.effect.scene();
         const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
         const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);

@@ -9,7 +9,7 @@ namespace downwash {
 namespace {
 
 bool has_fountain(const AeroSettings& aero) {
-    return aero.enabled && aero.ground.model == EffectModel::multirotor_body;
+    return aero.enabled && !aero.map && aero.ground.model == EffectModel::multirotor_body;
 }
 
 bool sees_neighbours(const AeroSettings& aero) {

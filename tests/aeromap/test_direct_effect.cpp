@@ -6,6 +6,7 @@
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/aeromap/effect_models.hpp"
 #include "downwash/aeromap/effect_table.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "scenes.hpp"
@@ -212,4 +213,31 @@ TEST_CASE("A table without values is refused") {
     AeroSettings settings;
     settings.ceiling = EffectModel::table;
     CHECK_THROWS_AS(DirectEffect(scene_of({}), settings, radius), InputError);
+}
+
+TEST_CASE("A given map takes the place of the models where it reaches") {
+    // K = 1 + 0.1 x + 0.2 z on a coarse planar grid: linear, so that the interpolation is exact.
+    FactorGridParts parts;
+    parts.x = {-1, 1, 5};
+    parts.z = {0, 2, 9};
+    GridField factor{"factor", {}};
+    for (std::size_t k = 0; k < parts.z.count; ++k) {
+        for (std::size_t i = 0; i < parts.x.count; ++i) {
+            factor.values.push_back(1 + 0.1 * parts.x.at(i) + 0.2 * parts.z.at(k));
+        }
+    }
+    parts.fields.push_back(factor);
+    AeroSettings settings;
+    settings.map = std::make_shared<const FactorGrid>(std::move(parts));
+    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    CHECK(effect.factor({0.3, 0.7, 0.9}) == Approx(1.21));
+    CHECK(std::isnan(effect.factors({0.3, 0, 0.9}).ground));
+    CHECK(effect.is_flyable({0.3, 0, 0.9}));
+    CHECK(!effect.is_flyable({1.3, 0, 0.9}));
+    CHECK(!effect.is_flyable({0.3, 0, 0.01}));
+    CHECK(effect.factor({1.3, 0, 0.9}) == 1);
+    const AeroMap map(test::layers(std::make_shared<const DirectEffect>(effect), {0}), {}, {-1, 1, 0.1, 2});
+    for (const double x : {-0.9, -0.33, 0.1, 0.77}) {
+        CHECK(map.factor(0, x, 1.3) == Approx(1 + 0.1 * x + 0.26).margin(1e-6));
+    }
 }
