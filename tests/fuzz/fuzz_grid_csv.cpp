@@ -1,0 +1,20 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "../aeromap/grids.hpp"
+#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/base/fault.hpp"
+
+/// Whatever is read as a grid can be written and read again, the same to the bit.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace downwash;
+    try {
+        const FactorGrid grid = parse_factor_grid({reinterpret_cast<const char*>(data), size}, "grid.csv");
+        if (!test::is_same(parse_factor_grid(grid_csv_text(grid), "again.csv"), grid)) {
+            std::abort();
+        }
+    } catch (const InputError&) {
+    }
+    return 0;
+}
