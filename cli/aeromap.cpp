@@ -9,6 +9,7 @@
 
 #include "downwash/aeromap/effect_curve.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/model_option.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -127,21 +128,12 @@ void query_problem(const QueryArguments& arguments) {
     print_points(points, arguments.as_json);
 }
 
-const EffectModelInfo& find_model(const std::string& name) {
-    const EffectModelInfo* model = find_effect_model(name);
-    if (model == nullptr) {
-        std::string names;
-        for (const EffectModelInfo& known : effect_models()) {
-            names += (names.empty() ? "" : ", ") + std::string(known.name);
-        }
-        throw UsageError("--model '" + name + "' is not known: expected one of " + names);
-    }
-    return *model;
-}
-
 void query_model(const QueryArguments& arguments) {
     constexpr double most_factor = 100;
-    const EffectModelInfo& model = find_model(arguments.model);
+    const EffectModelInfo& model = model_named(arguments.model);
+    if (model.model == EffectModel::table) {
+        throw UsageError("--model table: a table belongs to a problem; expected the name of a formula");
+    }
     const double max_factor = arguments.max_factor.value_or(AeroSettings{}.max_factor);
     if (!(max_factor >= 1 && max_factor <= most_factor)) {
         throw UsageError(fmt::format("--max-factor {}: expected a number from 1 to {}", max_factor, most_factor));
@@ -196,6 +188,8 @@ void add_aeromap(CLI::App& program, Action& action) {
     query->add_option("--max-factor", arguments->max_factor, "cap of the model; default 2")->type_name("K");
     query->add_flag("--json", arguments->as_json, "print JSON");
     query->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_aeromap_fit(*aeromap, action);
+    add_aeromap_compare(*aeromap, action);
 }
 
 }  // namespace downwash::cli

@@ -34,6 +34,7 @@ TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
         {"check", "missing.yaml"},
         {"check", "."},
         {"check", open_air, "--bogus"},
+        {"aeromap", "query", "--model", "table", "--z-over-r", "1"},
         {"solve"},
         {"solve", "missing.yaml"},
         {"solve", "."},

@@ -1,0 +1,181 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "downwash/aeromap/effect_fit.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/cli/commands.hpp"
+#include "downwash/cli/measured_data.hpp"
+#include "downwash/cli/model_option.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct FitArguments {
+    MeasuredData data;
+    std::string model;
+    std::vector<std::string> fixed;
+    bool is_weighted = false;
+    bool as_json = false;
+};
+
+/// "NAME=VALUE" as a parameter and its number.
+std::pair<std::string, double> fixed_parameter(const std::string& text) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const char* end = text.data() + text.size();
+    double value = 0;
+    const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
+    if (equals == text.size() || error != std::errc() || rest != end) {
+        throw UsageError("--fix '" + excerpt(text) + "': expected NAME=NUMBER");
+    }
+    return {text.substr(0, equals), value};
+}
+
+Json json_of(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
+
+Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vector<Measurement>& points) {
+    auto values = Json::object();
+    auto errors = Json::object();
+    auto correlation = Json::array();
+    auto fixed = Json::array();
+    auto at_bound = Json::array();
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+        const FittedParameter& parameter = fit.parameters[i];
+        values[std::string(parameter.name)] = parameter.value;
+        errors[std::string(parameter.name)] = json_of(parameter.standard_error);
+        auto row = Json::array();
+        for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
+            row.push_back(json_of(fit.correlation(i, j)));
+        }
+        correlation.push_back(std::move(row));
+        if (parameter.is_fixed) {
+            fixed.push_back(parameter.name);
+        }
+        if (parameter.is_at_bound) {
+            at_bound.push_back(parameter.name);
+        }
+    }
+    auto residuals = Json::array();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        residuals.push_back({{"z_over_r", points[i].z_over_r},
+                             {"thrust_ratio", points[i].thrust_ratio},
+                             {"residual", fit.residuals[i]},
+                             {"line", points[i].line}});
+    }
+    return {{"model", model.name},
+            {"parameters", std::move(values)},
+            {"rmse", fit.rmse},
+            {"n", points.size()},
+            {"standard_errors", std::move(errors)},
+            {"covariance", fit.covariance},
+            {"correlation", std::move(correlation)},
+            {"reduced_chi_squared", json_of(fit.reduced_chi_squared)},
+            {"converged", fit.is_converged},
+            {"fixed", std::move(fixed)},
+            {"at_bound", std::move(at_bound)},
+            {"undetermined", fit.undetermined},
+            {"residuals", std::move(residuals)}};
+}
+
+/// What is noteworthy of a parameter, behind its value.
+std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
+    if (parameter.is_fixed) {
+        return "  fixed";
+    }
+    if (parameter.is_at_bound) {
+        return "  at the end of its range: the data want it outside";
+    }
+    for (const std::string_view name : fit.undetermined) {
+        if (name == parameter.name) {
+            return "  undetermined: other values fit as well";
+        }
+    }
+    return parameter.standard_error ? " +- " + to_text(*parameter.standard_error, 3)
+                                    : "  no standard error: as many parameters as measurements";
+}
+
+/// The side of a problem's `aero` with the fitted model, ready to be pasted.
+std::string yaml_of(const EffectModelInfo& model, const EffectFit& fit, const std::string& surface) {
+    std::string text = "aero:\n  " + surface + ": {model: " + std::string(model.name);
+    for (const FittedParameter& parameter : fit.parameters) {
+        text += ", " + std::string(parameter.name) + ": " + to_text(parameter.value, 7);
+    }
+    return text + "}\n";
+}
+
+void print_fit(const FitArguments& arguments, const EffectModelInfo& model, const EffectFit& fit) {
+    fmt::print("{}: {}\n", model.name, model.source);
+    for (const FittedParameter& parameter : fit.parameters) {
+        fmt::print("{:>16} = {}{}\n", parameter.name, to_text(parameter.value, 7), remark_on(parameter, fit));
+    }
+    for (std::size_t i = 1; i < fit.parameters.size(); ++i) {
+        if (const auto correlation = fit.correlation(i - 1, i)) {
+            fmt::print("correlation of {} and {}: {:.3f}\n", fit.parameters[i - 1].name, fit.parameters[i].name,
+                       *correlation);
+        }
+    }
+    fmt::print("RMSE {} of {} measurements\n", to_text(fit.rmse, 4), fit.residuals.size());
+    if (fit.reduced_chi_squared) {
+        fmt::print("reduced chi squared {} (about 1 when model and sigmas are right)\n",
+                   to_text(*fit.reduced_chi_squared, 4));
+    }
+    if (!fit.is_converged) {
+        fmt::print("The search did not converge; the values are the best it found.\n");
+    }
+    const std::string surface = arguments.data.surface.empty() ? std::string(model.surface) : arguments.data.surface;
+    if (surface == "ground" || surface == "ceiling") {
+        fmt::print("\nFor a problem file:\n{}", yaml_of(model, fit, surface));
+    }
+}
+
+ExitCode run(const FitArguments& arguments) {
+    const EffectModelInfo& model = model_named(arguments.model);
+    FitOptions options;
+    options.neighbours = arguments.data.neighbours();
+    options.is_weighted = arguments.is_weighted;
+    for (const std::string& text : arguments.fixed) {
+        options.fixed.push_back(fixed_parameter(text));
+    }
+    const Measurements measurements = arguments.data.read();
+    if (arguments.data.surface.empty() && measurements.entries("surface").size() > 1) {
+        fmt::print(stderr, "downwash: {} holds several surfaces, and all are fitted together; --surface chooses one\n",
+                   arguments.data.file);
+    }
+    const EffectFit fit = fit_effect(model.model, measurements.points, options);
+    if (arguments.as_json) {
+        fmt::print("{}\n", fit_json(model, fit, measurements.points).dump(2));
+    } else {
+        print_fit(arguments, model, fit);
+    }
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_aeromap_fit(CLI::App& aeromap, Action& action) {
+    const auto arguments = std::make_shared<FitArguments>();
+    CLI::App* fit = aeromap.add_subcommand("fit", "Fit a model's parameters to measurements by least squares");
+    arguments->data.add_options(*fit);
+    fit->add_option("--model", arguments->model, "name of a model as in a problem file")->type_name("NAME")->required();
+    fit->add_option("--fix", arguments->fixed, "keep a parameter at a value; may be given several times")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->take_all();
+    fit->add_flag("--weighted", arguments->is_weighted, "count each residual by 1 / sigma, a column of DATA");
+    fit->add_flag("--json", arguments->as_json, "print JSON");
+    fit->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace downwash::cli

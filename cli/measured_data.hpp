@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "downwash/aeromap/measurements.hpp"
+#include "downwash/aeromap/rotor_layout.hpp"
+
+namespace downwash::cli {
+
+/// Which measurements a command is about: a file, narrowed down by options, and the rotors they were made with.
+struct MeasuredData {
+    std::string file, surface, source;
+    std::optional<double> from, to;  ///< z/R
+    std::optional<double> rotor_spacing;
+
+    /// Adds DATA and the options to a command.
+    void add_options(CLI::App& command);
+
+    /// @throws InputError, UsageError when nothing is left
+    [[nodiscard]] Measurements read() const;
+
+    /// @throws UsageError
+    [[nodiscard]] RotorNeighbours neighbours() const;
+};
+
+}  // namespace downwash::cli
