@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/report/picture.hpp"
+
+namespace downwash {
+
+/// Colours for the values of a field, in classes: each class of values has one colour, and all are equally wide on the
+/// colour bar whatever the values between which they lie.
+struct ColorScale {
+    std::string label;           ///< what the values are, with their unit
+    std::vector<double> limits;  ///< of the classes, increasing; one more than there are colours
+    std::vector<Color> colors;   ///< of the classes; at least two
+    /// Of the classes, to be written at the colour bar instead of the limits. May be empty.
+    std::vector<std::string> names;
+};
+
+/// Where a value stands on the colour bar: i at limits[i], linear between them. What lies outside stands at the ends.
+/// NaN for NaN.
+[[nodiscard]] DOWNWASH_EXPORT double position_on(const ColorScale& scale, double value);
+
+/// A scale for factors near one, finest at one, wide enough for values from `low` to `high`: from white through
+/// viridis (perceptually uniform, legible to the colour-blind) where nothing is below one, else blue below and red
+/// above.
+[[nodiscard]] DOWNWASH_EXPORT ColorScale factor_scale(std::string label, double low, double high);
+
+/// Equal classes through viridis over [low, high], with limits at round numbers. @pre low < high, both finite
+[[nodiscard]] DOWNWASH_EXPORT ColorScale linear_scale(std::string label, double low, double high);
+
+/// Blue below zero and red above, finest at zero: limits at 1, 2 and 5 times powers of ten up to `reach`.
+/// @pre reach > 0 and finite  @param classes on each side, from 2 to 8
+[[nodiscard]] DOWNWASH_EXPORT ColorScale signed_scale(std::string label, double reach, int classes = 6);
+
+/// One colour for each of the values 0, 1, 2... of a field of kinds. @pre as many names as colours, two at least
+[[nodiscard]] DOWNWASH_EXPORT ColorScale scale_of_kinds(std::string label, std::vector<std::string> names,
+                                                        std::vector<Color> colors);
+
+}  // namespace downwash

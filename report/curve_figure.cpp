@@ -1,0 +1,181 @@
+#include "downwash/report/curve_figure.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/report/gnuplot_script.hpp"
+#include "downwash/report/legend.hpp"
+#include "downwash/report/picture_text.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr std::array<Color, 8> colors{{{0, 114, 178},
+                                       {213, 94, 0},
+                                       {0, 158, 115},
+                                       {204, 121, 167},
+                                       {0, 0, 0},
+                                       {230, 159, 0},
+                                       {86, 180, 233},
+                                       {150, 150, 150}}};
+constexpr std::array<std::string_view, 4> dashes{"", " dashtype (24,8)", " dashtype (8,6)", " dashtype (24,8,6,8)"};
+constexpr std::array<int, 6> point_types{7, 5, 9, 13, 6, 4};
+
+bool is_finite(const DiagramPoint& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+void require_drawable(const CurveFigure& figure, const std::string& key) {
+    std::vector<Fault> faults;
+    std::size_t points = 0;
+    for (const Curve& curve : figure.curves) {
+        points += static_cast<std::size_t>(std::count_if(curve.points.begin(), curve.points.end(), is_finite));
+    }
+    for (const Measurements& measured : figure.measurements) {
+        points += static_cast<std::size_t>(std::count_if(measured.points.begin(), measured.points.end(), is_finite));
+        if (!measured.errors.empty() && measured.errors.size() != measured.points.size()) {
+            faults.push_back({key + ".measurements", fmt::format("{} points have {} errors: expected one each, or none",
+                                                                 measured.points.size(), measured.errors.size())});
+        }
+    }
+    if (points == 0) {
+        faults.push_back({key, "there is nothing to draw: expected a curve or measurements with finite points"});
+    }
+    for (const auto* range : {&figure.x_range, &figure.y_range}) {
+        if (*range && !((*range)->low < (*range)->high && std::isfinite((*range)->high - (*range)->low))) {
+            faults.push_back({key + ".range", fmt::format("{} to {} is empty: expected finite numbers, the lower first",
+                                                          to_text((*range)->low), to_text((*range)->high))});
+        }
+    }
+    if (!faults.empty()) {
+        throw InputError(std::move(faults));
+    }
+}
+
+/// One figure and its place.
+class Panel {
+ public:
+    Panel(const CurveFigure& figure, std::size_t number, double width_px) : figure_(figure), number_(number) {
+        for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+            add_curve(figure.curves[i], i);
+        }
+        for (std::size_t i = 0; i < figure.measurements.size(); ++i) {
+            add_measurements(figure.measurements[i], i);
+        }
+        legend_height_px_ = legend_.height_px(width_px);
+    }
+
+    /// From its bottom to its top [px].
+    [[nodiscard]] double height_px(double axes_px) const { return below_axes_px + axes_px + above_axes_px(); }
+
+    void add_to(GnuplotScript& script, double left_px, double right_px, double bottom_px, double axes_px) const {
+        const double middle_px = (left_px + right_px) / 2;
+        const double axes_top_px = bottom_px + below_axes_px + axes_px;
+        // What stands around one panel must not be repeated around the next.
+        script.add("unset label\nunset arrow\nunset object");
+        script.set_titles(figure_.title, figure_.subtitle, middle_px, axes_top_px + above_axes_px());
+        legend_.place(script, middle_px, axes_top_px + legend_height_px_ + 4, right_px - left_px);
+        script.set_axes(left_px, right_px, bottom_px + below_axes_px, axes_top_px);
+        add_range(script, "x", figure_.x_range);
+        add_range(script, "y", figure_.y_range);
+        script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label)));
+        script.add(fmt::format("set ylabel {} offset 0.4,0", in_quotes(figure_.y_label)));
+        script.add(data_);
+        std::string level;
+        if (figure_.level) {
+            level = fmt::format(", {} with lines linewidth 0.8 linecolor rgb '#606060' notitle", *figure_.level);
+        }
+        script.add("plot " + elements_ + level);
+    }
+
+ private:
+    static constexpr double below_axes_px = 62;
+
+    [[nodiscard]] double above_axes_px() const {
+        const double titles_px = figure_.title.empty() ? 10 : (figure_.subtitle.empty() ? 40 : 62);
+        return titles_px + legend_height_px_ + 6;
+    }
+
+    static void add_range(GnuplotScript& script, std::string_view axis, const std::optional<AxisRange>& range) {
+        script.add(range ? fmt::format("set {}range [{}:{}]", axis, range->low, range->high)
+                         : fmt::format("set {}range [*:*]", axis));
+    }
+
+    /// Adds one block of data and how it is drawn.
+    void add(const std::string& rows, const std::string& how) {
+        const std::string name = fmt::format("$data{}_{}", number_, count_++);
+        data_ += name + " << END_OF_DATA\n" + rows + "END_OF_DATA\n";
+        elements_ += fmt::format("{}{} {} notitle", elements_.empty() ? "" : ", ", name, how);
+    }
+
+    void add_curve(const Curve& curve, std::size_t i) {
+        std::string rows;
+        for (const DiagramPoint& p : curve.points) {
+            rows += is_finite(p) ? fmt::format("{:.9g} {:.9g}\n", p.x, p.y) : "\n";
+        }
+        const std::string style =
+            fmt::format("linewidth 2{} linecolor rgb {}", dashes[i / colors.size() % dashes.size()],
+                        in_quotes(colors[i % colors.size()]));
+        add(rows, "using 1:2 with lines " + style);
+        legend_.add(curve.name, {style, {}, {}});
+    }
+
+    void add_measurements(const Measurements& measured, std::size_t i) {
+        const bool has_errors = !measured.errors.empty();
+        std::string rows;
+        for (std::size_t k = 0; k < measured.points.size(); ++k) {
+            const DiagramPoint& p = measured.points[k];
+            const double error = has_errors && std::isfinite(measured.errors[k]) ? measured.errors[k] : 0;
+            rows += is_finite(p) ? fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x, p.y, error) : "\n";
+        }
+        // Colours go on where the curves' end, so that points do not seem to belong to a curve by accident.
+        const std::string style =
+            fmt::format("pointtype {} pointsize 1 linecolor rgb {}", point_types[i % point_types.size()],
+                        in_quotes(colors[(figure_.curves.size() + i) % colors.size()]));
+        add(rows, (has_errors ? "using 1:2:3 with yerrorbars linewidth 1.2 " : "using 1:2 with points ") + style);
+        legend_.add(measured.name, {{}, {}, style});
+    }
+
+    const CurveFigure& figure_;
+    std::size_t number_;
+    Legend legend_;
+    double legend_height_px_ = 0;
+    int count_ = 0;
+    std::string data_, elements_;
+};
+
+}  // namespace
+
+std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings) {
+    constexpr double left_px = 84, right_px = 24;
+    if (figures.empty()) {
+        throw InputError({Fault{"figures", "there is no figure to draw: expected one at least"}});
+    }
+    const double width_px = settings.width_px - left_px - right_px;
+    std::vector<Panel> panels;
+    double height_px = 0;
+    const auto axes_px = [&](std::size_t i) { return width_px * (i == 0 ? 0.5 : 0.22); };
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+        require_drawable(figures[i], fmt::format("figures[{}]", i));
+        panels.emplace_back(figures[i], i, width_px);
+        height_px += panels.back().height_px(axes_px(i));
+    }
+    GnuplotScript script(settings, height_px);
+    script.add("set grid linewidth 0.5 linecolor rgb '#dddddd'");
+    script.add("set multiplot");
+    double bottom_px = std::round(height_px);
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        bottom_px -= panels[i].height_px(axes_px(i));
+        panels[i].add_to(script, left_px, settings.width_px - right_px, bottom_px, axes_px(i));
+    }
+    script.add("unset multiplot");
+    return script.draw();
+}
+
+}  // namespace downwash

@@ -1,0 +1,53 @@
+#pragma once
+
+// Private: not installed.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "downwash/report/picture.hpp"
+
+namespace downwash {
+
+/// Size of the text in pictures [px].
+inline constexpr double font_px = 15;
+
+/// A script that draws one picture. Everything in it is ours, or went through in_quotes().
+class GnuplotScript {
+ public:
+    /// @throws InputError when the width is out of its range
+    GnuplotScript(const PictureSettings& settings, double height_px);
+
+    /// One line of the script.
+    void add(std::string_view line) {
+        text_ += line;
+        text_ += '\n';
+    }
+
+    /// The values that a `'-' binary format='%float'` of the last line asks for.
+    void add_values(std::span<const float> values);
+
+    /// A distance in pixels from the left or from the bottom, as a fraction of the picture.
+    [[nodiscard]] double screen_x(double px) const { return px / settings_.width_px; }
+    [[nodiscard]] double screen_y(double px) const { return px / height_px_; }
+
+    /// Where the axes stand, in pixels from the lower left corner of the picture.
+    void set_axes(double left_px, double right_px, double bottom_px, double top_px);
+
+    /// Title and, below it in grey, subtitle, `top_px` being where they begin.
+    void set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px);
+
+    /// Draws. @throws PictureError
+    [[nodiscard]] std::string draw() const;
+
+ private:
+    PictureSettings settings_;
+    int height_px_;
+    std::string text_;
+};
+
+/// "'#rrggbb'"
+[[nodiscard]] std::string in_quotes(const Color& color);
+
+}  // namespace downwash

@@ -1,0 +1,53 @@
+#pragma once
+
+// Private: not installed. Everything in pixels of the picture, y upwards.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace downwash {
+
+struct PixelPoint {
+    double x = 0, y = 0;
+};
+
+struct PixelBox {
+    double left = 0, right = 0, bottom = 0, top = 0;
+    [[nodiscard]] bool holds(const PixelPoint& p) const {
+        return p.x >= left && p.x <= right && p.y >= bottom && p.y <= top;
+    }
+    [[nodiscard]] bool meets(const PixelBox& other) const {
+        return left < other.right && other.left < right && bottom < other.top && other.bottom < top;
+    }
+    [[nodiscard]] bool holds(const PixelBox& other) const {
+        return left <= other.left && right >= other.right && bottom <= other.bottom && top >= other.top;
+    }
+    [[nodiscard]] PixelPoint middle() const { return {(left + right) / 2, (bottom + top) / 2}; }
+};
+
+/// Something with a name, by its outline.
+struct NamedShape {
+    std::string name;
+    double width_px = 0;  ///< of the name
+    bool is_filled = true;
+    std::vector<std::vector<PixelPoint>> rings;
+};
+
+/// Where a name goes.
+struct PlacedLabel {
+    std::size_t shape = 0;
+    PixelBox box;
+    bool is_inside = false;            ///< on its own filled shape
+    std::optional<PixelPoint> leader;  ///< where a line from the name should lead, when it stands apart
+};
+
+/// Finds places for the names of what can be seen within `area`: inside its shape where there is room, else near it,
+/// never on another name and, where that can be had, on no other shape and where the background is of one colour.
+/// @param color_at the number of the background's colour at a point
+[[nodiscard]] std::vector<PlacedLabel> place_labels(const std::vector<NamedShape>& shapes, const PixelBox& area,
+                                                    double height_px,
+                                                    const std::function<int(const PixelPoint&)>& color_at);
+
+}  // namespace downwash

@@ -1,0 +1,96 @@
+#include "downwash/report/mesh_section.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace downwash {
+namespace {
+
+/// An edge by the smaller and the larger index of its ends.
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Gives vertices with the same coordinates one index.
+class Welding {
+ public:
+    explicit Welding(const std::vector<Vector3>& vertices_m) : vertices_m_(vertices_m) {}
+    std::uint32_t operator()(std::uint32_t vertex) { return first_.emplace(vertices_m_[vertex], vertex).first->second; }
+
+ private:
+    const std::vector<Vector3>& vertices_m_;
+    std::map<Vector3, std::uint32_t> first_;
+};
+
+/// The pieces that single triangles contribute, each from the edge where it begins to the one where it ends.
+using Pieces = std::multimap<Edge, Edge>;
+
+Pieces pieces_of(const std::vector<Vector3>& vertices_m, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    Welding welded(vertices_m);
+    Pieces pieces;
+    for (const auto& triangle : triangles) {
+        std::array<Edge, 2> ends{};  // where the boundary goes to the left of the plane, and where it comes back
+        bool is_cut = false;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t from = triangle[i];
+            const std::uint32_t to = triangle[(i + 1) % 3];
+            const bool is_from_left = vertices_m[from][1] >= 0;
+            if (is_from_left != (vertices_m[to][1] >= 0)) {
+                ends[is_from_left ? 1 : 0] = std::minmax(welded(from), welded(to));
+                is_cut = true;
+            }
+        }
+        if (is_cut) {
+            pieces.emplace(ends[0], ends[1]);
+        }
+    }
+    return pieces;
+}
+
+PlanePoint point_on(const Edge& edge, const std::vector<Vector3>& vertices_m) {
+    const Vector3& a = vertices_m[edge.first];
+    const Vector3& b = vertices_m[edge.second];
+    const double part = a[1] / (a[1] - b[1]);
+    return {a[0] + part * (b[0] - a[0]), a[2] + part * (b[2] - a[2])};
+}
+
+}  // namespace
+
+MeshSection mesh_section(const std::vector<Vector3>& vertices_m,
+                         const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    Pieces pieces = pieces_of(vertices_m, triangles);
+    std::map<Edge, int> arrivals;
+    for (const auto& [from, to] : pieces) {
+        ++arrivals[to];
+    }
+    MeshSection section;
+    const auto follow = [&](Edge edge) {
+        const Edge first = edge;
+        std::vector<PlanePoint> points{point_on(edge, vertices_m)};
+        for (auto piece = pieces.find(edge); piece != pieces.end(); piece = pieces.find(edge)) {
+            edge = piece->second;
+            pieces.erase(piece);
+            if (edge == first) {
+                section.rings.push_back(std::move(points));
+                return;
+            }
+            points.push_back(point_on(edge, vertices_m));
+        }
+        section.lines.push_back(std::move(points));
+    };
+    // Open lines have to be followed from their beginnings, rings from anywhere.
+    std::vector<Edge> beginnings;
+    for (const auto& [from, to] : pieces) {
+        if (arrivals.find(from) == arrivals.end()) {
+            beginnings.push_back(from);
+        }
+    }
+    for (const Edge& beginning : beginnings) {
+        follow(beginning);
+    }
+    while (!pieces.empty()) {
+        follow(pieces.begin()->first);
+    }
+    return section;
+}
+
+}  // namespace downwash

@@ -1,0 +1,211 @@
+#include "downwash/report/obstacle_outline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/report/mesh_section.hpp"
+#include "downwash/report/planar_hull.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr int sides = 96;  // of a circle
+constexpr double whole_turn_rad = 6.283185307179586;
+
+/// A convex solid with flat faces; points are (x, lateral, z) in the plane's own coordinates.
+struct Polyhedron {
+    std::vector<Vector3> corners_m;
+    std::vector<std::pair<std::size_t, std::size_t>> edges;
+};
+
+PlanePoint projected(const Vector3& point_m) {
+    return {point_m[0], point_m[2]};
+}
+
+std::vector<PlanePoint> projection(const std::vector<Vector3>& points_m) {
+    std::vector<PlanePoint> points;
+    points.reserve(points_m.size());
+    for (const Vector3& point_m : points_m) {
+        points.push_back(projected(point_m));
+    }
+    return convex_hull(std::move(points));
+}
+
+/// Empty when the plane lateral = 0 passes the solid by.
+std::vector<PlanePoint> section(const Polyhedron& solid) {
+    std::vector<PlanePoint> points;
+    for (const auto& [from, to] : solid.edges) {
+        const Vector3& a = solid.corners_m[from];
+        const Vector3& b = solid.corners_m[to];
+        if ((a[1] < 0) != (b[1] < 0)) {
+            const double part = a[1] / (a[1] - b[1]);
+            points.push_back({a[0] + part * (b[0] - a[0]), a[2] + part * (b[2] - a[2])});
+        }
+    }
+    return points.empty() ? points : convex_hull(std::move(points));
+}
+
+/// How an obstacle's own frame lies in the plane's coordinates.
+class Frame {
+ public:
+    Frame(const Obstacle& obstacle, const PlaneOfMotion& plane, double lateral_m)
+        : obstacle_(obstacle), plane_(plane), lateral_m_(lateral_m) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            lane::sin_cos(obstacle.rpy_rad[i], sine_[i], cosine_[i]);
+        }
+    }
+
+    /// Rz(yaw) Ry(pitch) Rx(roll), then the plane's coordinates.
+    [[nodiscard]] Vector3 operator()(const Vector3& own_m) const {
+        Vector3 p = own_m;
+        p = {p[0], cosine_[0] * p[1] - sine_[0] * p[2], sine_[0] * p[1] + cosine_[0] * p[2]};
+        p = {cosine_[1] * p[0] + sine_[1] * p[2], p[1], -sine_[1] * p[0] + cosine_[1] * p[2]};
+        p = {cosine_[2] * p[0] - sine_[2] * p[1], sine_[2] * p[0] + cosine_[2] * p[1], p[2]};
+        for (std::size_t i = 0; i < 3; ++i) {
+            p[i] += obstacle_.center_m[i];
+        }
+        p = plane_.from_world(p);
+        return {p[0], p[1] - lateral_m_, p[2]};
+    }
+
+ private:
+    const Obstacle& obstacle_;
+    const PlaneOfMotion& plane_;
+    double lateral_m_;
+    std::array<double, 3> sine_{}, cosine_{};
+};
+
+Polyhedron box_at(const Vector3& center_m, const Vector3& size_m, const Frame& frame) {
+    Polyhedron solid;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        const auto side = [&](std::size_t axis) { return ((corner >> axis) & 1U) != 0 ? 0.5 : -0.5; };
+        solid.corners_m.push_back(frame(
+            {center_m[0] + side(0) * size_m[0], center_m[1] + side(1) * size_m[1], center_m[2] + side(2) * size_m[2]}));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (((corner >> axis) & 1U) == 0) {
+                solid.edges.emplace_back(corner, corner | (std::size_t{1} << axis));
+            }
+        }
+    }
+    return solid;
+}
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector3 scaled_to(const Vector3& a, double length) {
+    const double factor = length / std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    return {factor * a[0], factor * a[1], factor * a[2]};
+}
+
+Polyhedron prism_of(const Cylinder& cylinder, const Frame& frame) {
+    const Vector3 half = scaled_to(scaled_to(cylinder.axis, 1), cylinder.length_m / 2);
+    const Vector3 other = std::abs(half[0]) < std::abs(half[1]) ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
+    const Vector3 u = scaled_to(cross(half, other), cylinder.radius_m);
+    const Vector3 v = scaled_to(cross(half, u), cylinder.radius_m);
+    Polyhedron solid;
+    for (std::size_t i = 0; i < sides; ++i) {
+        double sine = 0, cosine = 0;
+        lane::sin_cos(whole_turn_rad * static_cast<double>(i) / sides, sine, cosine);
+        for (const double end : {-1., 1.}) {
+            Vector3 corner{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                corner[k] = end * half[k] + cosine * u[k] + sine * v[k];
+            }
+            solid.corners_m.push_back(frame(corner));
+        }
+        const std::size_t here = 2 * i, next = 2 * ((i + 1) % sides);
+        solid.edges.insert(solid.edges.end(), {{here, here + 1}, {here, next}, {here + 1, next + 1}});
+    }
+    return solid;
+}
+
+std::vector<PlanePoint> circle(const PlanePoint& center, double radius_m) {
+    std::vector<PlanePoint> points;
+    for (int i = 0; i < sides; ++i) {
+        double sine = 0, cosine = 0;
+        lane::sin_cos(whole_turn_rad * i / sides, sine, cosine);
+        points.push_back({center.x_m + radius_m * cosine, center.z_m + radius_m * sine});
+    }
+    return points;
+}
+
+/// Fills in what of an outline depends on the kind of shape.
+class OutlineOf {
+ public:
+    OutlineOf(const Frame& frame, ObstacleOutline& outline) : frame_(frame), outline_(outline) {}
+
+    void operator()(const Box& box) const { add({box_at({0, 0, 0}, box.size_m, frame_)}); }
+    void operator()(const Cylinder& cylinder) const { add({prism_of(cylinder, frame_)}); }
+
+    void operator()(const Sphere& sphere) const {
+        const Vector3 center_m = frame_({0, 0, 0});
+        const double squared = sphere.radius_m * sphere.radius_m - center_m[1] * center_m[1];
+        outline_.is_cut = squared > 0;
+        outline_.rings = {circle(projected(center_m), outline_.is_cut ? std::sqrt(squared) : sphere.radius_m)};
+    }
+
+    void operator()(const Mesh& mesh) const {
+        std::vector<Vector3> vertices_m;
+        vertices_m.reserve(mesh.surface->vertices_m.size());
+        for (const Vector3& own : mesh.surface->vertices_m) {
+            vertices_m.push_back(frame_({mesh.scale * own[0], mesh.scale * own[1], mesh.scale * own[2]}));
+        }
+        MeshSection cut = mesh_section(vertices_m, mesh.surface->triangles);
+        outline_.is_cut = !cut.rings.empty() || !cut.lines.empty();
+        outline_.rings = std::move(cut.rings);
+        outline_.lines = std::move(cut.lines);
+        if (!outline_.is_cut) {
+            outline_.rings = {projection(vertices_m)};
+        }
+    }
+
+    void operator()(const Octomap& octomap) const {
+        std::vector<Polyhedron> cubes;
+        cubes.reserve(octomap.tree->cubes.size());
+        for (const OccupiedCube& cube : octomap.tree->cubes) {
+            cubes.push_back(box_at(cube.center_m, {cube.side_m, cube.side_m, cube.side_m}, frame_));
+        }
+        add(cubes);
+    }
+
+ private:
+    void add(const std::vector<Polyhedron>& solids) const {
+        for (const Polyhedron& solid : solids) {
+            if (auto ring = section(solid); ring.size() > 2) {
+                outline_.rings.push_back(std::move(ring));
+            }
+        }
+        outline_.is_cut = !outline_.rings.empty();
+        if (!outline_.is_cut) {
+            std::vector<Vector3> corners_m;
+            for (const Polyhedron& solid : solids) {
+                corners_m.insert(corners_m.end(), solid.corners_m.begin(), solid.corners_m.end());
+            }
+            outline_.rings = {projection(corners_m)};
+        }
+    }
+
+    const Frame& frame_;
+    ObstacleOutline& outline_;
+};
+
+}  // namespace
+
+std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOfMotion& plane, double lateral_m) {
+    std::vector<ObstacleOutline> outlines;
+    for (const Obstacle& obstacle : scene.obstacles()) {
+        ObstacleOutline& outline = outlines.emplace_back();
+        outline.name = obstacle.name;
+        const Frame frame(obstacle, plane, lateral_m);
+        std::visit(OutlineOf(frame, outline), obstacle.shape);
+    }
+    return outlines;
+}
+
+}  // namespace downwash

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/report/picture.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+#include "downwash/scene/scene.hpp"
+
+namespace downwash {
+
+/// An obstacle as it is drawn in a vertical plane.
+struct ObstacleOutline {
+    std::string name;
+    bool is_cut = true;  ///< whether the plane cuts it; otherwise its projection on the plane is shown
+    /// Closed rings, without repeating the first point. Of a mesh with cavities they run around solid parts in one
+    /// sense and around holes in the other.
+    std::vector<std::vector<PlanePoint>> rings;
+    /// Open lines, where a plane cuts a surface that is not closed.
+    std::vector<std::vector<PlanePoint>> lines;
+};
+
+/// Every obstacle of the scene in the plane parallel to the plane of motion, `lateral_m` to the left of it: the cross
+/// section of those that it cuts, the convex hull of the projection of the others. Round shapes become polygons of 96
+/// sides, whose corners lie on them.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene,
+                                                                             const PlaneOfMotion& plane,
+                                                                             double lateral_m);
+
+}  // namespace downwash
