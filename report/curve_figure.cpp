@@ -37,7 +37,7 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
     for (const Curve& curve : figure.curves) {
         points += static_cast<std::size_t>(std::count_if(curve.points.begin(), curve.points.end(), is_finite));
     }
-    for (const Measurements& measured : figure.measurements) {
+    for (const MeasuredPoints& measured : figure.measurements) {
         points += static_cast<std::size_t>(std::count_if(measured.points.begin(), measured.points.end(), is_finite));
         if (!measured.errors.empty() && measured.errors.size() != measured.points.size()) {
             faults.push_back({key + ".measurements", fmt::format("{} points have {} errors: expected one each, or none",
@@ -126,7 +126,7 @@ class Panel {
         legend_.add(curve.name, {style, {}, {}});
     }
 
-    void add_measurements(const Measurements& measured, std::size_t i) {
+    void add_measurements(const MeasuredPoints& measured, std::size_t i) {
         const bool has_errors = !measured.errors.empty();
         std::string rows;
         for (std::size_t k = 0; k < measured.points.size(); ++k) {

@@ -22,7 +22,7 @@ struct Curve {
 };
 
 /// Points with or without error bars.
-struct Measurements {
+struct MeasuredPoints {
     std::string name;
     std::vector<DiagramPoint> points;
     std::vector<double> errors;  ///< half the length of each bar, in y; empty for none, else one for each point
@@ -42,7 +42,7 @@ struct CurveFigure {
     std::optional<AxisRange> x_range, y_range;  ///< empty: what the data need
     std::optional<double> level;                ///< a thin level line, for example at K = 1
     std::vector<Curve> curves;
-    std::vector<Measurements> measurements;
+    std::vector<MeasuredPoints> measurements;
 };
 
 /// The picture as the bytes of a file: the figures one below the other, with axes of equal width, for example a fit

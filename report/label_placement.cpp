@@ -209,32 +209,40 @@ class Placement {
         return false;
     }
 
-    /// Whether a line from a point to another comes across filled shapes other than its own.
+    /// Whether a line from a name to its shape comes across other filled shapes or names.
     [[nodiscard]] bool crosses_other(const PixelPoint& from, const PixelPoint& to, std::size_t own) const {
         constexpr int steps = 32;
         for (int k = 0; k <= steps; ++k) {
             const double s = static_cast<double>(k) / steps;
             const PixelPoint p{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)};
+            const auto holds = [&p](const Ring& ring) { return is_inside(ring, p); };
             for (std::size_t i = 0; i < visible_.size(); ++i) {
-                const auto holds = [&p](const Ring& ring) { return is_inside(ring, p); };
                 if (i != own && visible_[i].is_filled &&
                     std::any_of(visible_[i].rings.begin(), visible_[i].rings.end(), holds)) {
                     return true;
                 }
             }
+            if (std::any_of(labels_.begin(), labels_.end(),
+                            [&p](const PlacedLabel& label) { return label.box.holds(p); })) {
+                return true;
+            }
         }
         return false;
     }
 
-    /// Middles of boxes around a shape, `gap` away from it.
+    /// Middles of boxes around a shape, `gap` away from it, the best first.
     static std::vector<PixelPoint> places_around(const PixelBox& shape, double gap, double width, double height) {
         const double up = shape.top + gap + height / 2, down = shape.bottom - gap - height / 2;
         const double right = shape.right + gap + width / 2, left = shape.left - gap - width / 2;
-        const double quarter = (shape.right - shape.left) / 4;
         const auto [x, y] = shape.middle();
-        return {{x, up},           {right, y},        {left, y},           {x, down},
-                {right, up},       {left, up},        {right, down},       {left, down},
-                {x - quarter, up}, {x + quarter, up}, {x - quarter, down}, {x + quarter, down}};
+        std::vector<PixelPoint> places{{x, up},     {right, y}, {left, y},     {x, down},
+                                       {right, up}, {left, up}, {right, down}, {left, down}};
+        for (const double part : {0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
+            const double along = shape.left + part * (shape.right - shape.left);
+            places.push_back({along, up});
+            places.push_back({along, down});
+        }
+        return places;
     }
 
     enum class Demand { plain_and_direct, off_shapes, free };
@@ -257,7 +265,7 @@ class Placement {
 
     void find_beside(std::size_t i) {
         constexpr double nearest_px = 3;
-        constexpr int distances = 8;
+        constexpr int distances = 12;
         const Visible& shape = visible_[i];
         const PixelBox bounds = box_of(shape.main);
         for (const Demand demand : {Demand::plain_and_direct, Demand::off_shapes, Demand::free}) {

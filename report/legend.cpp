@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "downwash/report/picture_text.hpp"
@@ -21,32 +22,41 @@ void Legend::add(std::string_view name, LegendSample sample) {
     entries_.push_back({picture_text(name), std::move(sample)});
 }
 
-double Legend::column_px() const {
-    double widest_px = 0;
-    for (const Entry& entry : entries_) {
-        widest_px = std::max(widest_px, text_width_px(entry.name, font_px));
+std::vector<double> Legend::columns_px(double width_px) const {
+    for (std::size_t count = entries_.size(); count > 0; --count) {
+        std::vector<double> columns(count, 0);
+        for (std::size_t i = 0; i < entries_.size(); ++i) {
+            double& column = columns[i % count];
+            column = std::max(column, sample_px + gap_px + text_width_px(entries_[i].name, font_px));
+        }
+        const double all =
+            std::accumulate(columns.begin(), columns.end(), separation_px * (static_cast<double>(count) - 1));
+        if (all <= width_px || count == 1) {
+            return columns;
+        }
     }
-    return sample_px + gap_px + widest_px + separation_px;
-}
-
-std::size_t Legend::columns(double width_px) const {
-    const auto fitting = static_cast<std::size_t>(std::max(1., (width_px + separation_px) / column_px()));
-    return std::min(fitting, std::max<std::size_t>(1, entries_.size()));
+    return {};
 }
 
 double Legend::height_px(double width_px) const {
-    const std::size_t in_a_row = columns(width_px);
-    return row_px * static_cast<double>((entries_.size() + in_a_row - 1) / in_a_row);
+    const std::size_t in_a_row = columns_px(width_px).size();
+    return in_a_row == 0 ? 0 : row_px * static_cast<double>((entries_.size() + in_a_row - 1) / in_a_row);
 }
 
 void Legend::place(GnuplotScript& script, double middle_px, double top_px, double width_px) const {
     script.add("unset key");
-    const std::size_t in_a_row = columns(width_px);
-    const double first_px = middle_px - (static_cast<double>(in_a_row) * column_px() - separation_px) / 2;
+    const std::vector<double> columns = columns_px(width_px);
+    std::vector<double> lefts;
+    double end = 0;
+    for (const double column : columns) {
+        lefts.push_back(end);
+        end += column + separation_px;
+    }
+    const double first_px = middle_px - (end - separation_px) / 2;
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const LegendSample& sample = entries_[i].sample;
-        const double left = first_px + static_cast<double>(i % in_a_row) * column_px();
-        const double y = top_px - row_px * (static_cast<double>(i / in_a_row) + 0.5);
+        const double left = first_px + lefts[i % columns.size()];
+        const double y = top_px - row_px * (static_cast<double>(i / columns.size()) + 0.5);
         const auto screen = [&](double dx, double dy) {
             return fmt::format("screen {:.6f},{:.6f}", script.screen_x(left + dx), script.screen_y(y + dy));
         };

@@ -33,8 +33,8 @@ class Legend {
         std::string name;
         LegendSample sample;
     };
-    [[nodiscard]] std::size_t columns(double width_px) const;
-    [[nodiscard]] double column_px() const;
+    /// Widths of as many columns as fit, names included.
+    [[nodiscard]] std::vector<double> columns_px(double width_px) const;
 
     std::vector<Entry> entries_;
 };

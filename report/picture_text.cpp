@@ -73,15 +73,19 @@ std::string in_quotes(std::string_view text) {
 }
 
 double text_width_px(std::string_view text, double font_px) {
-    constexpr double em_per_character = 0.56;  // DejaVu Sans, small letters mostly
-    constexpr double em_per_wide_character = 1.0;
+    // Of DejaVu Sans.
+    constexpr double narrow_em = 0.36, usual_em = 0.62, capital_em = 0.71, broad_em = 0.95;
     double em = 0;
     for (const char c : picture_text(text)) {
         const auto byte = static_cast<std::uint8_t>(c);
-        if (byte < 0x80 || (byte >= 0xc0 && byte < 0xe3)) {
-            em += em_per_character;
-        } else if (byte >= 0xe3) {  // from U+3000: CJK and pictographs
-            em += em_per_wide_character;
+        if (std::string_view(" .,:;'|()[]!/ijlftr").find(c) != std::string_view::npos) {
+            em += narrow_em;
+        } else if (std::string_view("mwMW@%").find(c) != std::string_view::npos || byte >= 0xe3) {  // from U+3000: CJK
+            em += broad_em;
+        } else if (c >= 'A' && c <= 'Z') {
+            em += capital_em;
+        } else if (byte < 0x80 || byte >= 0xc0) {  // the first byte of a character
+            em += usual_em;
         }
     }
     return em * font_px;
