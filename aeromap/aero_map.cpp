@@ -99,6 +99,11 @@ double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent) {
 
 AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads,
                  const std::function<void(double)>& on_progress)
+    : AeroMap(Empty(), std::move(layers), plane, extent) {
+    build(threads, on_progress);
+}
+
+AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent)
     : layers_(std::move(layers)), plane_(plane), extent_(extent) {
     assert(!layers_.empty());
     require_valid(layers_.front().effect->settings().grid_m, extent_, layers_);
@@ -110,7 +115,6 @@ AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const
     }
     columns_ = static_cast<std::size_t>(cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_));
     rows_ = static_cast<std::size_t>(cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_));
-    build(threads, on_progress);
 }
 
 void AeroMap::build(int threads, const std::function<void(double)>& on_progress) {

@@ -3,6 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/aeromap/direct_effect.hpp"
@@ -52,6 +55,14 @@ class DOWNWASH_EXPORT AeroMap {
     AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads = 1,
             const std::function<void(double)>& on_progress = {});
 
+    /// What the map stores, as bytes that only a machine of the same byte order understands.
+    [[nodiscard]] std::string to_bytes() const;
+
+    /// The map again, to the last bit, without building it. Empty when the bytes are not such a map of these layers, or
+    /// when some of its values are not what the effects give today.
+    [[nodiscard]] static std::optional<AeroMap> from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
+                                                           const MapExtent& extent, std::string_view bytes);
+
     /// As given. The cells may reach beyond its upper ends by less than one cell.
     [[nodiscard]] const MapExtent& extent() const noexcept { return extent_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
@@ -100,8 +111,14 @@ class DOWNWASH_EXPORT AeroMap {
         std::vector<float> nodes;
     };
 
+    /// A map that holds nothing yet.
+    struct Empty {};
+    AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent);
+
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
     void build(int threads, const std::function<void(double)>& on_progress);
+    [[nodiscard]] bool is_sound(const Raster& raster) const;
+    [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;
 
     std::vector<MapLayer> layers_;
     PlaneOfMotion plane_;

@@ -42,6 +42,8 @@ class DOWNWASH_EXPORT EffectCurve {
     [[nodiscard]] EffectCurve at_wall(double d_over_r) const;
 
     [[nodiscard]] const SurfaceEffect& effect() const noexcept { return effect_; }
+    [[nodiscard]] const RotorNeighbours& neighbours() const noexcept { return neighbours_; }
+    [[nodiscard]] bool is_fountain() const noexcept { return is_fountain_; }
 
  private:
     [[nodiscard]] double clamped(double factor) const noexcept;

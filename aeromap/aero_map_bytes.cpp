@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/cell_refinement.hpp"
+
+// A map as bytes: the counts of layers, columns and rows; then of every layer the count of its nodes, the cells, their
+// flyability, the nodes.
+
+namespace downwash {
+namespace {
+
+template <class Element>
+void append(std::string& bytes, const Element* elements, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    bytes.append(reinterpret_cast<const char*>(elements), count * sizeof(Element));
+}
+
+void append_count(std::string& bytes, std::uint64_t count) {
+    append(bytes, &count, 1);
+}
+
+/// Moves so many elements from the front of the bytes into a vector. False, and nothing allocated, when there are less.
+template <class Element>
+bool take(std::string_view& bytes, std::uint64_t count, std::vector<Element>& elements) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    if (count > bytes.size() / sizeof(Element)) {
+        return false;
+    }
+    elements.resize(count);
+    if (count > 0) {
+        std::memcpy(elements.data(), bytes.data(), count * sizeof(Element));
+    }
+    bytes.remove_prefix(count * sizeof(Element));
+    return true;
+}
+
+bool take_count(std::string_view& bytes, std::uint64_t& count) {
+    std::vector<std::uint64_t> one;
+    if (!take(bytes, 1, one)) {
+        return false;
+    }
+    count = one[0];
+    return true;
+}
+
+bool is_step_count(unsigned steps) {
+    return std::has_single_bit(steps) && steps <= most_steps;
+}
+
+}  // namespace
+
+std::string AeroMap::to_bytes() const {
+    static_assert(sizeof(Cell) == 8, "no bytes between the members");
+    std::string bytes;
+    bytes.reserve(memory_bytes());
+    append_count(bytes, rasters_.size());
+    append_count(bytes, columns_);
+    append_count(bytes, rows_);
+    for (const Raster& raster : rasters_) {
+        append_count(bytes, raster.nodes.size());
+        append(bytes, raster.cells.data(), raster.cells.size());
+        append(bytes, raster.flyability.data(), raster.flyability.size());
+        append(bytes, raster.nodes.data(), raster.nodes.size());
+    }
+    return bytes;
+}
+
+std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
+                                           const MapExtent& extent, std::string_view bytes) {
+    AeroMap map(Empty(), std::move(layers), plane, extent);
+    std::uint64_t layer_count = 0;
+    std::uint64_t columns = 0;
+    std::uint64_t rows = 0;
+    if (!take_count(bytes, layer_count) || !take_count(bytes, columns) || !take_count(bytes, rows) ||
+        layer_count != map.layers_.size() || columns != map.columns_ || rows != map.rows_) {
+        return std::nullopt;
+    }
+    map.rasters_.resize(map.layers_.size());
+    for (std::size_t layer = 0; layer < map.rasters_.size(); ++layer) {
+        Raster& raster = map.rasters_[layer];
+        std::uint64_t nodes = 0;
+        if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
+            !take(bytes, columns * rows, raster.flyability) || !take(bytes, nodes, raster.nodes) ||
+            !map.is_sound(raster) || !map.agrees_with_effect(layer)) {
+            return std::nullopt;
+        }
+    }
+    return bytes.empty() ? std::optional(std::move(map)) : std::nullopt;
+}
+
+/// Whether look-ups stay within the raster and find numbers there.
+bool AeroMap::is_sound(const Raster& raster) const {
+    const auto is_cell = [&raster](const Cell& cell) {
+        const std::size_t nodes = std::size_t{cell.steps_x + 1U} * (cell.steps_z + 1U);
+        return is_step_count(cell.steps_x) && is_step_count(cell.steps_z) &&
+               cell.first_node + nodes <= raster.nodes.size();
+    };
+    const auto is_verdict = [](CellFlyability flyability) { return flyability <= CellFlyability::mixed; };
+    const double most = std::max(2.0, 2 * layers_.front().effect->settings().max_factor);
+    const auto is_factor = [most](float value) { return value >= 0 && value <= most; };  // NaN fails
+    return std::all_of(raster.cells.begin(), raster.cells.end(), is_cell) &&
+           std::all_of(raster.flyability.begin(), raster.flyability.end(), is_verdict) &&
+           std::all_of(raster.nodes.begin(), raster.nodes.end(), is_factor);
+}
+
+/// Evaluates K anew at the lower corners of some cells where surfaces are felt. Whoever improves the models or the
+/// integration without a new map_format_version is found out here.
+bool AeroMap::agrees_with_effect(std::size_t layer) const {
+    constexpr std::size_t samples = 64;
+    const auto& [cells, flyability, nodes] = rasters_[layer];
+    std::vector<std::size_t> felt;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        if (flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {
+            felt.push_back(cell);
+        }
+    }
+    const std::size_t stride = std::max<std::size_t>(1, felt.size() / samples);
+    for (std::size_t n = 0; n < felt.size(); n += stride) {
+        const double x_m = extent_.x_low_m + static_cast<double>(felt[n] % columns_) * cell_m_;
+        const double z_m = extent_.z_low_m + static_cast<double>(felt[n] / columns_) * cell_m_;
+        const double now = layers_[layer].effect->factor(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
+        if (nodes[cells[felt[n]].first_node] != static_cast<float>(now)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace downwash

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/base/export.hpp"
+
+namespace downwash {
+
+/// Raised when maps of the same key would hold other values, or hold them otherwise.
+inline constexpr int map_format_version = 1;
+
+/// A digest of everything that makes a map: scene, plane, extent, layers, models with their parameters and tables,
+/// rotors, grid, version. Names of obstacles and files do not count, the contents of meshes, octrees and tables do.
+[[nodiscard]] DOWNWASH_EXPORT std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
+                                                  const MapExtent& extent);
+
+/// Aero maps in a folder, kept from one run to the next. At most 32 files and 1 GB: what was not used for longest
+/// goes first. Nothing here throws: a file that is damaged, foreign or of another version is not found, a folder that
+/// cannot be written keeps nothing. Programs may share a folder.
+class DOWNWASH_EXPORT MapCache {
+ public:
+    /// @param folder made when a map is to be kept
+    explicit MapCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// The map of these layers, to the last bit as it was built; nullptr when it is not there.
+    [[nodiscard]] std::shared_ptr<const AeroMap> find(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
+                                                      const MapExtent& extent) const noexcept;
+
+    /// Keeps a map. False when that is not possible.
+    bool keep(const AeroMap& map) const noexcept;
+
+ private:
+    std::filesystem::path folder_;
+};
+
+/// The map from the cache, or built and kept there. @param folder empty: no cache   @throws InputError as AeroMap
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const AeroMap> cached_map(
+    const std::filesystem::path& folder, const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
+    const MapExtent& extent, int threads = 1, const std::function<void(double)>& on_progress = {});
+
+}  // namespace downwash

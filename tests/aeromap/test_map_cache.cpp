@@ -1,0 +1,315 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "../support/scratch_folder.hpp"
+#include "downwash/aeromap/effect_table.hpp"
+#include "downwash/aeromap/map_cache.hpp"
+#include "downwash/base/files.hpp"
+#include "grids.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+using test::ScratchFolder;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything that makes a map, to be changed one by one.
+struct Making {
+    std::vector<Obstacle> obstacles = test::bridge();
+    AeroSettings settings;
+    double radius_m = 0.15;
+    RotorNeighbours neighbours;
+    PlaneOfMotion plane;
+    MapExtent extent{-3, 1, 0.4, 4};
+    std::vector<double> laterals_m{-0.2, 0.2};
+
+    Making() { settings.grid_m = 0.1; }
+
+    [[nodiscard]] std::vector<MapLayer> layers() const {
+        const auto effect = std::make_shared<const DirectEffect>(scene_of(obstacles), settings, radius_m, neighbours);
+        std::vector<MapLayer> layers;
+        for (const double lateral_m : laterals_m) {
+            layers.push_back({effect, lateral_m});
+        }
+        return layers;
+    }
+    [[nodiscard]] AeroMap build() const { return {layers(), plane, extent}; }
+    [[nodiscard]] std::string key() const { return map_key(layers(), plane, extent); }
+    [[nodiscard]] std::shared_ptr<const AeroMap> find(const MapCache& cache) const {
+        return cache.find(layers(), plane, extent);
+    }
+};
+
+bool same_bits(double a, double b) {
+    return std::memcmp(&a, &b, sizeof(double)) == 0;
+}
+
+/// Whether two maps answer alike everywhere, beyond their extent too.
+bool answers_alike(const AeroMap& a, const AeroMap& b) {
+    test::Random random(8);
+    const MapExtent& extent = a.extent();
+    for (int i = 0; i < 20000; ++i) {
+        const double x = random.uniform(extent.x_low_m - 0.2, extent.x_high_m + 0.2);
+        const double z = random.uniform(extent.z_low_m - 0.2, extent.z_high_m + 0.2);
+        const std::size_t layer = i % 2 == 0 ? 0 : a.layers().size() - 1;
+        if (!same_bits(a.factor(layer, x, z), b.factor(layer, x, z)) ||
+            a.is_flyable(layer, x, z) != b.is_flyable(layer, x, z)) {
+            return false;
+        }
+    }
+    return a.to_bytes() == b.to_bytes();
+}
+
+fs::path only_file_in(const fs::path& folder) {
+    REQUIRE(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
+    return fs::directory_iterator(folder)->path();
+}
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TriangleMesh tetrahedron(double size_m) {
+    return {{{0, 0, 0}, {size_m, 0, 0}, {0, size_m, 0}, {0, 0, size_m}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+}  // namespace
+
+TEST_CASE("a map comes back from the cache to the last bit") {
+    const ScratchFolder folder;
+    const MapCache cache(folder / "made/when/needed");
+    const Making making;
+    CHECK(making.find(cache) == nullptr);
+    const AeroMap built = making.build();
+    REQUIRE(cache.keep(built));
+    const auto found = making.find(cache);
+    REQUIRE(found);
+    CHECK(answers_alike(built, *found));
+    CHECK(found->memory_bytes() == built.memory_bytes());
+}
+
+TEST_CASE("a map is built once and found from then on") {
+    const ScratchFolder folder;
+    const Making making;
+    int reports = 0;
+    const auto get = [&](const fs::path& place) {
+        reports = 0;
+        return cached_map(place, making.layers(), making.plane, making.extent, 1, [&](double) { ++reports; });
+    };
+    const auto first = get(folder / "maps");
+    CHECK(reports > 0);
+    const auto second = get(folder / "maps");
+    CHECK(reports == 0);
+    CHECK(answers_alike(*first, *second));
+    // No folder, no cache; one that cannot be made is none either.
+    CHECK(answers_alike(*first, *get({})));
+    CHECK(reports > 0);
+    std::ofstream(folder / "file") << "a file";
+    CHECK(answers_alike(*first, *get(folder / "file")));
+    CHECK(answers_alike(*first, *get(folder / "file/below")));
+    CHECK(reports > 0);
+}
+
+TEST_CASE("whatever makes a map is part of its key") {
+    using Change = void (*)(Making&);
+    const std::vector<std::pair<const char*, Change>> changes{
+        {"center", [](Making& m) { m.obstacles[0].center_m[1] += 1e-12; }},
+        {"attitude", [](Making& m) { m.obstacles[0].rpy_rad[2] = 1e-9; }},
+        {"size",
+         [](Making& m) {
+             m.obstacles[0].shape = Box{{1, 1, 1}};
+         }},
+        {"kind", [](Making& m) { m.obstacles[0].shape = Sphere{1}; }},
+        {"one obstacle less", [](Making& m) { m.obstacles.pop_back(); }},
+        {"order", [](Making& m) { std::swap(m.obstacles[0], m.obstacles[1]); }},
+        {"off", [](Making& m) { m.settings.enabled = false; }},
+        {"ground", [](Making& m) { m.settings.ground = EffectModel::hayden; }},
+        {"ceiling", [](Making& m) { m.settings.ceiling = EffectModel::none; }},
+        {"parameter", [](Making& m) { m.settings.ceiling.parameters[0] += 1e-9; }},
+        {"cap", [](Making& m) { m.settings.max_factor = 1.9; }},
+        {"distance", [](Making& m) { m.settings.min_distance_radii = 0.31; }},
+        {"grid", [](Making& m) { m.settings.grid_m = 0.09; }},
+        {"radius", [](Making& m) { m.radius_m = 0.151; }},
+        {"neighbours", [](Making& m) { m.neighbours = square_quadrotor(2.5); }},
+        {"heading",
+         [](Making& m) {
+             m.plane = PlaneOfMotion({0, 0, 0}, 0.1);
+         }},
+        {"origin",
+         [](Making& m) {
+             m.plane = PlaneOfMotion({0, 0.1, 0}, 0);
+         }},
+        {"x", [](Making& m) { m.extent.x_high_m = 1.1; }},
+        {"z", [](Making& m) { m.extent.z_low_m = 0.3; }},
+        {"lateral", [](Making& m) { m.laterals_m[1] = 0.21; }},
+        {"one layer less", [](Making& m) { m.laterals_m.pop_back(); }},
+        {"table",
+         [](Making& m) {
+             m.settings.ground.model = EffectModel::table;
+             m.settings.ground.table = std::make_shared<const EffectTable>(
+                 std::vector<double>{0.5, 1}, std::vector<double>{}, std::vector<double>{1.2, 1.1});
+         }},
+        {"table value",
+         [](Making& m) {
+             m.settings.ground.model = EffectModel::table;
+             m.settings.ground.table = std::make_shared<const EffectTable>(
+                 std::vector<double>{0.5, 1}, std::vector<double>{}, std::vector<double>{1.2, 1.11});
+         }},
+        {"given map", [](Making& m) { m.settings.map = std::make_shared<const FactorGrid>(test::two_by_two()); }},
+        {"given value",
+         [](Making& m) {
+             FactorGridParts parts = test::two_by_two();
+             parts.fields[0].values[3] = 23;
+             m.settings.map = std::make_shared<const FactorGrid>(parts);
+         }},
+        {"given place",
+         [](Making& m) {
+             FactorGridParts parts = test::two_by_two();
+             parts.x.high_m = 1.5;
+             m.settings.map = std::make_shared<const FactorGrid>(parts);
+         }},
+        {"mesh",
+         [](Making& m) {
+             m.obstacles[0].shape = Mesh{"", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
+         }},
+        {"mesh scale",
+         [](Making& m) {
+             m.obstacles[0].shape = Mesh{"", 2, std::make_shared<const TriangleMesh>(tetrahedron(1))};
+         }},
+        {"mesh vertices",
+         [](Making& m) {
+             m.obstacles[0].shape = Mesh{"", 1, std::make_shared<const TriangleMesh>(tetrahedron(1.1))};
+         }},
+    };
+    std::map<std::string, std::string> names{{Making().key(), "unchanged"}};
+    for (const auto& [name, change] : changes) {
+        Making making;
+        change(making);
+        const auto [known, is_new] = names.emplace(making.key(), name);
+        INFO(name << " has the key of " << known->second);
+        CHECK(is_new);
+    }
+}
+
+TEST_CASE("names of obstacles and files are no part of the key") {
+    Making one;
+    one.obstacles[0].shape = Mesh{"a.stl", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
+    Making other;
+    other.obstacles[0].shape = Mesh{"b.stl", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
+    other.obstacles[1].name = "renamed";
+    CHECK(one.key() == other.key());
+    CHECK(one.key() != Making().key());
+}
+
+TEST_CASE("a damaged, cut, foreign or misnamed file of the cache is not trusted") {
+    const ScratchFolder folder;
+    const MapCache cache(folder.path());
+    Making making;
+    making.extent = {-3, -2, 0.4, 1.2};
+    const AeroMap built = making.build();
+    REQUIRE(cache.keep(built));
+    const fs::path file = only_file_in(folder.path());
+    const std::string good = read_file(file, 100'000'000);
+    test::Random random(2);
+    for (int i = 0; i < 300; ++i) {
+        std::string damaged = good;
+        const int at = i < 150 ? i : random.integer(0, static_cast<int>(good.size()) - 1);  // every byte of the head
+        char& byte = damaged[static_cast<std::size_t>(at)];
+        byte = static_cast<char>(byte ^ (1 << random.integer(0, 7)));
+        write_file(file, damaged);
+        INFO("byte " << at);
+        REQUIRE(making.find(cache) == nullptr);
+    }
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{10}, std::size_t{100}, good.size() / 2, good.size() - 1}) {
+        write_file(file, good.substr(0, size));
+        CHECK(making.find(cache) == nullptr);
+    }
+    write_file(file, good + "x");
+    CHECK(making.find(cache) == nullptr);
+    fs::remove(file);
+    fs::create_directory(file);
+    CHECK(making.find(cache) == nullptr);
+    fs::remove(file);
+
+    // The file of another map under this one's name.
+    Making other = making;
+    other.settings.max_factor = 1.5;
+    REQUIRE(cache.keep(other.build()));
+    fs::rename(only_file_in(folder.path()), file);
+    CHECK(making.find(cache) == nullptr);
+
+    // It is built and kept anew.
+    write_file(file, good.substr(0, good.size() / 2));
+    CHECK(answers_alike(*cached_map(folder.path(), making.layers(), making.plane, making.extent), built));
+    CHECK(making.find(cache) != nullptr);
+}
+
+TEST_CASE("bytes that would lead a look-up astray are no map") {
+    Making making;
+    making.extent = {-3, -2, 0.4, 1.2};
+    const AeroMap built = making.build();
+    const std::string good = built.to_bytes();
+    const auto is_map = [&](const std::string& bytes) {
+        return AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value();
+    };
+    REQUIRE(is_map(good));
+    CHECK_FALSE(is_map(good + '\0'));
+    // The first cell stands behind four counts: its first node, then its steps.
+    constexpr std::size_t cell = 4 * sizeof(std::uint64_t);
+    for (const std::size_t byte : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{24}, std::size_t{31},
+                                   cell + 3, cell + 4, cell + 5, cell + 6}) {
+        std::string bad = good;
+        bad[byte] = '\x7f';
+        INFO("byte " << byte);
+        CHECK_FALSE(is_map(bad));
+    }
+    std::string no_number = good;
+    no_number.replace(no_number.size() - 4, 4, "\xff\xff\xff\xff");
+    CHECK_FALSE(is_map(no_number));
+}
+
+TEST_CASE("values that the effects no longer give are no map") {
+    Making making;
+    making.extent = {-3, -2, 0.4, 1.2};
+    const std::string bytes = making.build().to_bytes();
+    making.settings.ground = EffectModel::he;  // as if the code of the model had changed
+    CHECK_FALSE(AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value());
+}
+
+TEST_CASE("a cache holds 32 maps, the last used ones") {
+    const ScratchFolder folder;
+    const MapCache cache(folder.path());
+    Making making;
+    making.obstacles.clear();
+    making.extent = {0, 0.5, 0, 0.5};
+    const auto keep = [&](int number) {
+        making.extent.x_high_m = 0.5 + 0.001 * number;
+        REQUIRE(cache.keep(making.build()));
+        for (const auto& entry : fs::directory_iterator(folder.path())) {  // each an hour older than the next
+            fs::last_write_time(entry, entry.last_write_time() - std::chrono::hours(1));
+        }
+    };
+    for (int number = 0; number < 32; ++number) {
+        keep(number);
+    }
+    CHECK(files_in(folder.path()) == 32);
+    making.extent.x_high_m = 0.5;
+    REQUIRE(making.find(cache));  // the oldest one is used again
+    std::ofstream(folder / "notes.txt") << "not ours";
+    std::ofstream(folder / "abc.aeromap.1-1.part") << "unfinished";
+    fs::last_write_time(folder / "abc.aeromap.1-1.part", fs::file_time_type::clock::now() - std::chrono::hours(2));
+    keep(32);
+    CHECK(files_in(folder.path()) == 33);
+    CHECK(fs::exists(folder / "notes.txt"));
+    making.extent.x_high_m = 0.5;
+    CHECK(making.find(cache));
+    making.extent.x_high_m = 0.501;
+    CHECK_FALSE(making.find(cache));
+}
