@@ -117,6 +117,22 @@ TEST_CASE("Solving the effective problem again gives the same bytes") {
     }
 }
 
+TEST_CASE("The effective problem finds the meshes and scans of its problem again") {
+    const ScratchFolder folder;
+    const auto solve = [&folder](const std::string& problem, const std::string& out) {
+        const Result result =
+            run(folder, {"solve", problem, "--variant", "mp-arm", "--max-iterations", "100", "--out", out});
+        REQUIRE(result.code != 2);
+        return files_in(folder.path() / "run" / out);
+    };
+    const auto one = solve(problem_file("girder_mesh"), "first");
+    const auto two = solve("first/effective.yaml", "deeper/down/second");
+    CHECK(one.at("trajectory.csv") == two.at("trajectory.csv"));
+    CHECK(repeatable(nlohmann::json::parse(one.at("solution.json"))) ==
+          repeatable(nlohmann::json::parse(two.at("solution.json"))));
+    CHECK(one.at("effective.yaml") != two.at("effective.yaml"));  // its paths are two folders longer
+}
+
 TEST_CASE("Without a solution within the limits the exit code is 1 and nobody says solved") {
     const ScratchFolder folder;
     const Result result = run(folder, {"solve", problem_file("bridge_inspection"), "--max-iterations", "1", "--variant",
