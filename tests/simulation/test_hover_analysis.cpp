@@ -193,7 +193,10 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
     int found = 0;
     for (int kind = 0; kind < 3; ++kind) {
         Problem problem = cluttered_problem();
-        problem.robot = kind == 0 ? test::test_robot() : robot_with_memory();
+        if (kind > 0) {
+            problem.robot = robot_with_memory();
+            problem.aero.ground = EffectModel::multirotor_body;
+        }
         if (kind == 2) {  // without integrators, and with limits that are soon reached
             problem.robot.controller.position_ki = 0;
             problem.robot.controller.arm_integral_limit_rad_s2 = 0.1;
@@ -307,6 +310,7 @@ TEST_CASE("flights grow where hover is called unstable and decay where it is cal
         Problem problem = cluttered_problem();
         if (has_memory) {
             problem.robot = robot_with_memory();
+            problem.aero.ground = EffectModel::multirotor_body;
         }
         const auto model = make_flight_model(problem);
         for (int tried = 0; tried < 400; ++tried) {

@@ -89,6 +89,27 @@ TEST_CASE("wide ground carries like a spring and rights the vehicle") {
     }
 }
 
+TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula says") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles = {test::box("ground", {30, 20, 1}, {0, 0, -0.5})};
+    problem.aero.ground = EffectModel::multirotor_body;
+    const auto model = make_flight_model(problem);
+    const double d_m = 2 * reach_m;  // square; the centre between the rotors is d / sqrt(2) from each
+    const double b_m = d_m / std::sqrt(2.0);
+    for (const double z_m : {0.3, 0.5, 0.8}) {
+        const auto image = [z_m](double distance_m) {
+            return z_m / std::pow(distance_m * distance_m + 4 * z_m * z_m, 1.5);
+        };
+        const double rotors =
+            radius_m * radius_m * (1 / (16 * z_m * z_m) + image(d_m) + 0.5 * image(std::sqrt(2.0) * d_m));
+        const double body = 2 * radius_m * radius_m * 2 * image(b_m);  // thesis (2.17) with K_b = 2
+        const VehicleEffect effect = vehicle_effect(*model, {0.4, z_m - hub_height_m, 0, 0});
+        CHECK(effect.force_factor == Approx(1 / (1 - rotors - body)).epsilon(1e-6));
+        CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
+        CHECK(effect.force_slope_n_m < 0);
+    }
+}
+
 TEST_CASE("a wide ceiling pulls away from the height that is held and tips the vehicle over") {
     const auto model = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
     for (const double gap_m : {0.1, 0.2, 0.5}) {
