@@ -53,7 +53,7 @@ struct AeroSettings {
     bool enabled = true;                                   ///< false: K = 1 everywhere
     SurfaceEffect ground{EffectModel::cheeseman_bennett};  ///< surfaces below a rotor
     SurfaceEffect ceiling{EffectModel::sanchez_cuevas};    ///< surfaces above a rotor
-    std::string map_file;                                  ///< where `map` comes from
+    std::optional<std::string> map_file;                   ///< where `map` comes from
     std::shared_ptr<const FactorGrid> map;                 ///< K as given, in place of both models; empty: none
     double max_factor = 2.0;                               ///< cap of each side and of their superposition, >= 1
     double min_distance_radii = 0.3;                       ///< flyable area: least distance of the disc, in radii

@@ -6,6 +6,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/planner/goal_reach.hpp"
 #include "downwash/planner/problem.hpp"
@@ -70,6 +71,51 @@ std::vector<Fault> unplaceable_obstacles(const Problem& p) {
         }
     }
     return faults;
+}
+
+std::vector<Fault> incomplete_effects(const Problem& p) {
+    std::vector<Fault> faults;
+    if (p.aero.enabled && !p.aero.map) {
+        for (const auto& [effect, key] :
+             {std::pair(&p.aero.ground, "aero.ground"), {&p.aero.ceiling, "aero.ceiling"}}) {
+            if (effect->model == EffectModel::table && !effect->table) {
+                faults.push_back({std::string(key) + ".file", "is missing: expected the file of the table"});
+            }
+        }
+        if (p.aero.ceiling.model == EffectModel::multirotor_body) {
+            faults.push_back({"aero.ceiling.model",
+                              "is multirotor-body: expected a model without a fountain, which "
+                              "rises from the ground only"});
+        }
+    }
+    return faults;
+}
+
+/// A map of the user's has to hold wherever a rotor can get, and has to be of such a rotor.
+std::vector<Fault> unfit_map(const Problem& p) {
+    if (!p.aero.enabled || !p.aero.map) {
+        return {};
+    }
+    const MapExtent reach = rotor_extent(p.robot.rotors, p.bounds);
+    for (const Vector3& rotor_m : p.robot.rotors.positions_m) {
+        for (const double x : {reach.x_low_m, reach.x_high_m}) {
+            for (const double z : {reach.z_low_m, reach.z_high_m}) {
+                const Vector3 hub = p.plane.to_world(x, rotor_m[1], z);
+                if (!p.aero.map->contains(hub)) {
+                    return {{"aero.map", "does not reach the world point (" + rounded(hub[0]) + ", " + rounded(hub[1]) +
+                                             ", " + rounded(hub[2]) +
+                                             "), where a rotor can get at the edge of environment.bounds: expected a "
+                                             "grid that covers " +
+                                             rounded(reach.x_low_m) + " to " + rounded(reach.x_high_m) +
+                                             " m along the "
+                                             "plane and " +
+                                             rounded(reach.z_low_m) + " to " + rounded(reach.z_high_m) +
+                                             " m in z, at every lateral offset of a rotor"}};
+                }
+            }
+        }
+    }
+    return {};
 }
 
 std::vector<Fault> too_large_map(const Problem& p) {
@@ -244,11 +290,13 @@ std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
              "nearer to it than planner.safety_margin_m"}};
 }
 
-const std::array<Check<Problem>, 15> checks{{
+const std::array<Check<Problem>, 17> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
     {{"environment.obstacles"}, unplaceable_obstacles},
+    {{"aero"}, incomplete_effects},
+    {{"environment.bounds", "environment.plane", "aero.map", "robot.rotors"}, unfit_map},
     {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
     {{"environment.bounds", "start"}, start_outside_bounds},
     {{"start", "motion"}, start_too_fast},

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "downwash/aeromap/effect_models.hpp"
 #include "downwash/base/parameter_factories.hpp"
+#include "downwash/planner/aero_parameters.hpp"
 #include "downwash/planner/obstacle_parameters.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve.hpp"
@@ -84,68 +84,6 @@ void add_environment(Rows& rows) {
                        .at_least(-farthest_m)
                        .at_most(farthest_m));
     add_obstacle_rows(rows);
-}
-
-/// One side's surface effect; `effect` names it in a Problem.
-template <class Effect>
-void add_surface(Rows& rows, const std::string& path, const std::string& description, Effect effect) {
-    std::vector<std::string_view> names;
-    for (const EffectModelInfo& model : effect_models()) {
-        names.push_back(model.name);
-    }
-    auto surface = group(path, description).or_none();
-    surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
-        if (count == 0) {
-            effect(p) = EffectModel::none;
-        }
-    };
-    rows.push_back(std::move(surface));
-    auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
-    model.names = names;
-    model.get = [effect](const Problem& p, std::size_t) { return Value(std::string(info(effect(p).model).name)); };
-    model.set = [effect](Problem& p, std::size_t, const Value& value) {
-        if (const EffectModelInfo* named = find_effect_model(std::get<std::string>(value))) {
-            effect(p) = named->model;
-        }
-    };
-    rows.push_back(std::move(model));
-    for (const EffectModelInfo& known : effect_models()) {
-        for (std::size_t i = 0; i < known.parameters.size(); ++i) {
-            const ModelParameter& parameter = known.parameters[i];
-            auto row = number(
-                path + "." + std::string(parameter.name), parameter.description,
-                [ effect, i ](auto& p) -> auto& { return effect(p).parameters[i]; });
-            row.range = {parameter.low, parameter.high, parameter.is_open, false};
-            rows.push_back(std::move(row).only(
-                "with the model " + std::string(known.name),
-                [effect, which = known.model](const Problem& p, std::size_t) { return effect(p).model == which; }));
-        }
-    }
-}
-
-void add_aero(Rows& rows) {
-    auto aero = group("aero", "how surfaces act on the rotors").or_none();
-    aero.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
-    aero.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
-    rows.push_back(std::move(aero));
-    add_surface(
-        rows, "aero.ground", "surfaces below a rotor", [](auto& p) -> auto& { return p.aero.ground; });
-    add_surface(
-        rows, "aero.ceiling", "surfaces above a rotor", [](auto& p) -> auto& { return p.aero.ceiling; });
-    rows.push_back(number(
-                       "aero.max_factor", "most that a surface may multiply thrust by",
-                       [](auto& p) -> auto& { return p.aero.max_factor; })
-                       .at_least(1)
-                       .at_most(10));
-    rows.push_back(number(
-                       "aero.min_distance_radii", "flyable area: least distance of a rotor's disc from obstacles",
-                       [](auto& p) -> auto& { return p.aero.min_distance_radii; })
-                       .at_least(0)
-                       .at_most(100));
-    rows.push_back(number(
-                       "aero.grid_m", "cell size of the map", [](auto& p) -> auto& { return p.aero.grid_m; })
-                       .at_least(0.001)
-                       .at_most(10));
 }
 
 void add_start(Rows& rows) {
@@ -299,7 +237,7 @@ Rows all_rows() {
         "description", "what the problem is about", [](auto& p) -> auto& { return p.description; }));
     add_robot(rows);
     add_environment(rows);
-    add_aero(rows);
+    add_aero_rows(rows);
     add_start(rows);
     add_goal(rows);
     add_motion(rows);

@@ -76,7 +76,7 @@ class Writer {
     }
 
     void write_content(const Row& row, std::size_t index, const std::string& indent) {
-        if (row.kind == ParameterKind::file) {
+        if (row.kind == ParameterKind::file && !std::holds_alternative<std::monostate>(row.get(problem_, index))) {
             out_ += " " + quoted(file_text_(row, index)) + "\n";
         } else if (row.get) {
             out_ += " " + value_text(row, row.get(problem_, index)) + "\n";

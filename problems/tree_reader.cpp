@@ -232,7 +232,7 @@ void TreeReader::read_single(const Parameter<Problem>& parameter, const YamlNode
                              std::size_t index) {
     try {
         Value value = read_value(parameter, node);
-        if (parameter.kind == ParameterKind::file) {
+        if (parameter.kind == ParameterKind::file && std::holds_alternative<std::string>(value)) {
             value = path_from_here(std::get<std::string>(value)).string();
         }
         parameter.set(problem_, index, value);
