@@ -36,8 +36,10 @@ class DOWNWASH_EXPORT DirectEffect {
     };
 
     /// Factors at the world position of a rotor hub; 1 for a position that is not finite. A point of the disc inside an
-    /// obstacle counts as touching it. A given map has no one-sided factors (NaN) and is 1 where it does not reach. Absolute quadrature error in the flyable area: below 1e-11 under level faces
-    /// with straight edges, below 2e-3 for any.
+    /// obstacle counts as touching it. A given map has no one-sided factors (NaN) and is 1 where it does not reach.
+    /// Inside a mesh only its triangles count, as sheets. Absolute quadrature error in the flyable area: below 1e-11
+    /// under level faces with straight edges, below 2e-3 for any, below 5e-3 with more than 24 parts
+    /// (Scene::part_count) over or under the disc.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
     /// K, the factor on the commanded free-air thrust.

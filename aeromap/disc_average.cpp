@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <vector>
 
+#include "downwash/aeromap/chord_sum.hpp"
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
 #include "downwash/base/lane_math.hpp"
@@ -19,11 +21,14 @@ constexpr double pi = 3.14159265358979323846;
 /// Where obstacles change k by less, a relative error of one percent does no harm.
 constexpr double far_stake = 0.01;
 
-/// An obstacle that may be the first surface for some point of the disc.
+/// With more parts over the disc chord_sum takes their place.
+constexpr std::size_t most_with_crossings = 24;
+
+/// A part of an obstacle that may be the first surface for some point of the disc.
 struct Candidate {
     const Footprint* footprint;
     double gap_m;   ///< nowhere smaller
-    double factor;  ///< at that gap: everywhere when the obstacle is level
+    double factor;  ///< at that gap: everywhere when the part is level
 };
 
 /// A candidate's shadow on one chord.
@@ -126,7 +131,7 @@ class DiscQuadrature {
         stretches_.clear();
         for (const Candidate& candidate : candidates_) {
             const Interval shadow =
-                query_.scene.shadow_on_line(candidate.footprint->obstacle, x, y, frame_.du_x, frame_.du_y);
+                query_.scene.shadow_on_line(candidate.footprint->part, x, y, frame_.du_x, frame_.du_y);
             const double low = std::max(shadow.low, -half);
             const double high = std::min(shadow.high, half);
             if (low < high) {
@@ -227,7 +232,7 @@ class DiscQuadrature {
         if (candidate.footprint->is_level) {
             return candidate.gap_m;
         }
-        const Interval extent = query_.scene.vertical_extent(candidate.footprint->obstacle, x, y);
+        const Interval extent = query_.scene.vertical_extent(candidate.footprint->part, x, y);
         return extent.empty() ? infinity : query_.gap(extent.low, extent.high);
     }
 
@@ -265,53 +270,86 @@ class DiscQuadrature {
     std::pmr::vector<double> cuts_;
 };
 
-/// Least gap of any obstacle over the disc's column, and the gap of the nearest level obstacle that covers the disc.
+/// Least gap of any part over the disc, and the gap of the nearest level part that covers the disc.
 struct Nearest {
     double cover_m = infinity;
     double other_m = infinity;
 };
 
-double least_gap(const DiscQuery& query, const Footprint& footprint) {
-    return query.gap(footprint.bounds.low_m[2], footprint.bounds.high_m[2]);
+double least_gap(const DiscQuery& query, const Scene::Bounds& bounds) {
+    return query.gap(bounds.low_m[2], bounds.high_m[2]);
 }
 
-Nearest nearest_of(const DiscQuery& query, std::span<const Footprint> footprints) {
+Nearest nearest_of(const DiscQuery& query, std::span<const Footprint* const> footprints) {
     Nearest nearest;
-    for (const Footprint& footprint : footprints) {
-        if (!footprint.meets_column(query.hub_m[0], query.hub_m[1], query.radius_m)) {
-            continue;
-        }
-        const double gap = least_gap(query, footprint);
-        const bool covers = footprint.is_level && footprint.covers_disc(query.hub_m[0], query.hub_m[1], query.radius_m);
+    for (const Footprint* footprint : footprints) {
+        const double gap = least_gap(query, footprint->bounds);
+        const bool covers =
+            footprint->is_level && footprint->covers_disc(query.hub_m[0], query.hub_m[1], query.radius_m);
         double& least = covers ? nearest.cover_m : nearest.other_m;
         least = std::min(least, gap);
     }
     return nearest;
 }
 
-double by_quadrature(const DiscQuery& query, std::span<const Footprint> footprints, double cover_m) {
-    // Room for about 20 obstacles over one disc; more of them make the pool fetch memory.
-    std::array<std::byte, 4096> room;
-    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-    std::pmr::vector<Candidate> candidates(&memory);
-    candidates.reserve(16);
-    for (const Footprint& footprint : footprints) {
-        const double gap = least_gap(query, footprint);
-        if (gap < cover_m && footprint.meets_column(query.hub_m[0], query.hub_m[1], query.radius_m)) {
-            candidates.push_back({&footprint, gap, query.factor(gap)});
-        }
-    }
-    return DiscQuadrature(query, cover_m, candidates, &memory).average();
+/// Triangles and boxes of octrees over or under the disc; none that is seen from its edge only.
+void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
+    const auto& [x, y, z] = query.hub_m;
+    const double r = query.radius_m;
+    const bool is_below = query.side == Side::below;
+    query.scene.add_parts_meeting({{x - r, y - r, is_below ? -infinity : z}, {x + r, y + r, is_below ? z : infinity}},
+                                  parts);
+    parts.erase(
+        std::remove_if(parts.begin(), parts.end(), [&](std::size_t part) { return !query.scene.has_shadow(part); }),
+        parts.end());
 }
 
 }  // namespace
 
-double disc_average(const DiscQuery& query, std::span<const Footprint> footprints) {
+double disc_average(const DiscQuery& query, std::span<const Footprint> primitives) {
+    // Room for about 20 parts over one disc; more of them make the pool fetch memory.
+    std::array<std::byte, 6144> room;
+    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
+    std::pmr::vector<std::size_t> others(&memory);
+    add_others(query, others);
+
+    std::vector<Footprint> made;  // of the others, when they are few
+    std::pmr::vector<const Footprint*> footprints(&memory);
+    footprints.reserve(16);
+    const auto add_over_disc = [&](const Footprint& footprint) {
+        if (footprint.meets_column(query.hub_m[0], query.hub_m[1], query.radius_m)) {
+            footprints.push_back(&footprint);
+        }
+    };
+    std::for_each(primitives.begin(), primitives.end(), add_over_disc);
+    const bool are_few = footprints.size() + others.size() <= most_with_crossings;
+    if (are_few && !others.empty()) {
+        made.reserve(others.size());
+        for (const std::size_t part : others) {
+            made.emplace_back(query.scene, part);
+        }
+        std::for_each(made.begin(), made.end(), add_over_disc);
+    }
+
     const Nearest nearest = nearest_of(query, footprints);
+    if (!are_few) {
+        for (const Footprint* footprint : footprints) {
+            others.push_back(footprint->part);
+        }
+        return chord_sum(query, nearest.cover_m, others, &memory);
+    }
     if (nearest.other_m >= nearest.cover_m) {
         return query.factor(nearest.cover_m);
     }
-    return by_quadrature(query, footprints, nearest.cover_m);
+    std::pmr::vector<Candidate> candidates(&memory);
+    candidates.reserve(footprints.size());
+    for (const Footprint* footprint : footprints) {
+        const double gap = least_gap(query, footprint->bounds);
+        if (gap < nearest.cover_m) {
+            candidates.push_back({footprint, gap, query.factor(gap)});
+        }
+    }
+    return DiscQuadrature(query, nearest.cover_m, candidates, &memory).average();
 }
 
 }  // namespace downwash

@@ -6,15 +6,19 @@
 namespace downwash {
 
 Footprint::Footprint(const Scene& scene, std::size_t which)
-    : obstacle(which),
-      bounds(scene.bounds(which)),
+    : part(which),
+      bounds(scene.part_bounds(which)),
       is_level(scene.is_level(which)),
       outline(shadow_outline(scene, which)) {
     if (!is_level) {
         return;
     }
-    const double center_x = 0.5 * (bounds.low_m[0] + bounds.high_m[0]);
-    const double center_y = 0.5 * (bounds.low_m[1] + bounds.high_m[1]);
+    double center_x = 0;
+    double center_y = 0;
+    for (const OutlineSegment& edge : outline.segments) {
+        center_x += 0.5 * (edge.ax + edge.bx) / static_cast<double>(outline.segments.size());
+        center_y += 0.5 * (edge.ay + edge.by) / static_cast<double>(outline.segments.size());
+    }
     for (const OutlineSegment& edge : outline.segments) {
         const double dx = edge.bx - edge.ax;
         const double dy = edge.by - edge.ay;

@@ -10,17 +10,17 @@
 
 namespace downwash {
 
-/// One obstacle as rotors see it from above or below, prepared once per scene. World coordinates, metres.
+/// One part of an obstacle as rotors see it from above or below. World coordinates, metres.
 struct Footprint {
     Footprint(const Scene& scene, std::size_t which);
 
-    /// Whether the obstacle's bounding box reaches into the vertical column through the level disc around (x, y).
+    /// Whether the part's bounding box reaches into the vertical column through the level disc around (x, y).
     [[nodiscard]] bool meets_column(double x, double y, double radius) const noexcept;
 
-    /// Whether the shadow holds the whole disc. Only asked of level obstacles, false for others.
+    /// Whether the shadow holds the whole disc. Only asked of level parts, false for others.
     [[nodiscard]] bool covers_disc(double x, double y, double radius) const noexcept;
 
-    std::size_t obstacle;
+    std::size_t part;
     Scene::Bounds bounds;
     bool is_level;  ///< see Scene::is_level
     ShadowOutline outline;
@@ -30,7 +30,7 @@ struct Footprint {
     struct HalfPlane {
         double nx, ny, reach;
     };
-    std::vector<HalfPlane> sides_;  ///< of a level box' shadow
+    std::vector<HalfPlane> sides_;  ///< of a level box' or triangle's shadow
     double disc_radius_ = 0;        ///< of an upright cylinder's shadow; 0 for others
 };
 

@@ -5,13 +5,11 @@
 #include <memory_resource>
 #include <vector>
 
+#include "downwash/aeromap/disc_query.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/shadow_outline.hpp"
 
 namespace downwash {
-
-/// The side of a rotor on which surfaces are looked for.
-enum class Side { below, above };
 
 /// Coordinates on a disc: u along its chords, v across them, from the hub, in metres. (du_x, du_y) is a unit vector.
 struct ChordFrame {

@@ -209,7 +209,7 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     const Scene::Solids& solids = impl_->solids;
     double least = infinity;
     impl_->any_piece(pose, [&](const Convex& piece, const Scene::Bounds& bounds) {
-        const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
+        const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
         solids.parts.tree.any(gap, least, [&](std::size_t part) {
             if (gap(solids.parts.bounds(part)) >= least) {
                 return false;

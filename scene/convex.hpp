@@ -3,7 +3,9 @@
 // Convex solids as sums of simple parts, and the distance between two of them. Private: not installed.
 // Triangles are solids of no thickness.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "downwash/scene/scene.hpp"
 
@@ -63,6 +65,16 @@ inline double gap_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
     widen(a.low_m[2] - b.high_m[2]);
     widen(b.low_m[2] - a.high_m[2]);
     return gap;
+}
+
+/// The distance of two bounding boxes [m], 0 when they meet: a better lower bound, at the price of a root.
+inline double box_distance_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
+    double squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double gap = std::max({0.0, a.low_m[k] - b.high_m[k], b.low_m[k] - a.high_m[k]});
+        squared += gap * gap;
+    }
+    return std::sqrt(squared);
 }
 
 }  // namespace downwash

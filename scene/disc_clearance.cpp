@@ -30,13 +30,13 @@ double touching_radius_m(const Convex& solid, const Vector3& p_m, double enough_
     constexpr double tolerance_m = 1e-9;
     constexpr int most_steps = 60;  // a handful but where the plane grazes a round solid
     double radius = 0;
-    double distance = distance_m(level_disc(p_m, 0), solid, infinity);
+    double distance = distance_m(level_disc(p_m, 0), solid, enough_m);
     double next = distance;
     for (int step = 0; step < most_steps && distance > tolerance_m && next < enough_m; ++step) {
         const double before = distance;
         const double grown = next - radius;
         radius = next;
-        distance = distance_m(level_disc(p_m, radius), solid, infinity);
+        distance = distance_m(level_disc(p_m, radius), solid, enough_m - radius);
         const double fall = before - distance;
         next = radius + (fall > 0 ? std::max(distance, distance * grown / fall) : distance);
     }
@@ -50,7 +50,7 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
     const Convex disc = level_disc(center_m, radius_m);
     const Scene::Bounds bounds = bounds_of(disc);
     double least = infinity;
-    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
+    const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
     solids.parts.tree.any(gap, least, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < least) {
             least = std::min(least, distance_m(disc, solids.parts.convex(part), least));

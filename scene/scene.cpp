@@ -220,6 +220,29 @@ std::size_t Scene::part_count() const noexcept {
     return solids_->parts.count();
 }
 
+std::size_t Scene::primitive_count() const noexcept {
+    return solids_->parts.primitives.size();
+}
+
+void Scene::add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const {
+    const Parts& all = solids_->parts;
+    if (all.count() == all.primitives.size()) {
+        return;
+    }
+    const auto gap = [&](const Bounds& other) { return gap_m(box, other); };
+    all.tree.any(gap, 0, [&](std::size_t part) {
+        if (part >= all.primitives.size() && gap(all.bounds(part)) <= 0) {
+            parts.push_back(part);
+        }
+        return false;
+    });
+}
+
+const std::array<Vector3, 3>* Scene::triangle(std::size_t part) const noexcept {
+    const std::size_t first = solids_->parts.first_triangle();
+    return part < first ? nullptr : &solids_->parts.triangles[part - first];
+}
+
 Scene::Bounds Scene::part_bounds(std::size_t part) const noexcept {
     return solids_->parts.bounds(part);
 }

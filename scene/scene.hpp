@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <memory_resource>
 #include <vector>
 
 #include "downwash/base/export.hpp"
@@ -41,8 +43,20 @@ class DOWNWASH_EXPORT Scene {
     /// order.
     [[nodiscard]] std::size_t part_count() const noexcept;
 
+    /// How many parts are primitives.
+    [[nodiscard]] std::size_t primitive_count() const noexcept;
+
+    /// Appends the parts other than primitives whose bounding boxes meet a box.
+    void add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const;
+
+    /// The corners of a part that is a triangle, counter-clockwise seen from outside; nullptr of others.
+    [[nodiscard]] const std::array<Vector3, 3>* triangle(std::size_t part) const noexcept;
+
     /// World-aligned bounding box of one part [m].
     [[nodiscard]] Bounds part_bounds(std::size_t part) const noexcept;
+
+    /// Whether a part is seen from above: upright triangles are not.
+    [[nodiscard]] bool has_shadow(std::size_t part) const noexcept;
 
     /// The stretch of the vertical line through world (x, y) that lies inside one part, as heights z [m]: a single
     /// height in a triangle. Upright triangles are not met.

@@ -173,6 +173,11 @@ Interval Scene::shadow_on_line(std::size_t part, double px_m, double py_m, doubl
         [&](const Triangle& triangle) { return downwash::shadow_on_line(triangle, px_m, py_m, dx, dy); });
 }
 
+bool Scene::has_shadow(std::size_t part) const noexcept {
+    const std::size_t first = solids_->parts.first_triangle();
+    return part < first || downwash::has_shadow(solids_->parts.triangles[part - first]);
+}
+
 bool Scene::is_level(std::size_t part) const noexcept {
     const Parts& parts = solids_->parts;
     return parts.visit(

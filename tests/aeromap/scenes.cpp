@@ -64,7 +64,7 @@ DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, 
             ++rays;
             double below = std::numeric_limits<double>::infinity();
             double above = below;
-            for (std::size_t o = 0; o < effect.scene().obstacles().size(); ++o) {
+            for (std::size_t o = 0; o < effect.scene().part_count(); ++o) {
                 const Interval extent = effect.scene().vertical_extent(o, hub_m[0] + u * radius, hub_m[1] + v * radius);
                 if (!extent.empty() && extent.low <= hub_m[2]) {
                     below = std::min(below, std::max(0.0, hub_m[2] - extent.high));

@@ -1,0 +1,309 @@
+#include "downwash/aeromap/chord_sum.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "downwash/aeromap/gauss_rule.hpp"
+#include "downwash/aeromap/outline_crossings.hpp"
+#include "downwash/base/lane_math.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = 3.14159265358979323846;
+
+/// Where parts change k by less, they are left out.
+constexpr double negligible_stake = 1e-4;
+/// Straight pieces that stand for the curved surface of one part along a chord.
+constexpr int curve_pieces = 16;
+
+/// A point of a surface seen from the disc: along and across the chords, and its gap, negative on the other side.
+struct Corner {
+    double u, v, gap;
+};
+
+struct LocalTriangle {
+    std::array<Corner, 3> corners;
+    double v_low, v_high;
+};
+
+/// A straight piece of a surface along a chord.
+struct Stretch {
+    double low, high;
+    double gap_low, gap_high;
+
+    [[nodiscard]] double gap_at(double u) const { return gap_low + (gap_high - gap_low) * ((u - low) / (high - low)); }
+};
+
+/// A part that is no triangle.
+struct Solid {
+    std::size_t part;
+    bool is_level;
+};
+
+/// Directions between the axes of the world, to which most edges run.
+constexpr int direction_count = 16;
+
+class ChordSum {
+ public:
+    ChordSum(const DiscQuery& query, double background_m, std::span<const std::size_t> parts,
+             std::pmr::memory_resource* memory)
+        : query_(query),
+          background_m_(background_m),
+          background_(query.factor(background_m)),
+          triangles_(memory),
+          solids_(memory),
+          stretches_(memory),
+          cuts_(memory),
+          open_(memory) {
+        double nearest_m = background_m;
+        for (const std::size_t part : parts) {
+            const Scene::Bounds bounds = query.scene.part_bounds(part);
+            nearest_m = std::min(nearest_m, query.gap(bounds.low_m[2], bounds.high_m[2]));
+        }
+        if (nearest_m < background_m) {
+            stake_ = query.curve.largest_difference(nearest_m / query.unit_m, background_m / query.unit_m);
+        }
+        if (stake_ > negligible_stake) {
+            frame_ = across_edges(parts);
+            add(parts);
+        }
+    }
+
+    [[nodiscard]] double average() {
+        if (!(stake_ > negligible_stake)) {
+            return background_;
+        }
+        const int count = stake_ < 0.01 ? 8 : stake_ < 0.1 ? 24 : 48;
+        const double r = query_.radius_m;
+        // With v = r sin t the integrand is flat at both ends, where the midpoint rule is at its best.
+        double sum = 0;
+        for (int i = 0; i < count; ++i) {
+            double sine = 0;
+            double cosine = 0;
+            lane::sin_cos(pi * ((i + 0.5) / count - 0.5), sine, cosine);
+            sum += chord(r * sine, r * cosine) * r * cosine;
+        }
+        return background_ + sum * (pi / count) / (pi * r * r);
+    }
+
+ private:
+    /// The chords' direction to which the fewest and shortest edges are parallel.
+    [[nodiscard]] ChordFrame across_edges(std::span<const std::size_t> parts) const {
+        std::array<ChordFrame, direction_count> frames{};
+        std::array<double, direction_count> parallel{};
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            double sine = 0;
+            double cosine = 0;
+            lane::sin_cos(pi * (static_cast<double>(i) + 0.5) / direction_count, sine, cosine);
+            frames[i] = {query_.hub_m[0], query_.hub_m[1], query_.radius_m, cosine, sine};
+        }
+        const auto add_edge = [&](double x, double y) {
+            const double square = x * x + y * y;
+            // No edge counts for more than the disc can see of it.
+            const double weight = std::min(std::sqrt(square), 2 * query_.radius_m);
+            for (std::size_t i = 0; i < frames.size(); ++i) {
+                const double along = x * frames[i].du_x + y * frames[i].du_y;
+                const double part = square > 0 ? along * along / square : 0;
+                parallel[i] += weight * part * part * part * part;
+            }
+        };
+        for (const std::size_t part : parts) {
+            if (const auto* t = query_.scene.triangle(part)) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const Vector3& a = (*t)[i];
+                    const Vector3& b = (*t)[(i + 1) % 3];
+                    add_edge(b[0] - a[0], b[1] - a[1]);
+                }
+            } else {
+                for (const OutlineSegment& edge : shadow_outline(query_.scene, part).segments) {
+                    add_edge(edge.bx - edge.ax, edge.by - edge.ay);
+                }
+            }
+        }
+        return frames[static_cast<std::size_t>(std::min_element(parallel.begin(), parallel.end()) - parallel.begin())];
+    }
+
+    void add(std::span<const std::size_t> parts) {
+        for (const std::size_t part : parts) {
+            const auto* corners = query_.scene.triangle(part);
+            if (corners == nullptr) {
+                solids_.push_back({part, query_.scene.is_level(part)});
+                continue;
+            }
+            LocalTriangle local{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto& [x, y, z] = (*corners)[i];
+                local.corners[i] = {frame_.u_of(x, y), frame_.v_of(x, y),
+                                    query_.side == Side::below ? query_.hub_m[2] - z : z - query_.hub_m[2]};
+            }
+            const auto& [a, b, c] = local.corners;
+            local.v_low = std::min({a.v, b.v, c.v});
+            local.v_high = std::max({a.v, b.v, c.v});
+            const double nearest = std::min({a.gap, b.gap, c.gap});
+            if (local.v_low < query_.radius_m && local.v_high > -query_.radius_m && nearest < background_m_) {
+                triangles_.push_back(local);
+            }
+        }
+    }
+
+    /// Integral of the excess over the background along one chord.
+    double chord(double v, double half) {
+        stretches_.clear();
+        for (const LocalTriangle& triangle : triangles_) {
+            if (triangle.v_low < v && v < triangle.v_high) {
+                add_stretch(triangle, v, half);
+            }
+        }
+        for (const Solid& solid : solids_) {
+            add_stretches(solid, v, half);
+        }
+        return swept();
+    }
+
+    void add_stretch(const LocalTriangle& triangle, double v, double half) {
+        std::array<Corner, 2> ends{};
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Corner& a = triangle.corners[i];
+            const Corner& b = triangle.corners[(i + 1) % 3];
+            if ((a.v < v) != (b.v < v) && count < 2) {
+                const double part = (v - a.v) / (b.v - a.v);
+                ends[count++] = {a.u + part * (b.u - a.u), v, a.gap + part * (b.gap - a.gap)};
+            }
+        }
+        if (count == 2) {
+            const bool is_forward = ends[0].u <= ends[1].u;
+            const Corner& low = ends[is_forward ? 0 : 1];
+            const Corner& high = ends[is_forward ? 1 : 0];
+            add_clipped({low.u, high.u, low.gap, high.gap}, half);
+        }
+    }
+
+    /// What of the stretch lies on this side of the rotor plane and over the disc.
+    void add_clipped(const Stretch& whole, double half) {
+        double low = std::max(whole.low, -half);
+        double high = std::min(whole.high, half);
+        if (!(low < high)) {
+            return;
+        }
+        if (whole.gap_low < 0 || whole.gap_high < 0) {
+            if (whole.gap_low < 0 && whole.gap_high < 0) {
+                return;
+            }
+            const double crossing =
+                whole.low + (whole.high - whole.low) * (whole.gap_low / (whole.gap_low - whole.gap_high));
+            (whole.gap_low < 0 ? low : high) = whole.gap_low < 0 ? std::max(low, crossing) : std::min(high, crossing);
+            if (!(low < high)) {
+                return;
+            }
+        }
+        const auto gap_at = [&](double u) { return std::max(0.0, whole.gap_at(u)); };
+        stretches_.push_back({low, high, gap_at(low), gap_at(high)});
+    }
+
+    void add_stretches(const Solid& solid, double v, double half) {
+        const double x = frame_.x_of(0, v);
+        const double y = frame_.y_of(0, v);
+        const Interval shadow = query_.scene.shadow_on_line(solid.part, x, y, frame_.du_x, frame_.du_y);
+        const double low = std::max(shadow.low, -half);
+        const double high = std::min(shadow.high, half);
+        if (!(low < high)) {
+            return;
+        }
+        const double middle = 0.5 * (low + high);
+        const auto gap_at = [&](double u) {
+            const Interval extent = query_.scene.vertical_extent(solid.part, frame_.x_of(u, v), frame_.y_of(u, v));
+            return extent.empty() ? infinity : query_.gap(extent.low, extent.high);
+        };
+        if (solid.is_level) {
+            const double gap = gap_at(middle);
+            if (gap < background_m_) {
+                stretches_.push_back({low, high, gap, gap});
+            }
+            return;
+        }
+        // Denser towards both ends, where round surfaces turn upright, and a little inside of them.
+        const double reach = 0.5 * (high - low) * (1 - 1e-9);
+        double from = middle - reach;
+        double gap_from = gap_at(from);
+        for (int i = 1; i <= curve_pieces; ++i) {
+            const double t = 2.0 * i / curve_pieces - 1;
+            const double to = middle + reach * 0.5 * t * (3 - t * t);
+            const double gap_to = gap_at(to);
+            if (gap_from < infinity && gap_to < infinity) {
+                stretches_.push_back({from, to, gap_from, gap_to});
+            }
+            from = to;
+            gap_from = gap_to;
+        }
+    }
+
+    /// Walks along the chord from cut to cut with the stretches that lie there.
+    double swept() {
+        std::sort(stretches_.begin(), stretches_.end(),
+                  [](const Stretch& a, const Stretch& b) { return a.low < b.low; });
+        cuts_.clear();
+        for (const Stretch& stretch : stretches_) {
+            cuts_.push_back(stretch.low);
+            cuts_.push_back(stretch.high);
+        }
+        std::sort(cuts_.begin(), cuts_.end());
+        open_.clear();
+        std::size_t next = 0;
+        double sum = 0;
+        for (std::size_t i = 1; i < cuts_.size(); ++i) {
+            const double low = cuts_[i - 1];
+            const double high = cuts_[i];
+            for (; next < stretches_.size() && stretches_[next].low <= low; ++next) {
+                open_.push_back(stretches_[next]);
+            }
+            open_.erase(
+                std::remove_if(open_.begin(), open_.end(), [&](const Stretch& stretch) { return stretch.high <= low; }),
+                open_.end());
+            if (low < high && !open_.empty()) {
+                sum += piece(low, high);
+            }
+        }
+        return sum;
+    }
+
+    double piece(double low, double high) const {
+        const auto excess = [this](double u) {
+            double gap = background_m_;
+            for (const Stretch& stretch : open_) {
+                gap = std::min(gap, stretch.gap_at(u));
+            }
+            return query_.factor(gap) - background_;
+        };
+        const double width = (high - low) / query_.radius_m;
+        if (width < 0.02) {
+            return (high - low) * excess(0.5 * (low + high));
+        }
+        return width < 0.2 ? integrate(plain_2, low, high, excess) : integrate(plain_6, low, high, excess);
+    }
+
+    const DiscQuery& query_;
+    double background_m_;
+    double background_;
+    double stake_ = 0;  ///< how much K may differ over the disc
+    ChordFrame frame_{};
+    std::pmr::vector<LocalTriangle> triangles_;
+    std::pmr::vector<Solid> solids_;
+    std::pmr::vector<Stretch> stretches_;
+    std::pmr::vector<double> cuts_;
+    std::pmr::vector<Stretch> open_;  ///< over the present piece
+};
+
+}  // namespace
+
+double chord_sum(const DiscQuery& query, double background_m, std::span<const std::size_t> parts,
+                 std::pmr::memory_resource* memory) {
+    return ChordSum(query, background_m, parts, memory).average();
+}
+
+}  // namespace downwash

@@ -1,0 +1,244 @@
+// The effect near triangle meshes and octrees: against the primitives they stand for, against counted rays, and what
+// must not change it.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/meshes.hpp"
+#include "downwash/aeromap/direct_effect.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+
+namespace {
+
+constexpr double radius = 0.2;
+
+DirectEffect effect_of(std::vector<Obstacle> obstacles) {
+    return DirectEffect(scene_of(std::move(obstacles)), {}, radius);
+}
+
+/// The largest difference of the two one-sided factors.
+double difference(const DirectEffect::Factors& a, const DirectEffect::Factors& b) {
+    return std::max(std::abs(a.ground - b.ground), std::abs(a.ceiling - b.ceiling));
+}
+
+Vector3 some_hub(test::Random& random) {
+    return {random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.8, 0.8)};
+}
+
+/// A box about as large as a rotor.
+Obstacle some_box(test::Random& random, bool is_level) {
+    const auto size = [&] { return random.uniform(0.1, 1); };
+    const auto angle = [&] { return random.uniform(-3, 3); };
+    const Vector3 rpy{is_level ? 0 : angle(), is_level ? 0 : angle(), angle()};
+    return {"", Box{{size(), size(), size()}}, some_hub(random), rpy};
+}
+
+Obstacle as_mesh(const Obstacle& box) {
+    Obstacle mesh = box;
+    mesh.shape = test::box_mesh(std::get<Box>(box.shape).size_m);
+    return mesh;
+}
+
+/// Draws hubs until `count` of them are flyable and feel something, and returns the largest difference of the two.
+template <class Pair>
+double worst_difference(int count, test::Random& random, const Pair& pair) {
+    double worst = 0;
+    while (count > 0) {
+        const auto [one, other] = pair();
+        for (int i = 0; i < 5 && count > 0; ++i) {
+            const Vector3 hub = some_hub(random);
+            const DirectEffect::Factors factors = one.factors(hub);
+            if (one.is_flyable(hub) && factors.ground + factors.ceiling > 2.01) {
+                worst = std::max(worst, difference(factors, other.factors(hub)));
+                --count;
+            }
+        }
+    }
+    return worst;
+}
+
+/// A lattice of small triangles around the rotor.
+Mesh some_triangles(test::Random& random, int count) {
+    TriangleMesh surface;
+    for (int i = 0; i < count; ++i) {
+        const Vector3 around = some_hub(random);
+        const auto first = static_cast<std::uint32_t>(surface.vertices_m.size());
+        for (int corner = 0; corner < 3; ++corner) {
+            const auto near = [&](std::size_t k) { return around[k] + random.uniform(-0.2, 0.2); };
+            surface.vertices_m.push_back({near(0), near(1), near(2)});
+        }
+        surface.triangles.push_back({first, first + 1, first + 2});
+    }
+    return {"", 1, std::make_shared<const TriangleMesh>(std::move(surface))};
+}
+
+/// A fifth as high.
+Mesh flattened(const Mesh& mesh) {
+    TriangleMesh surface = *mesh.surface;
+    for (Vector3& vertex : surface.vertices_m) {
+        vertex[2] *= 0.2;
+    }
+    return {"", 1, std::make_shared<const TriangleMesh>(std::move(surface))};
+}
+
+}  // namespace
+
+TEST_CASE("Boxes of triangles are felt as the same boxes where they stand level") {
+    test::Random random(61);
+    const double worst = worst_difference(300, random, [&] {
+        const Obstacle one = some_box(random, true);
+        const Obstacle other = some_box(random, true);
+        return std::pair(effect_of({one, other}), effect_of({as_mesh(one), as_mesh(other)}));
+    });
+    CAPTURE(worst);
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("A tilted box of triangles is felt as the same box within the errors of the two quadratures") {
+    test::Random random(62);
+    const double worst = worst_difference(300, random, [&] {
+        const Obstacle box = some_box(random, false);
+        return std::pair(effect_of({box}), effect_of({as_mesh(box)}));
+    });
+    CAPTURE(worst);
+    CHECK(worst < 4e-3);
+}
+
+TEST_CASE("A pipe of ten thousand triangles is felt as a cylinder") {
+    const Mesh fine = test::pipe_mesh(0.25, 10, 50, 100);
+    REQUIRE(fine.surface->triangles.size() == 10100);
+    test::Random random(63);
+    const double worst = worst_difference(60, random, [&] {
+        const Vector3 rpy{random.uniform(-1.5, 1.5), 0, random.uniform(-3, 3)};
+        return std::pair(effect_of({{"", Cylinder{0.25, 10, {0, 1, 0}}, {}, rpy}}), effect_of({{"", fine, {}, rpy}}));
+    });
+    CAPTURE(worst);
+    CHECK(worst < 5e-3);
+}
+
+TEST_CASE("An octree of a box is felt ever more like the box as its cubes shrink") {
+    const Vector3 size{0.5, 0.37, 0.23};
+    const auto is_inside = [&](const Vector3& p) {
+        return std::abs(p[0]) < 0.5 * size[0] && std::abs(p[1]) < 0.5 * size[1] && std::abs(p[2]) < 0.5 * size[2];
+    };
+    const Vector3 rpy{0, 0, 0.3};
+    const DirectEffect box = effect_of({{"", Box{size}, {}, rpy}});
+    double last = 1;
+    for (const double side : {0.1, 0.025, 0.00625}) {
+        const DirectEffect octree =
+            effect_of({{"", test::octree_of(is_inside, {-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, side), {}, rpy}});
+        test::Random random(64);
+        double worst = 0;
+        for (int i = 0; i < 500; ++i) {
+            const Vector3 hub = some_hub(random);
+            if (box.is_flyable(hub)) {
+                worst = std::max(worst, difference(box.factors(hub), octree.factors(hub)));
+            }
+        }
+        CAPTURE(side, worst, last);
+        CHECK(worst < 0.6 * last);
+        last = worst;
+    }
+    CHECK(last < 0.05);
+}
+
+TEST_CASE("An octree of a tilted block is felt as rays count it") {
+    const auto is_inside = [](const Vector3& p) { return std::abs(p[0] + 0.3 * p[1]) + std::abs(p[2]) < 0.2; };
+    const Octomap octree = test::octree_of(is_inside, {-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}, 0.05);
+    const DirectEffect effect = effect_of({{"", octree, {0, 0, -0.25}, {0.2, 0.3, 0.4}}});
+    for (const Vector3& hub : {Vector3{0, 0, 0.1}, Vector3{0.2, 0.1, 0.1}, Vector3{-0.3, -0.3, 0.1}}) {
+        const DirectEffect::Factors counted = test::by_rays(effect, hub, 300);
+        REQUIRE(counted.ground > 1.01);
+        CHECK(difference(effect.factors(hub), counted) < 5e-3);
+    }
+}
+
+TEST_CASE("Among many triangles at random the effect agrees with counted rays") {
+    test::Random random(65);
+    double worst = 0;
+    int compared = 0;
+    for (int round = 0; compared < 30; ++round) {
+        const int count = round % 2 == 0 ? 15 : 150;
+        const DirectEffect effect = effect_of({{"", flattened(some_triangles(random, count)), {}, {}}});
+        Vector3 hub = some_hub(random);
+        hub[2] *= 0.5;
+        const DirectEffect::Factors factors = effect.factors(hub);
+        if (factors.total > 1.05 && effect.is_flyable(hub)) {
+            worst = std::max(worst, difference(factors, test::by_rays(effect, hub, 200)));
+            ++compared;
+        }
+    }
+    CAPTURE(worst);
+    CHECK(worst < 5e-3);
+}
+
+TEST_CASE("A mesh behind a mesh changes nothing") {
+    test::Random random(66);
+    const Obstacle deck{"", test::box_mesh({4, 4, 0.1}), {}, {}};
+    for (int round = 0; round < 30; ++round) {
+        Obstacle hidden{"", some_triangles(random, 5), {0, 0, -1.5}, {}};
+        const DirectEffect alone = effect_of({deck});
+        const DirectEffect both = effect_of({deck, hidden});
+        Vector3 hub = some_hub(random);
+        hub[2] = 0.05 + random.uniform(0.3, 3) * radius;
+        REQUIRE(both.factors(hub).ground == Approx(alone.factors(hub).ground).epsilon(0).margin(2e-3));
+        hidden.shape = some_triangles(random, 200);
+        REQUIRE(effect_of({deck, hidden}).factors(hub).ground ==
+                Approx(alone.factors(hub).ground).epsilon(0).margin(5e-3));
+    }
+}
+
+TEST_CASE("Moving or mirroring scene and rotor together changes nothing") {
+    test::Random random(67);
+    for (const int count : {8, 100}) {
+        const double allowed = 2 * (count == 8 ? 2e-3 : 5e-3);
+        for (int round = 0; round < 40; ++round) {
+            const Mesh mesh = some_triangles(random, count);
+            const Vector3 hub = some_hub(random);
+            const DirectEffect::Factors before = effect_of({{"", mesh, {}, {}}}).factors(hub);
+
+            const double angle = random.uniform(-3, 3);
+            const PlaneOfMotion motion({random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)}, angle);
+            const DirectEffect moved = effect_of({{"", mesh, motion.origin_m(), {0, 0, angle}}});
+            REQUIRE(difference(moved.factors(motion.to_world(hub[0], hub[1], hub[2])), before) < allowed);
+
+            TriangleMesh mirrored = *mesh.surface;
+            for (Vector3& vertex : mirrored.vertices_m) {
+                vertex[1] = -vertex[1];
+            }
+            const Mesh reflection{"", 1, std::make_shared<const TriangleMesh>(mirrored)};
+            REQUIRE(difference(effect_of({{"", reflection, {}, {}}}).factors({hub[0], -hub[1], hub[2]}), before) <
+                    allowed);
+        }
+    }
+}
+
+TEST_CASE("A map among meshes and octrees stays within a hundredth of the direct effect") {
+    const auto is_inside = [](const Vector3& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 0.16; };
+    const auto effect = std::make_shared<const DirectEffect>(
+        scene_of({{"pipe", test::pipe_mesh(0.25, 4, 16, 4), {-1, 0, 0}, {0.1, 0, 0.2}},
+                  {"ball", test::octree_of(is_inside, {-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}, 0.1), {1, 0, 0.3}, {}},
+                  {"ground", test::box_mesh({20, 20, 1}), {0, 0, -2}, {}}}),
+        AeroSettings{}, radius);
+    const AeroMap map(test::layers(effect, {0}), {}, {-1.6, 1.5, -0.6, 1.1});
+    test::Random random(68);
+    double worst = 0;
+    int felt = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double x = random.uniform(-1.6, 1.5);
+        const double z = random.uniform(-0.6, 1.1);
+        REQUIRE(map.is_flyable(0, x, z) == effect->is_flyable({x, 0, z}));
+        if (map.is_flyable(0, x, z)) {
+            const double factor = effect->factor({x, 0, z});
+            worst = std::max(worst, std::abs(map.factor(0, x, z) - factor));
+            felt += factor > 1.05;
+        }
+    }
+    CAPTURE(worst);
+    CHECK(worst < 0.01);
+    CHECK(felt > 200);
+}
