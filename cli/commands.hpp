@@ -20,5 +20,6 @@ void add_planners(CLI::App& program, Action& action);
 /// The same for the commands of `aeromap`.
 void add_aeromap_fit(CLI::App& aeromap, Action& action);
 void add_aeromap_compare(CLI::App& aeromap, Action& action);
+void add_aeromap_hold(CLI::App& aeromap, Action& action);
 
 }  // namespace downwash::cli

@@ -4,32 +4,41 @@
 
 namespace downwash {
 
-using dynamics::RotorWrench;
+namespace {
+
+double weight_n(const FlightModel& model) {
+    return model.tick().plant.total_mass_kg * standard_gravity_m_s2;
+}
+
+/// In effect at a pose, with the weight commanded and no torque.
+dynamics::RotorWrench<double> wrench_at(const FlightModel& model, const PlanarPose& pose) {
+    const PlantModel& plant = model.tick().plant;
+    double command_n[max_rotors];
+    dynamics::allocate(plant, weight_n(model), 0.0, command_n);
+    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
+    return dynamics::rotor_wrench(plant, attitude, pose.x_m, pose.z_m, command_n, simulation::DirectFactor{model});
+}
+
+}  // namespace
 
 VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose) {
-    const PlantModel& plant = model.tick().plant;
-    const simulation::DirectFactor factor{model};
-    const double weight_n = plant.total_mass_kg * standard_gravity_m_s2;
-    double command_n[max_rotors];
-    dynamics::allocate(plant, weight_n, 0.0, command_n);
-    const auto wrench_at = [&](double z_m, double pitch_rad) {
-        const auto attitude = dynamics::attitude(plant, pitch_rad, pose.arm_rad);
-        return dynamics::rotor_wrench(plant, attitude, pose.x_m, z_m, command_n, factor);
-    };
-    constexpr double step = 1e-3;  // [m] and [rad]
-    const RotorWrench<double> here = wrench_at(pose.z_m, pose.pitch_rad);
-    const RotorWrench<double> above = wrench_at(pose.z_m + step, pose.pitch_rad);
-    const RotorWrench<double> below = wrench_at(pose.z_m - step, pose.pitch_rad);
-    const RotorWrench<double> nose_down = wrench_at(pose.z_m, pose.pitch_rad + step);
-    const RotorWrench<double> nose_up = wrench_at(pose.z_m, pose.pitch_rad - step);
-
+    const auto wrench = wrench_at(model, pose);
     VehicleEffect effect;
-    effect.force_factor = here.thrust_n / weight_n;
-    effect.pitch_torque_nm = here.pitch_torque_nm;
-    effect.pitch_torque_factor = here.pitch_torque_nm / (weight_n * model.robot().rotors.radius_m);
-    effect.force_slope_n_m = (above.thrust_n - below.thrust_n) / (2 * step);
-    effect.torque_slope_nm_rad = (nose_down.pitch_torque_nm - nose_up.pitch_torque_nm) / (2 * step);
+    effect.force_factor = wrench.thrust_n / weight_n(model);
+    effect.pitch_torque_nm = wrench.pitch_torque_nm;
+    effect.pitch_torque_factor = wrench.pitch_torque_nm / (weight_n(model) * model.robot().rotors.radius_m);
     return effect;
+}
+
+VehicleEffectSlopes vehicle_effect_slopes(const FlightModel& model, const PlanarPose& pose) {
+    constexpr double step = 1e-3;  // [m] and [rad]
+    const auto wrench = [&](double rise_m, double turn_rad) {
+        return wrench_at(model, {pose.x_m, pose.z_m + rise_m, pose.pitch_rad + turn_rad, pose.arm_rad});
+    };
+    VehicleEffectSlopes slopes;
+    slopes.force_n_m = (wrench(step, 0).thrust_n - wrench(-step, 0).thrust_n) / (2 * step);
+    slopes.torque_nm_rad = (wrench(0, step).pitch_torque_nm - wrench(0, -step).pitch_torque_nm) / (2 * step);
+    return slopes;
 }
 
 bool is_flyable(const FlightModel& model, const PlanarPose& pose) {

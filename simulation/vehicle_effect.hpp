@@ -6,19 +6,26 @@
 namespace downwash {
 
 /// What surfaces do to the whole vehicle at one pose, with the commands that carry its weight and turn nothing in free
-/// air (for rotors placed symmetrically: equal ones). Evaluated directly; slopes are central differences over 1 mm, and
-/// over 1 mrad in pitch. Forces act along b3, torques about +y (positive: nose down).
+/// air (for rotors placed symmetrically: equal ones). Forces act along b3, torques about +y (positive: nose down).
 struct VehicleEffect {
     double force_factor = 1;         ///< sum K_i T_i / sum T_i
     double pitch_torque_nm = 0;      ///< parasitic, -sum x_i K_i T_i (thesis 3.2, figures 3.1 and 3.2)
-    double pitch_torque_factor = 0;  ///< the same over weight * R: by how many radii the thrust's centre lies behind
-    double force_slope_n_m = 0;      ///< dF/dz; positive pulls away from the height that is held
-    double torque_slope_nm_rad = 0;  ///< dT2/dpitch; positive tips over
+    double pitch_torque_factor = 0;  ///< the same over weight * R
 };
 
-/// The effect at a pose (the arm does not matter). Defined everywhere; where the vehicle is not flyable it is of no
-/// use.
+/// How it changes with the pose: a spring, or the opposite of one.
+struct VehicleEffectSlopes {
+    double force_n_m = 0;      ///< dF/dz; positive pulls away from the height that is held
+    double torque_nm_rad = 0;  ///< dT2/dpitch; positive tips over
+};
+
+/// The effect at a pose (the arm does not matter), evaluated directly. Defined everywhere; where the vehicle is not
+/// flyable it is of no use.
 [[nodiscard]] DOWNWASH_EXPORT VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose);
+
+/// Its slopes, by central differences over 1 mm and 1 mrad.
+[[nodiscard]] DOWNWASH_EXPORT VehicleEffectSlopes vehicle_effect_slopes(const FlightModel& model,
+                                                                        const PlanarPose& pose);
 
 /// Whether every rotor of a vehicle at this pose is inside the flyable area (model 4.4), decided exactly.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const PlanarPose& pose);

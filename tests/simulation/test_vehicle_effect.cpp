@@ -49,10 +49,11 @@ double ceiling_slope_1_m(double gap_m) {
 
 TEST_CASE("far from everything a vehicle feels no surface") {
     const VehicleEffect effect = vehicle_effect(*model_among({}), {1, 2, 0.2, 0});
+    const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model_among({}), {1, 2, 0.2, 0});
     CHECK(effect.force_factor == Approx(1).epsilon(1e-14));
     CHECK(std::abs(effect.pitch_torque_nm) < 1e-13);
-    CHECK(std::abs(effect.force_slope_n_m) < 1e-9);
-    CHECK(std::abs(effect.torque_slope_nm_rad) < 1e-9);
+    CHECK(std::abs(slopes.force_n_m) < 1e-9);
+    CHECK(std::abs(slopes.torque_nm_rad) < 1e-9);
 }
 
 TEST_CASE("two rotors of four over a plate carry more and push the nose up") {
@@ -79,13 +80,14 @@ TEST_CASE("wide ground carries like a spring and rights the vehicle") {
     const auto model = model_among({test::box("ground", {30, 20, 1}, {0, 0, -0.5})});
     for (const double height_m : {0.15, 0.3, 0.6}) {
         const VehicleEffect effect = vehicle_effect(*model, {0.4, height_m - hub_height_m, 0, 0});
+        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, height_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(ground_factor(height_m)).epsilon(1e-9));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
         const double slope_n_m = weight_n * ground_slope_1_m(height_m);
-        CHECK(effect.force_slope_n_m == Approx(slope_n_m).epsilon(1e-3));
-        CHECK(effect.force_slope_n_m < 0);
+        CHECK(slopes.force_n_m == Approx(slope_n_m).epsilon(1e-3));
+        CHECK(slopes.force_n_m < 0);
         // Every rotor moves by reach per radian: the spring with its lever twice.
-        CHECK(effect.torque_slope_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
+        CHECK(slopes.torque_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
     }
 }
 
@@ -104,9 +106,10 @@ TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula 
             radius_m * radius_m * (1 / (16 * z_m * z_m) + image(d_m) + 0.5 * image(std::sqrt(2.0) * d_m));
         const double body = 2 * radius_m * radius_m * 2 * image(b_m);  // thesis (2.17) with K_b = 2
         const VehicleEffect effect = vehicle_effect(*model, {0.4, z_m - hub_height_m, 0, 0});
+        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, z_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(1 / (1 - rotors - body)).epsilon(1e-6));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
-        CHECK(effect.force_slope_n_m < 0);
+        CHECK(slopes.force_n_m < 0);
     }
 }
 
@@ -114,11 +117,12 @@ TEST_CASE("a wide ceiling pulls away from the height that is held and tips the v
     const auto model = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
     for (const double gap_m : {0.1, 0.2, 0.5}) {
         const VehicleEffect effect = vehicle_effect(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
+        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(ceiling_factor(gap_m)).epsilon(1e-9));
         const double slope_n_m = weight_n * ceiling_slope_1_m(gap_m);
-        CHECK(effect.force_slope_n_m == Approx(slope_n_m).epsilon(1e-3));
-        CHECK(effect.torque_slope_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
-        CHECK(effect.torque_slope_nm_rad > 0);
+        CHECK(slopes.force_n_m == Approx(slope_n_m).epsilon(1e-3));
+        CHECK(slopes.torque_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
+        CHECK(slopes.torque_nm_rad > 0);
     }
 }
 
@@ -136,10 +140,13 @@ TEST_CASE("mirroring scene and vehicle mirrors the parasitic torque and nothing 
         const PlanarPose pose{random.uniform(-2, 2), random.uniform(0, 4), random.uniform(-0.5, 0.5), 0};
         const VehicleEffect a = vehicle_effect(*model_among(here), pose);
         const VehicleEffect b = vehicle_effect(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
+        const VehicleEffectSlopes c = vehicle_effect_slopes(*model_among(here), pose);
+        const VehicleEffectSlopes d =
+            vehicle_effect_slopes(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
         CHECK(a.force_factor == Approx(b.force_factor).epsilon(1e-9));
         CHECK(a.pitch_torque_nm == Approx(-b.pitch_torque_nm).margin(1e-7));
-        CHECK(a.force_slope_n_m == Approx(b.force_slope_n_m).epsilon(1e-6).margin(1e-4));
-        CHECK(a.torque_slope_nm_rad == Approx(b.torque_slope_nm_rad).epsilon(1e-6).margin(1e-4));
+        CHECK(c.force_n_m == Approx(d.force_n_m).epsilon(1e-6).margin(1e-4));
+        CHECK(c.torque_nm_rad == Approx(d.torque_nm_rad).epsilon(1e-6).margin(1e-4));
     }
 }
 

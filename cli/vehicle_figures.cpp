@@ -1,0 +1,120 @@
+#include "downwash/cli/vehicle_figures.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "downwash/simulation/hold_map.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
+
+namespace downwash::cli {
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double degrees_per_radian = 57.295779513082320877;
+
+FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent,
+                           std::string title) {
+    FieldFigure figure;
+    figure.title = std::move(title);
+    figure.subtitle = fmt::format("{}, {}", problem.name, problem.robot.name);
+    figure.x_label = "x of the centre of mass [m]";
+    figure.z_label = "z of the centre of mass [m]";
+    figure.extent = extent;
+    figure.obstacles = obstacle_outlines(model.effect(0).scene(), model.plane(), 0);
+    return figure;
+}
+
+/// The greatest value of a field in size, looked for at some points of its extent.
+double reach_of(const FieldFigure& figure) {
+    constexpr int steps = 120;
+    double most = 0;
+    for (int i = 0; i <= steps; ++i) {
+        for (int k = 0; k <= steps; ++k) {
+            const MapExtent& e = figure.extent;
+            const double value = figure.value(e.x_low_m + (e.x_high_m - e.x_low_m) * i / steps,
+                                              e.z_low_m + (e.z_high_m - e.z_low_m) * k / steps);
+            most = std::isnan(value) ? most : std::max(most, std::abs(value));
+        }
+    }
+    return most;
+}
+
+/// The kinds of hold_figure, as its scale numbers them. Not flyable is not defined.
+double kind_of(HoldVerdict verdict) {
+    return verdict == HoldVerdict::not_flyable
+               ? undefined
+               : static_cast<double>(verdict) - static_cast<double>(HoldVerdict::in_collision);
+}
+
+/// The verdict at a point: that of the nodes around it where they agree, else its own.
+HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m, double z_m) {
+    const auto cell = [&map](double at_m, double low_m, std::size_t nodes) {
+        const double last = static_cast<double>(nodes) - 2;
+        return static_cast<std::size_t>(std::clamp(std::floor((at_m - low_m) / map.step_m), 0.0, std::max(0.0, last)));
+    };
+    const std::size_t i = cell(x_m, map.x_low_m, map.columns);
+    const std::size_t k = cell(z_m, map.z_low_m, map.rows);
+    const HoldVerdict verdict = map.verdicts[k * map.columns + i];
+    for (const std::size_t row : {k, std::min(k + 1, map.rows - 1)}) {
+        for (const std::size_t column : {i, std::min(i + 1, map.columns - 1)}) {
+            if (map.verdicts[row * map.columns + column] != verdict) {
+                return analyse_hover(model, x_m, z_m, map.arm_rad).verdict;
+            }
+        }
+    }
+    return verdict;
+}
+
+}  // namespace
+
+FieldFigure force_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent) {
+    FieldFigure figure = vehicle_figure(problem, model, extent, "Thrust of the whole vehicle at constant command");
+    figure.value = [&model](double x_m, double z_m) {
+        const PlanarPose pose{x_m, z_m, 0, 0};
+        return is_flyable(model, pose) ? vehicle_effect(model, pose).force_factor : undefined;
+    };
+    figure.scale = factor_scale("force factor", 1, reach_of(figure));
+    return figure;
+}
+
+FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent) {
+    FieldFigure figure =
+        vehicle_figure(problem, model, extent, "Parasitic pitch torque at hover commands, positive nose down");
+    figure.value = [&model](double x_m, double z_m) {
+        const PlanarPose pose{x_m, z_m, 0, 0};
+        return is_flyable(model, pose) ? vehicle_effect(model, pose).pitch_torque_nm : undefined;
+    };
+    figure.scale = signed_scale("pitch torque [Nm]", std::max(reach_of(figure), 1e-3));
+    return figure;
+}
+
+FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double arm_rad,
+                        int threads) {
+    constexpr double cells_across = 240;
+    FieldFigure figure = vehicle_figure(
+        problem, model, extent, fmt::format("Can it hold here? Arm at {:.6g} degrees", arm_rad * degrees_per_radian));
+    const double width_m = std::max(extent.x_high_m - extent.x_low_m, extent.z_high_m - extent.z_low_m);
+    const auto map = std::make_shared<const HoldMap>(
+        make_hold_map(model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m}, width_m / cells_across,
+                      arm_rad, threads));
+    figure.value = [&model, map](double x_m, double z_m) { return kind_of(verdict_at(model, *map, x_m, z_m)); };
+    figure.scale = scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "stable"},
+                                  {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {196, 226, 190}});
+    figure.has_contour_lines = false;
+    FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, false, false};
+    for (const std::vector<HoldPoint>& line : stability_boundary(model, *map)) {
+        std::vector<PlanePoint>& piece = boundary.pieces.emplace_back();
+        std::transform(line.begin(), line.end(), std::back_inserter(piece), [](const HoldPoint& at) {
+            return PlanePoint{at.x_m, at.z_m};
+        });
+    }
+    figure.lines.push_back(std::move(boundary));
+    return figure;
+}
+
+}  // namespace downwash::cli
