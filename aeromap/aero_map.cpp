@@ -1,18 +1,15 @@
 #include "downwash/aeromap/aero_map.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "downwash/aeromap/layer_builder.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/base/parallel.hpp"
 
 namespace downwash {
 namespace {
@@ -47,37 +44,6 @@ void require_valid(double grid_m, const MapExtent& extent, const std::vector<Map
 /// An extent that is a whole number of cells stays so in spite of rounding.
 double cells_over(double length_m, double cells_per_m) {
     return std::max(1.0, std::ceil(length_m * cells_per_m - 1e-9));
-}
-
-/// Does task 0, 1, ... count - 1 on some threads, in any order; rethrows what a task threw.
-template <class Task>
-void run_parallel(std::size_t count, int threads, const Task& task, const std::function<void(double)>& on_progress) {
-    std::atomic<std::size_t> next{0};
-    std::exception_ptr failure;
-    std::mutex failure_mutex;
-    const auto work = [&](bool reports) {
-        try {
-            for (std::size_t i = next++; i < count; i = next++) {
-                task(i);
-                if (reports && on_progress) {
-                    on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
-                }
-            }
-        } catch (...) {
-            next = count;
-            const std::scoped_lock lock(failure_mutex);
-            failure = std::current_exception();
-        }
-    };
-    std::vector<std::jthread> helpers;
-    for (int t = 1; t < threads; ++t) {
-        helpers.emplace_back(work, false);
-    }
-    work(true);
-    helpers.clear();  // joins
-    if (failure) {
-        std::rethrow_exception(failure);
-    }
 }
 
 double cell_side_m(const std::vector<MapLayer>& layers) {

@@ -1,11 +1,10 @@
 #include "downwash/simulation/hold_map.hpp"
 
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
-#include <thread>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/simulation/grid_contour.hpp"
 
@@ -83,19 +82,7 @@ HoldPoint crossing_of(const FlightModel& model, const HoldMap& map, const simula
 
 HoldMap make_hold_map(const FlightModel& model, const Bounds& bounds, double step_m, double arm_rad, int threads) {
     HoldMap map = empty_map(bounds, step_m, arm_rad);
-    std::atomic<std::size_t> next_row{0};
-    const auto work = [&] {
-        for (std::size_t row = next_row++; row < map.rows; row = next_row++) {
-            fill_row(model, row, map);
-        }
-    };
-    {
-        std::vector<std::jthread> others;
-        for (int i = 1; i < threads; ++i) {
-            others.emplace_back(work);
-        }
-        work();
-    }
+    run_parallel(map.rows, threads, [&](std::size_t row) { fill_row(model, row, map); });
     return map;
 }
 

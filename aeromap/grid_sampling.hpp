@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
+
+namespace downwash {
+
+/// Where a grid is sampled. The spacing is rounded down so that the last node stands on the upper end.
+struct GridSampling {
+    PlaneOfMotion plane;
+    MapExtent extent;
+    double step_m = 0;  ///< most distance between neighbouring nodes, > 0
+    int threads = 1;
+    std::function<void(double)> on_progress;  ///< see run_parallel
+};
+
+/// K, its two one-sided factors and the flyable area, evaluated directly at the nodes of a planar grid with one layer
+/// per lateral offset.
+/// @param layers of distinct lateral offsets, in any order
+/// @throws InputError when the extent is empty, two layers share an offset, or the grid would have too many nodes
+[[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampling,
+                                                       const Provenance& provenance = {});
+
+/// The same in a volume around the plane, from `lateral_low_m` to `lateral_high_m` to its left.
+[[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_volume(const DirectEffect& effect, double lateral_low_m,
+                                                       double lateral_high_m, const GridSampling& sampling,
+                                                       const Provenance& provenance = {});
+
+/// What made the effect: models with parameters and sources, radius and the rest of the settings.
+[[nodiscard]] DOWNWASH_EXPORT Provenance provenance_of(const DirectEffect& effect);
+
+}  // namespace downwash
