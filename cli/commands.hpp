@@ -18,8 +18,11 @@ void add_aeromap(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 
 /// The same for the commands of `aeromap`.
+void add_aeromap_build(CLI::App& aeromap, Action& action);
+void add_aeromap_info(CLI::App& aeromap, Action& action);
 void add_aeromap_fit(CLI::App& aeromap, Action& action);
 void add_aeromap_compare(CLI::App& aeromap, Action& action);
 void add_aeromap_hold(CLI::App& aeromap, Action& action);
+void add_aeromap_plot(CLI::App& aeromap, Action& action);
 
 }  // namespace downwash::cli

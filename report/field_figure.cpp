@@ -54,7 +54,7 @@ void require_drawable(const MapExtent& extent) {
 }
 
 Layout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend) {
-    constexpr double left_px = 66, right_px = 24, below_axes_px = 128;
+    constexpr double left_px = 80, right_px = 24, below_axes_px = 128;
     constexpr double tallest = 1.2;  // of the axes, in their widths
     const MapExtent& extent = figure.extent;
     const double ratio = (extent.z_high_m - extent.z_low_m) / (extent.x_high_m - extent.x_low_m);
@@ -187,10 +187,10 @@ using Ring = std::vector<PlanePoint>;
 std::string points_text(const Ring& ring, bool is_closed) {
     std::string text;
     for (const PlanePoint& point : ring) {
-        text += fmt::format("{:.7g} {:.7g}\n", point.x_m, point.z_m);
+        text += fmt::format("{:.9g} {:.9g}\n", point.x_m, point.z_m);
     }
     if (is_closed && !ring.empty()) {
-        text += fmt::format("{:.7g} {:.7g}\n", ring[0].x_m, ring[0].z_m);
+        text += fmt::format("{:.9g} {:.9g}\n", ring[0].x_m, ring[0].z_m);
     }
     return text;
 }
@@ -310,7 +310,7 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const MapExtent
         const PlanePoint& to = piece[piece.size() / 2];
         if (is_shown(from) && is_shown(to)) {
             script.add(
-                fmt::format("set arrow from {:.7g},{:.7g} to {:.7g},{:.7g} front size screen 0.008,22 filled "
+                fmt::format("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} front size screen 0.008,22 filled "
                             "linecolor rgb {} linewidth {}",
                             from.x_m, from.z_m, to.x_m, to.z_m, in_quotes(lines.color), lines.width_px));
         }
@@ -437,7 +437,9 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     Legend legend;
     Plot plot(legend), overlay(legend);
     if (has_undefined) {
-        plot.add_fill("$all", fmt::format("fillstyle pattern 5 fillcolor rgb {}", hatch_color), figure.undefined_name);
+        plot.add_fill("$all",
+                      fmt::format("fillstyle pattern 5 border linecolor rgb {0} fillcolor rgb {0}", hatch_color),
+                      figure.undefined_name);
     }
     add_outlines(overlay, outlines);
     add_marks(overlay, figure);

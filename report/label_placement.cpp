@@ -179,10 +179,14 @@ class Placement {
         const PixelBox bounds = box_of(shape.main);
         const PixelPoint middle = bounds.middle();
         const double inset = height_px_ / 2 + room;
-        // Names of outlines keep to their rim: what lies within is not theirs.
-        const std::array<double, 2> heights = shape.is_filled
-                                                  ? std::array<double, 2>{middle.y, middle.y}
-                                                  : std::array<double, 2>{bounds.top - inset, bounds.bottom + inset};
+        std::vector<double> heights{middle.y};
+        if (!shape.is_filled) {
+            // Names of outlines keep to their rim where they can: what lies within is not theirs.
+            heights = {bounds.top - inset, bounds.bottom + inset};
+            for (double y = bounds.top - 2 * inset; y > bounds.bottom + inset; y -= inset) {
+                heights.push_back(y);
+            }
+        }
         for (const double y : heights) {
             for (const double x : {middle.x, (middle.x + bounds.left) / 2, (middle.x + bounds.right) / 2,
                                    bounds.left + shape.width_px / 2 + room, bounds.right - shape.width_px / 2 - room}) {
@@ -237,8 +241,9 @@ class Placement {
         const auto [x, y] = shape.middle();
         std::vector<PixelPoint> places{{x, up},     {right, y}, {left, y},     {x, down},
                                        {right, up}, {left, up}, {right, down}, {left, down}};
-        for (const double part : {0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
-            const double along = shape.left + part * (shape.right - shape.left);
+        for (const double part : {0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0., 1.}) {
+            const double least = shape.left + width / 2, most = std::max(least, shape.right - width / 2);
+            const double along = std::clamp(shape.left + part * (shape.right - shape.left), least, most);
             places.push_back({along, up});
             places.push_back({along, down});
         }

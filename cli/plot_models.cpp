@@ -1,0 +1,157 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "downwash/aeromap/effect_curve.hpp"
+#include "downwash/aeromap/measurements.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/cli/model_option.hpp"
+#include "downwash/cli/plot_request.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+RotorNeighbours neighbours(const PlotRequest& request) {
+    constexpr double most_spacing = 100;
+    if (!request.rotor_spacing) {
+        return {};
+    }
+    if (!(*request.rotor_spacing > 0 && *request.rotor_spacing <= most_spacing)) {
+        throw UsageError(fmt::format("--rotor-spacing {}: expected radii, above 0 and at most {}",
+                                     *request.rotor_spacing, most_spacing));
+    }
+    return square_quadrotor(*request.rotor_spacing);
+}
+
+AxisRange shown_range(const PlotRequest& request) {
+    constexpr AxisRange usual{0, 4};
+    constexpr double farthest = 1000;
+    if (request.z_over_r.empty()) {
+        return usual;
+    }
+    const auto& given = request.z_over_r;
+    if (given.size() != 2 || !(given[0] >= 0 && given[0] < given[1] && given[1] <= farthest)) {
+        throw UsageError(fmt::format("--z-over-r {}{}: expected LOW HIGH in radii, 0 <= LOW < HIGH <= {}", given[0],
+                                     given.size() > 1 ? fmt::format(" {}", given[1]) : "", farthest));
+    }
+    return {given[0], given[1]};
+}
+
+Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRange& range) {
+    constexpr int intervals = 800;
+    const EffectModelInfo& model = model_named(name);
+    if (model.model == EffectModel::table) {
+        throw UsageError(
+            "--model table has no curve of its own; plot a problem that uses it, or give its CSV as --data");
+    }
+    const EffectCurve effect(model.model, request.max_factor.value_or(AeroSettings{}.max_factor), neighbours(request));
+    Curve curve{std::string(model.name), {}};
+    for (int i = 0; i <= intervals; ++i) {
+        const double z_over_r = range.low + (range.high - range.low) * i / intervals;
+        curve.points.push_back({z_over_r, effect(z_over_r)});
+    }
+    return curve;
+}
+
+/// The points of one source and surface: one for each distance, their mean where there are several. The bars are the
+/// standard deviations among those, or what the file says of a single one.
+MeasuredPoints points_of(std::string name, const Measurements& measurements, const AxisRange& range) {
+    std::map<double, std::vector<const Measurement*>> at;
+    for (const Measurement& point : measurements.points) {
+        if (point.z_over_r >= range.low && point.z_over_r <= range.high) {
+            at[point.z_over_r].push_back(&point);
+        }
+    }
+    MeasuredPoints shown{std::move(name), {}, {}};
+    bool has_several = false;
+    for (const auto& [z_over_r, points] : at) {
+        const auto count = static_cast<double>(points.size());
+        double sum = 0, squares = 0;
+        for (const Measurement* point : points) {
+            sum += point->thrust_ratio;
+        }
+        const double mean = sum / count;
+        for (const Measurement* point : points) {
+            squares += (point->thrust_ratio - mean) * (point->thrust_ratio - mean);
+        }
+        has_several = has_several || points.size() > 1;
+        shown.points.push_back({z_over_r, mean});
+        shown.errors.push_back(points.size() > 1 ? std::sqrt(squares / (count - 1)) : points[0]->sigma.value_or(0));
+    }
+    if (has_several) {
+        shown.name += " (mean and standard deviation)";
+    }
+    if (std::all_of(shown.errors.begin(), shown.errors.end(), [](double error) { return error == 0; })) {
+        shown.errors.clear();
+    }
+    return shown;
+}
+
+/// The entries of a column, or a single empty one that stands for all rows when there is no such column.
+std::vector<std::string> groups(const Measurements& measurements, const char* column, const std::string& wanted) {
+    if (!wanted.empty()) {
+        const std::vector<std::string> entries = measurements.entries(column);
+        if (std::find(entries.begin(), entries.end(), wanted) == entries.end()) {
+            const std::vector<std::string_view> names(entries.begin(), entries.end());
+            throw UsageError(fmt::format("--{} '{}' leaves no measurement: {}", column, excerpt(wanted),
+                                         names.empty() ? fmt::format("there is no column {}", column)
+                                                       : "expected " + excerpt(joined_names(names))));
+        }
+        return {wanted};
+    }
+    return measurements.index(column) ? measurements.entries(column) : std::vector<std::string>{""};
+}
+
+void add_measurements(CurveFigure& figure, const PlotRequest& request, const AxisRange& range) {
+    const Measurements all = read_measurements(request.data);
+    for (const std::string& source : groups(all, "source", request.source)) {
+        const Measurements of_source = source.empty() ? all : all.with("source", source);
+        for (const std::string& surface : groups(all, "surface", request.surface)) {
+            const Measurements group = surface.empty() ? of_source : of_source.with("surface", surface);
+            std::string name = source.empty() ? "measured" : source;
+            name += surface.empty() ? "" : ", " + surface;
+            if (MeasuredPoints points = points_of(std::move(name), group, range); !points.points.empty()) {
+                figure.measurements.push_back(std::move(points));
+            }
+        }
+    }
+    if (figure.measurements.empty()) {
+        throw UsageError(
+            fmt::format("--data {} has no measurement for z/R from {} to {}", request.data, range.low, range.high));
+    }
+}
+
+}  // namespace
+
+CurveFigure model_figure(const PlotRequest& request) {
+    constexpr double most_factor = 100;
+    if (request.max_factor && !(*request.max_factor >= 1 && *request.max_factor <= most_factor)) {
+        throw UsageError(
+            fmt::format("--max-factor {}: expected a number from 1 to {}", *request.max_factor, most_factor));
+    }
+    CurveFigure figure;
+    const AxisRange range = shown_range(request);
+    figure.title = "Factor K on the thrust of a rotor near a wide flat surface";
+    if (request.rotor_spacing) {
+        figure.subtitle = fmt::format("multirotor models: square quadrotor, adjacent axes {} radii apart",
+                                      to_text(*request.rotor_spacing, 4));
+    }
+    figure.x_label = "z/R, distance of the rotor from the surface in rotor radii [1]";
+    figure.y_label = "K, thrust over that in free air [1]";
+    figure.x_range = range;
+    figure.level = 1;
+    for (const std::string& name : request.models) {
+        figure.curves.push_back(curve_of(name, request, range));
+    }
+    if (!request.data.empty()) {
+        add_measurements(figure, request, range);
+    }
+    return figure;
+}
+
+}  // namespace downwash::cli

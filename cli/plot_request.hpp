@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/planner/problem.hpp"
+#include "downwash/report/curve_figure.hpp"
+#include "downwash/report/field_figure.hpp"
+
+namespace downwash::cli {
+
+/// What `aeromap plot` is asked for.
+struct PlotRequest {
+    std::string problem;
+    std::string what = "factor";
+    int rotor = 1;
+    std::optional<double> lateral_m;
+    double arm_deg = 0;
+    std::vector<double> x_m, z_m;  ///< low and high, or empty
+    std::vector<std::string> models;
+    std::string data, surface, source;
+    std::vector<double> z_over_r;
+    std::optional<double> max_factor, rotor_spacing;
+    bool is_flow = false;
+    std::string output;
+    int width_px = 1200;
+    bool is_quiet = false;
+};
+
+/// One kind of picture of a problem, by the name that --what gives it.
+struct FieldKind {
+    const char* name;
+    const char* description;
+    FieldFigure (*make)(const PlotRequest& request, const Problem& problem, const MapExtent& extent);
+};
+
+/// The factor on the thrust of a rotor, or one of its sides: "factor", "ground" and "ceiling". @throws UsageError
+[[nodiscard]] FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const MapExtent& extent);
+
+/// K of models over z/R, with measurements. @throws UsageError
+[[nodiscard]] CurveFigure model_figure(const PlotRequest& request);
+
+/// The potential flow of a rotor and its image. @throws UsageError
+[[nodiscard]] FieldFigure potential_flow_figure(const PlotRequest& request);
+
+}  // namespace downwash::cli
