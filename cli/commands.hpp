@@ -18,6 +18,7 @@ void add_aeromap(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 
 /// The same for the commands of `aeromap`.
+void add_aeromap_query(CLI::App& aeromap, Action& action);
 void add_aeromap_build(CLI::App& aeromap, Action& action);
 void add_aeromap_info(CLI::App& aeromap, Action& action);
 void add_aeromap_fit(CLI::App& aeromap, Action& action);

@@ -1,13 +1,94 @@
 #include "downwash/cli/model_option.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
+#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
+namespace {
+
+/// A number of the command line within its range.
+double checked(const char* option, const std::optional<double>& given, double otherwise, double low, double high) {
+    const double value = given.value_or(otherwise);
+    if (!(value >= low && value <= high)) {
+        throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, value, low, high));
+    }
+    return value;
+}
+
+void set_parameter(SurfaceEffect& effect, const std::string& text) {
+    const auto [name, value] = named_number("--set", text);
+    const EffectModelInfo& model = info(effect.model);
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        const ModelParameter& parameter = model.parameters[i];
+        names.push_back(parameter.name);
+        if (parameter.name == name) {
+            if (!(value >= parameter.low && value <= parameter.high) || (parameter.is_open && value == parameter.low)) {
+                throw UsageError(fmt::format("--set {}: expected a number {} {} and at most {}", text,
+                                             parameter.is_open ? "above" : "of at least", parameter.low,
+                                             parameter.high));
+            }
+            effect.parameters[i] = value;
+            return;
+        }
+    }
+    throw UsageError(fmt::format(
+        "--set {}: {} has {}", excerpt(text), model.name,
+        names.empty() ? "no parameters" : "the parameters " + joined_names(names) + did_you_mean(name, names)));
+}
+
+SurfaceEffect effect_of(const ModelChoice& choice) {
+    SurfaceEffect effect = model_named(choice.name).model;
+    for (const std::string& text : choice.set) {
+        set_parameter(effect, text);
+    }
+    const bool is_table = effect.model == EffectModel::table;
+    if (is_table == choice.table.empty()) {
+        throw UsageError(is_table ? "--model table wants --table FILE" : "--table FILE goes with --model table only");
+    }
+    if (is_table) {
+        effect.table = read_effect_table(choice.table);
+        if (effect.table->depends_on_d() && !choice.d_over_r) {
+            throw UsageError("--table " + choice.table + " is over two distances: expected --d-over-r D");
+        }
+        effect.d_over_r = choice.d_over_r;
+    }
+    return effect;
+}
+
+}  // namespace
+
+void add_model_options(CLI::App& command, ModelChoice& choice) {
+    command.add_option("--set", choice.set, "a parameter of the model, named as in a problem file; may be repeated")
+        ->type_name("NAME=VALUE");
+    command.add_option("--table", choice.table, "CSV file of the model `table`")->type_name("FILE");
+    command.add_option("--d-over-r", choice.d_over_r, "second distance of a table over two, in radii")->type_name("D");
+    command
+        .add_option("--rotor-spacing", choice.rotor_spacing,
+                    "spacing of adjacent rotors in radii, for the multirotor models (a square quadrotor); default 2.5")
+        ->type_name("D");
+    command.add_option("--max-factor", choice.max_factor, "cap of the model; default 2")->type_name("K");
+}
+
+bool is_given(const ModelChoice& choice) {
+    return !choice.set.empty() || !choice.table.empty() || choice.d_over_r || choice.rotor_spacing || choice.max_factor;
+}
+
+EffectCurve curve_option(const ModelChoice& choice) {
+    constexpr double usual_spacing = 2.5;
+    return {effect_of(choice), checked("--max-factor", choice.max_factor, AeroSettings{}.max_factor, 1, 100),
+            square_quadrotor(checked("--rotor-spacing", choice.rotor_spacing, usual_spacing, 0.1, 100))};
+}
 
 const EffectModelInfo& model_named(const std::string& name) {
     if (const EffectModelInfo* model = find_effect_model(name)) {
@@ -19,6 +100,17 @@ const EffectModelInfo& model_named(const std::string& name) {
     }
     throw UsageError("--model '" + excerpt(name) + "' is not known: expected one of " + joined_names(names) +
                      did_you_mean(name, names));
+}
+
+std::pair<std::string, double> named_number(const std::string& option, const std::string& text) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const char* end = text.data() + text.size();
+    double value = 0;
+    const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
+    if (equals == text.size() || error != std::errc() || rest != end) {
+        throw UsageError(option + " '" + excerpt(text) + "': expected NAME=NUMBER");
+    }
+    return {text.substr(0, equals), value};
 }
 
 }  // namespace downwash::cli

@@ -51,15 +51,26 @@ void ProgressDisplay::say(const std::string& text) {
 }
 
 void ProgressDisplay::show(const Progress& progress) {
-    if (is_quiet_) {
-        return;
+    if (!is_quiet_) {
+        show_line(text_of(progress));
     }
+}
+
+void ProgressDisplay::show(const std::string& task, double share) {
+    constexpr int width = 30;
+    if (!is_quiet_) {
+        const int done = static_cast<int>(share * width);
+        show_line(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));
+    }
+}
+
+void ProgressDisplay::show_line(const std::string& text) {
     if (is_live_) {
-        fmt::print(stderr, "{}{}", erase_line, text_of(progress));
+        fmt::print(stderr, "{}{}", erase_line, text);
         std::fflush(stderr);
         has_line_ = true;
     } else if (Clock::now() >= next_log_) {
-        logger().info(text_of(progress));
+        logger().info(text);
         next_log_ = Clock::now() + std::chrono::seconds(1);
     }
 }

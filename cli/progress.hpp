@@ -7,8 +7,8 @@
 
 namespace downwash::cli {
 
-/// Tells on standard error how a search goes: on a terminal in one line that is written anew, elsewhere in log lines,
-/// not more than one a second.
+/// Tells on standard error how a search or another long task goes: on a terminal in one line that is written anew,
+/// elsewhere in log lines, not more than one a second.
 class ProgressDisplay {
  public:
     explicit ProgressDisplay(bool is_quiet);
@@ -19,9 +19,13 @@ class ProgressDisplay {
     /// Says something once.
     void say(const std::string& text);
 
+    /// How far a search is.
     void show(const Progress& progress);
+    /// How much of a task is done, 0 to 1.
+    void show(const std::string& task, double share);
 
  private:
+    void show_line(const std::string& text);
     void clear_line();
 
     using Clock = std::chrono::steady_clock;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 
@@ -29,6 +30,8 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
     /// The surface effect on rotor i, or on the body when i is the number of rotors (see rotor_wrench).
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
+    /// The effect with its place beside the plane, as a map stores it.
+    [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers_[rotor_layer_[rotor]]; }
     /// Distance of rotor i to the left of the plane [m], and its layer in the aero map.
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
@@ -40,9 +43,10 @@ class DOWNWASH_EXPORT FlightModel {
     }
 
     /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
-    /// @param on_progress see AeroMap
+    /// @param on_progress see AeroMap   @param cache folder in which maps are kept between runs; empty: nowhere
     [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds, int threads = 1,
-                                                          const std::function<void(double)>& on_progress = {}) const;
+                                                          const std::function<void(double)>& on_progress = {},
+                                                          const std::filesystem::path& cache = {}) const;
 
     /// The vehicle at q = (x, z, pitch, arm) [m, m, rad, rad] with speeds u, controller rested, no energy spent.
     [[nodiscard]] FlightState state_at(const double q[4], const double u[4]) const noexcept;

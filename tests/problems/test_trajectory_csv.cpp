@@ -81,7 +81,7 @@ double worst_difference(const Problem& problem, const std::vector<Row>& rows, in
     const std::size_t rotors = problem.robot.rotors.positions_m.size();
     const bool lags = problem.robot.rotors.time_constant_s > 0;
     const auto factor = [&](std::size_t rotor, double x_m, double z_m) {
-        return model->direct().factor(problem.plane.to_world(x_m, problem.robot.rotors.positions_m[rotor][1], z_m));
+        return model->direct_factor(static_cast<int>(rotor), x_m, z_m);
     };
     double worst = 0;
     for (std::size_t k = 0; k + 1 < rows.size(); ++k) {

@@ -1,0 +1,93 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/cli/commands.hpp"
+
+namespace downwash::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json axis_json(const GridAxis& axis) {
+    return {{"low_m", axis.low_m}, {"high_m", axis.high_m}, {"step_m", axis.step_m()}, {"nodes", axis.count}};
+}
+
+Json json_of(const std::string& file, const FactorGrid& grid) {
+    auto fields = Json::array();
+    for (const GridField& field : grid.fields()) {
+        const auto [least, greatest] = std::minmax_element(field.values.begin(), field.values.end());
+        fields.push_back({{"name", field.name}, {"least", *least}, {"greatest", *greatest}});
+    }
+    auto provenance = Json::array();
+    for (const auto& [key, value] : grid.provenance()) {
+        provenance.push_back({{"key", key}, {"value", value}});
+    }
+    return {{"file", file},
+            {"kind", grid.is_planar() ? "planar" : "volume"},
+            {"frame", {{"origin_m", grid.frame().origin_m()}, {"heading_rad", grid.frame().heading_rad()}}},
+            {"x", axis_json(grid.x())},
+            {"y", axis_json(grid.y())},
+            {"z", axis_json(grid.z())},
+            {"lateral_offsets_m", grid.lateral_offsets_m()},
+            {"fields", std::move(fields)},
+            {"provenance", std::move(provenance)}};
+}
+
+void print_axis(const char* name, const GridAxis& axis) {
+    if (axis.count > 1) {
+        fmt::print("{:<12} {:.6g} to {:.6g} m, {} nodes {:.6g} m apart\n", name, axis.low_m, axis.high_m, axis.count,
+                   axis.step_m());
+    }
+}
+
+void print_text(const std::string& file, const FactorGrid& grid) {
+    constexpr double degrees_per_radian = 57.295779513082320877;
+    fmt::print("{}: {} grid, {} nodes\n", file, grid.is_planar() ? "planar" : "volume", grid.nodes());
+    const Vector3& origin_m = grid.frame().origin_m();
+    fmt::print("{:<12} origin ({:.6g}, {:.6g}, {:.6g}) m, heading {:.6g} deg\n", "frame", origin_m[0], origin_m[1],
+               origin_m[2], grid.frame().heading_rad() * degrees_per_radian);
+    print_axis("x", grid.x());
+    print_axis("y", grid.y());
+    print_axis("z", grid.z());
+    for (const double lateral_m : grid.lateral_offsets_m()) {
+        fmt::print("{:<12} {:.6g} m beside the plane\n", "layer", lateral_m);
+    }
+    for (const GridField& field : grid.fields()) {
+        const auto [least, greatest] = std::minmax_element(field.values.begin(), field.values.end());
+        fmt::print("{:<12} {:.6g} to {:.6g}\n", field.name, *least, *greatest);
+    }
+    for (const auto& [key, value] : grid.provenance()) {
+        fmt::print("{}: {}\n", key, value);
+    }
+}
+
+}  // namespace
+
+void add_aeromap_info(CLI::App& aeromap, Action& action) {
+    struct InfoArguments {
+        std::string file;
+        bool as_json = false;
+    };
+    const auto arguments = std::make_shared<InfoArguments>();
+    CLI::App* info_command = aeromap.add_subcommand("info", "What a file of a grid holds, and what made it");
+    info_command->add_option("FILE", arguments->file, ".vti or CSV file of factors")->required();
+    info_command->add_flag("--json", arguments->as_json, "print JSON");
+    info_command->callback([arguments, &action] {
+        action = [arguments] {
+            const FactorGrid grid = read_factor_grid(arguments->file);
+            if (arguments->as_json) {
+                fmt::print("{}\n", json_of(arguments->file, grid).dump(2));
+            } else {
+                print_text(arguments->file, grid);
+            }
+            return ExitCode::done;
+        };
+    });
+}
+
+}  // namespace downwash::cli

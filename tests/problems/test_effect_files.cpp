@@ -1,0 +1,107 @@
+#include <string>
+
+#include "downwash/aeromap/effect_table.hpp"
+#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "edits.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+constexpr std::string_view ground = "{model: cheeseman-bennett}";
+constexpr std::string_view models =
+    "  ground: {model: cheeseman-bennett}\n  ceiling: {model: sanchez-cuevas, k1: 6.9}\n";
+
+/// K = 1.25 wherever a rotor of the sound problem can get.
+std::string grid_csv(const std::string& lowest_x) {
+    std::string text = "x_m,z_m,factor\n";
+    for (const std::string x : {lowest_x, std::string("7")}) {
+        text += x + ",0,1.25\n" + x + ",6,1.25\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a measured table is read from beside its problem") {
+    const TestFolder folder;
+    folder.write("tilted.csv", "# ten degrees\nz_over_r,factor\n0.5,1.2\n1,1.05\n2,0.98\n4,1\n");
+    folder.write("robot.yaml", good_robot);
+    folder.write("problem.yaml", edited(good_problem, ground, "{model: table, file: tilted.csv}"));
+    const Problem problem = read_problem(folder / "problem.yaml");
+    CHECK(problem.aero.ground.model == EffectModel::table);
+    REQUIRE(problem.aero.ground.table);
+    CHECK(problem.aero.ground.table->at()(2) == 0.98);
+    CHECK(!problem.aero.ground.d_over_r);
+    const auto model = make_flight_model(problem);
+    CHECK(model->direct_factor(0, -4, 2 * 0.19) == Approx(0.98));
+
+    // What is written into another folder reads as the same problem.
+    std::filesystem::create_directory(folder / "out");
+    folder.write("out/effective.yaml", effective_yaml(problem, folder / "out"));
+    const Problem again = read_problem(folder / "out/effective.yaml");
+    CHECK(problem_sha256(again) == problem_sha256(problem));
+
+    // The content counts, not the place.
+    folder.write("tilted.csv", "z_over_r,factor\n0.5,1.2\n1,1.05\n2,0.97\n4,1\n");
+    CHECK(problem_sha256(read_problem(folder / "problem.yaml")) != problem_sha256(problem));
+}
+
+TEST_CASE("a table that is missing, broken or out of place is refused where it is named") {
+    const TestFolder folder;
+    folder.write("broken.csv", "z_over_r,factor\n0.5,1.2\n0.5,1.1\n");
+    folder.write("good.csv", "z_over_r,factor\n0.5,1.2\n1,1.1\n");
+    CHECK(faults_after(folder, {ground, "{model: table}", ""}) ==
+          "problem.yaml:10:3: aero.ground.file is missing: expected the file of the table");
+    CHECK(faults_after(folder, {ground, "{model: table, file: nowhere.csv}", ""})
+              .find("problem.yaml:10:32: aero.ground.file") == 0);
+    CHECK(faults_after(folder, {ground, "{model: table, file: broken.csv}", ""}).find("broken.csv:3") !=
+          std::string::npos);
+    CHECK(faults_after(folder, {ground, "{model: he, file: good.csv}", ""}) ==
+          "problem.yaml:10:24: aero.ground.file has a meaning only with the model table: remove it");
+    CHECK(faults_after(folder, {ground, "{model: table, file: good.csv, d_over_r: -1}", ""}) ==
+          "problem.yaml:10:52: aero.ground.d_over_r is -1: expected a number from 0 to 10000");
+}
+
+TEST_CASE("a fountain is refused under a ceiling") {
+    const TestFolder folder;
+    CHECK(faults_after(folder, {"{model: sanchez-cuevas, k1: 6.9}", "{model: multirotor-body}", ""})
+              .find("problem.yaml:11:20: aero.ceiling.model is multirotor-body: expected a model without a fountain") ==
+          0);
+}
+
+TEST_CASE("a grid of factors takes the place of the models") {
+    const TestFolder folder;
+    folder.write("map.csv", grid_csv("-7"));
+    folder.write("robot.yaml", good_robot);
+    folder.write("problem.yaml", edited(good_problem, models, "  map: map.csv\n"));
+    const Problem problem = read_problem(folder / "problem.yaml");
+    REQUIRE(problem.aero.map);
+    const auto model = make_flight_model(problem);
+    CHECK(model->direct_factor(0, 0, 2) == Approx(1.25));
+    CHECK(model->make_map(problem.bounds)->factor(model->rotor_layer(1), 1.3, 2.2) == Approx(1.25).epsilon(1e-6));
+
+    std::filesystem::create_directory(folder / "out");
+    folder.write("out/effective.yaml", effective_yaml(problem, folder / "out"));
+    CHECK(problem_sha256(read_problem(folder / "out/effective.yaml")) == problem_sha256(problem));
+}
+
+TEST_CASE("a grid that does not reach as far as the rotors is refused") {
+    const TestFolder folder;
+    folder.write("map.csv", grid_csv("-5"));
+    const std::string said = faults_after(folder, {models, "  map: map.csv\n", ""});
+    CAPTURE(said);
+    CHECK(said.find("problem.yaml:10:8: aero.map does not reach the world point (-6.3, 0.3, 0.2)") == 0);
+    CHECK(said.find("-6.3 to 6.3 m along the plane") != std::string::npos);
+}
+
+TEST_CASE("models beside a grid of factors are refused") {
+    const TestFolder folder;
+    folder.write("map.csv", grid_csv("-7"));
+    CHECK(faults_after(folder, {ground, "{model: he}\n  map: map.csv", ""}) ==
+          "problem.yaml:10:3: aero.ground has a meaning only without aero.map: remove it\n"
+          "problem.yaml:12:3: aero.ceiling has a meaning only without aero.map: remove it");
+}
