@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/planner_options.hpp"
@@ -44,6 +45,7 @@ ExitCode run(const SolveArguments& arguments) {
     options.threads = arguments.threads;
     options.stop_at_first_solution = arguments.stop_at_first;
     options.stop = interruption.token();
+    options.map_cache = arguments.no_cache ? std::filesystem::path() : cache_folder();
     Solution solution;
     {
         ProgressDisplay display(arguments.is_quiet);
@@ -75,7 +77,7 @@ void add_solve(CLI::App& program, Action& action) {
         ->type_name("DIR");
     command->add_flag("--stop-at-first", arguments->stop_at_first, "end with the first plan that is accepted");
     command->add_flag("--no-cache", arguments->no_cache,
-                      "neither read nor write the cache of aero maps (this version has none yet)");
+                      "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
     command->add_flag("--quiet", arguments->is_quiet, "only faults on standard error, no progress");
     command->add_flag("--json", arguments->as_json, "print solution.json on standard output instead of a summary");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });

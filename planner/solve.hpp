@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -30,6 +31,7 @@ struct SolveOptions {
     std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
     bool stop_at_first_solution = false;
     std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty
+    std::filesystem::path map_cache;     ///< folder in which maps are kept between runs; empty: nowhere
 };
 
 /// One search algorithm.

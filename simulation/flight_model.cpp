@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "downwash/aeromap/map_cache.hpp"
+
 namespace downwash {
 namespace {
 
@@ -34,8 +36,9 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
 }
 
 std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,
-                                                     const std::function<void(double)>& on_progress) const {
-    return std::make_shared<const AeroMap>(layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
+                                                     const std::function<void(double)>& on_progress,
+                                                     const std::filesystem::path& cache) const {
+    return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
 }
 
 MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {

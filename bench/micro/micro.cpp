@@ -2,10 +2,14 @@
 // run, not figures of different machines or days; see README.md.
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -110,7 +114,7 @@ void direct_effect(benchmark::State& state) {
     const std::vector<Query> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
         for (const Query& q : queries) {
-            benchmark::DoNotOptimize(bridge.model->direct().factor({q.x_m, 0.32, q.z_m}));
+            benchmark::DoNotOptimize(bridge.model->effect(0).factor({q.x_m, 0.32, q.z_m}));
         }
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
@@ -150,6 +154,23 @@ void map_build(benchmark::State& state) {
     state.counters["MB"] = static_cast<double>(bridge.map->memory_bytes()) * 1e-6;
 }
 BENCHMARK(map_build)->Unit(benchmark::kMillisecond);
+
+/// What map_build costs from the second run on: key, file, digest and sampled values included.
+void map_load(benchmark::State& state) {
+    const Bridge& bridge = Bridge::get();
+    const auto folder = std::filesystem::temp_directory_path() / ("downwash-bench-" + std::to_string(getpid()));
+    const MapCache cache(folder);
+    cache.keep(*bridge.map);
+    for ([[maybe_unused]] auto _ : state) {
+        if (!cache.find(bridge.map->layers(), bridge.map->plane(), bridge.map->extent())) {
+            state.SkipWithError("the map was not found");
+            break;
+        }
+    }
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+}
+BENCHMARK(map_load)->Unit(benchmark::kMillisecond);
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {

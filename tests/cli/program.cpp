@@ -24,7 +24,10 @@ void redirect(const fs::path& file, int descriptor) {
 }
 
 [[noreturn]] void become_program(const fs::path& folder, const fs::path& out, const fs::path& err,
-                                 const std::vector<std::string>& arguments) {
+                                 const std::vector<std::string>& arguments, const Environment& environment) {
+    for (const auto& [name, value] : environment) {
+        value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
+    }
     std::vector<char*> argv{const_cast<char*>(DOWNWASH_PROGRAM)};  // NOLINT(cppcoreguidelines-pro-type-const-cast): C
     for (const std::string& argument : arguments) {
         argv.push_back(const_cast<char*>(argument.c_str()));  // NOLINT(cppcoreguidelines-pro-type-const-cast): C
@@ -74,10 +77,12 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
     return files;
 }
 
-Program::Program(const ScratchFolder& folder, const std::vector<std::string>& arguments)
+Program::Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment)
     : out_(folder / "standard-output"), err_(folder / "standard-error"), process_(fork()) {
     if (process_ == 0) {
-        become_program(folder.path() / "run", out_, err_, arguments);
+        Environment whole = environment;
+        whole.emplace("XDG_CACHE_HOME", folder / "cache");
+        become_program(folder.path() / "run", out_, err_, arguments, whole);
     }
 }
 
@@ -101,8 +106,8 @@ Result Program::wait() const {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out_), read_file(err_)};
 }
 
-Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
-    return Program(folder, arguments).wait();
+Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment) {
+    return Program(folder, arguments, environment).wait();
 }
 
 }  // namespace downwash::test

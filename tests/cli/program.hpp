@@ -43,10 +43,14 @@ struct Result {
     [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
 
-/// The program, running in a folder.
+/// Environment variables; an empty value takes one away.
+using Environment = std::map<std::string, std::string>;
+
+/// The program, running in a folder. Its cache is `cache` beside that, unless the environment says otherwise.
 class Program {
  public:
-    Program(const ScratchFolder& folder, const std::vector<std::string>& arguments);
+    Program(const ScratchFolder& folder, const std::vector<std::string>& arguments,
+            const Environment& environment = {});
 
     void send(int signal) const;
     /// Waits until standard error holds a text, a few seconds at most.
@@ -59,6 +63,7 @@ class Program {
 };
 
 /// Runs the program in a folder to its end.
-[[nodiscard]] Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments);
+[[nodiscard]] Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments,
+                         const Environment& environment = {});
 
 }  // namespace downwash::test
