@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_bytes = 16'000'000;
 constexpr std::size_t most_rows = 100'000;
-constexpr std::size_t most_columns = 64;
+constexpr std::size_t most_columns = 32;
 constexpr std::size_t most_faults = 20;
 
 std::string_view trimmed(std::string_view text) {

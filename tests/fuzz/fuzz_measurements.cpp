@@ -1,0 +1,25 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "downwash/aeromap/effect_comparison.hpp"
+#include "downwash/aeromap/measurements.hpp"
+#include "downwash/base/fault.hpp"
+
+/// Whatever is read as measurements can be compared and fitted, or is refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace downwash;
+    try {
+        const Measurements measurements = parse_measurements({reinterpret_cast<const char*>(data), size}, "data.csv");
+        for (const DataSetComparison& set : compare_effects(measurements)) {
+            for (const ModelScore& score : set.scores) {
+                if (!(score.rmse >= 0)) {
+                    std::abort();
+                }
+            }
+        }
+    } catch (const InputError&) {
+        return 0;
+    }
+    return 0;
+}
