@@ -270,28 +270,6 @@ class DiscQuadrature {
     std::pmr::vector<double> cuts_;
 };
 
-/// Least gap of any part over the disc, and the gap of the nearest level part that covers the disc.
-struct Nearest {
-    double cover_m = infinity;
-    double other_m = infinity;
-};
-
-double least_gap(const DiscQuery& query, const Scene::Bounds& bounds) {
-    return query.gap(bounds.low_m[2], bounds.high_m[2]);
-}
-
-Nearest nearest_of(const DiscQuery& query, std::span<const Footprint* const> footprints) {
-    Nearest nearest;
-    for (const Footprint* footprint : footprints) {
-        const double gap = least_gap(query, footprint->bounds);
-        const bool covers =
-            footprint->is_level && footprint->covers_disc(query.hub_m[0], query.hub_m[1], query.radius_m);
-        double& least = covers ? nearest.cover_m : nearest.other_m;
-        least = std::min(least, gap);
-    }
-    return nearest;
-}
-
 /// Triangles and boxes of octrees over or under the disc; none that is seen from its edge only.
 void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
     const auto& [x, y, z] = query.hub_m;
@@ -314,15 +292,22 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     add_others(query, others);
 
     std::vector<Footprint> made;  // of the others, when they are few
-    std::pmr::vector<const Footprint*> footprints(&memory);
-    footprints.reserve(16);
+    std::pmr::vector<Candidate> candidates(&memory);
+    candidates.reserve(16);
+    double cover_m = infinity;  // gap of the nearest level part that covers the disc
     const auto add_over_disc = [&](const Footprint& footprint) {
-        if (footprint.meets_column(query.hub_m[0], query.hub_m[1], query.radius_m)) {
-            footprints.push_back(&footprint);
+        if (!footprint.meets_column(query.hub_m[0], query.hub_m[1], query.radius_m)) {
+            return;
+        }
+        const double gap = query.gap(footprint.bounds.low_m[2], footprint.bounds.high_m[2]);
+        if (footprint.is_level && footprint.covers_disc(query.hub_m[0], query.hub_m[1], query.radius_m)) {
+            cover_m = std::min(cover_m, gap);
+        } else if (gap < infinity) {
+            candidates.push_back({&footprint, gap, 1});
         }
     };
     std::for_each(primitives.begin(), primitives.end(), add_over_disc);
-    const bool are_few = footprints.size() + others.size() <= most_with_crossings;
+    const bool are_few = candidates.size() + others.size() <= most_with_crossings;
     if (are_few && !others.empty()) {
         made.reserve(others.size());
         for (const std::size_t part : others) {
@@ -330,26 +315,22 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
         }
         std::for_each(made.begin(), made.end(), add_over_disc);
     }
-
-    const Nearest nearest = nearest_of(query, footprints);
+    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                    [&](const Candidate& candidate) { return candidate.gap_m >= cover_m; }),
+                     candidates.end());
     if (!are_few) {
-        for (const Footprint* footprint : footprints) {
-            others.push_back(footprint->part);
+        for (const Candidate& candidate : candidates) {
+            others.push_back(candidate.footprint->part);
         }
-        return chord_sum(query, nearest.cover_m, others, &memory);
+        return chord_sum(query, cover_m, others, &memory);
     }
-    if (nearest.other_m >= nearest.cover_m) {
-        return query.factor(nearest.cover_m);
+    if (candidates.empty()) {
+        return query.factor(cover_m);
     }
-    std::pmr::vector<Candidate> candidates(&memory);
-    candidates.reserve(footprints.size());
-    for (const Footprint* footprint : footprints) {
-        const double gap = least_gap(query, footprint->bounds);
-        if (gap < nearest.cover_m) {
-            candidates.push_back({footprint, gap, query.factor(gap)});
-        }
+    for (Candidate& candidate : candidates) {
+        candidate.factor = query.factor(candidate.gap_m);
     }
-    return DiscQuadrature(query, nearest.cover_m, candidates, &memory).average();
+    return DiscQuadrature(query, cover_m, candidates, &memory).average();
 }
 
 }  // namespace downwash

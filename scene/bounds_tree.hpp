@@ -12,7 +12,7 @@
 namespace downwash {
 
 /// A hierarchy of bounding boxes over numbered parts: finds those in question among millions without asking each. A
-/// few parts are one leaf and are asked one after the other, in their order.
+/// few parts are asked one after the other, in their order.
 class BoundsTree {
  public:
     BoundsTree() = default;
@@ -23,11 +23,17 @@ class BoundsTree {
     /// @param gap of a box; no box within another has a smaller one than that other
     template <class Gap, class Visit>
     bool any(const Gap& gap, const double& limit, const Visit& visit) const {
+        if (nodes_.size() <= 1) {
+            for (std::size_t part = 0; part < order_.size(); ++part) {
+                if (visit(part)) {
+                    return true;
+                }
+            }
+            return false;
+        }
         std::array<Entry, most_levels> open;
         std::size_t count = 0;
-        if (!nodes_.empty()) {
-            open[count++] = {0, gap(nodes_[0].bounds)};
-        }
+        open[count++] = {0, gap(nodes_[0].bounds)};
         while (count > 0) {
             const Entry entry = open[--count];
             if (entry.gap > limit) {

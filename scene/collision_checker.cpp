@@ -29,7 +29,8 @@ bool is_finite(const PlanarPose& pose) {
     return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad);
 }
 
-/// A frame of the robot in the plane of motion: turned by an angle about the lateral axis, then moved within the plane.
+/// A frame of the robot in the frame of the plane of motion (x along the heading, y to the left, z up): turned by an
+/// angle about the lateral axis, then moved within the plane.
 struct Frame {
     double x_m, z_m, cosine, sine;
 
@@ -38,13 +39,20 @@ struct Frame {
         const Vector3 p = turned(p_m);
         return {x_m + p[0], p[1], z_m + p[2]};
     }
-    Convex placed(const Convex& own) const {
+    /// In the world.
+    Convex placed(const Convex& own, const PlaneOfMotion& plane) const {
+        const auto in_world = [&](const Vector3& own_direction) {
+            const Vector3 v = turned(own_direction);
+            return Vector3{v[0] * plane.cos_heading() - v[1] * plane.sin_heading(),
+                           v[0] * plane.sin_heading() + v[1] * plane.cos_heading(), v[2]};
+        };
+        const Vector3 center = placed(own.center_m);
         Convex convex = own;
-        convex.center_m = placed(own.center_m);
+        convex.center_m = plane.to_world(center[0], center[1], center[2]);
         for (std::size_t i = 0; i < static_cast<std::size_t>(own.segment_count); ++i) {
-            convex.half_axes_m[i] = turned(own.half_axes_m[i]);
+            convex.half_axes_m[i] = in_world(own.half_axes_m[i]);
         }
-        convex.disc_normal = turned(own.disc_normal);
+        convex.disc_normal = in_world(own.disc_normal);
         return convex;
     }
 };
@@ -91,21 +99,6 @@ std::vector<Piece> pieces_of(const RobotShape& robot) {
     return pieces;
 }
 
-/// From the frame of the plane of motion (x along the heading, y to the left, z up) to the world.
-Convex in_world(const Convex& planar, const PlaneOfMotion& plane) {
-    const auto turned = [&](const Vector3& v) {
-        return Vector3{v[0] * plane.cos_heading() - v[1] * plane.sin_heading(),
-                       v[0] * plane.sin_heading() + v[1] * plane.cos_heading(), v[2]};
-    };
-    Convex convex = planar;
-    convex.center_m = plane.to_world(planar.center_m[0], planar.center_m[1], planar.center_m[2]);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(planar.segment_count); ++i) {
-        convex.half_axes_m[i] = turned(planar.half_axes_m[i]);
-    }
-    convex.disc_normal = turned(planar.disc_normal);
-    return convex;
-}
-
 /// Upper bound of the distance from the frame's origin to any point of the solid.
 double reach_of(const Convex& convex) {
     const Scene::Bounds bounds = bounds_of(convex);
@@ -137,7 +130,7 @@ struct CollisionChecker::Impl {
         const Vector3 joint = body.placed(joint_m);
         const Frame arm = frame_at(joint[0], joint[2], pose.pitch_rad + pose.arm_rad);
         return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-            const Convex placed = in_world((piece.is_arm ? arm : body).placed(piece.convex), plane);
+            const Convex placed = (piece.is_arm ? arm : body).placed(piece.convex, plane);
             return visit(placed, bounds_of(placed));
         });
     }
@@ -196,7 +189,9 @@ bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) c
     return impl_->any_piece(pose, [&](const Convex& piece, const Scene::Bounds& bounds) {
         const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
         const auto is_near = [&](std::size_t part) {
-            return gap(solids.parts.bounds(part)) <= near_m && is_nearer(piece, solids.parts.convex(part), margin_m);
+            return gap(solids.parts.bounds(part)) <= near_m &&
+                   solids.parts.with_convex(part,
+                                            [&](const Convex& convex) { return is_nearer(piece, convex, margin_m); });
         };
         return solids.parts.tree.any(gap, near_m, is_near) || solids.is_inside_mesh(piece.center_m);
     });
@@ -214,12 +209,11 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
             if (gap(solids.parts.bounds(part)) >= least) {
                 return false;
             }
-            const Convex convex = solids.parts.convex(part);
-            double distance = distance_m(piece, convex, least);
-            if (distance > 0 && distance < contact_band_m && fcl_says_contact(piece, convex)) {
-                distance = 0;
-            }
-            least = std::min(least, distance);
+            least = std::min(least, solids.parts.with_convex(part, [&](const Convex& convex) {
+                const double distance = distance_m(piece, convex, least);
+                const bool is_close = distance > 0 && distance < contact_band_m;
+                return is_close && fcl_says_contact(piece, convex) ? 0 : distance;
+            }));
             return false;
         });
         if (least > 0 && solids.is_inside_mesh(piece.center_m)) {

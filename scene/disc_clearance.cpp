@@ -53,7 +53,8 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
     const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
     solids.parts.tree.any(gap, least, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < least) {
-            least = std::min(least, distance_m(disc, solids.parts.convex(part), least));
+            least = std::min(least, solids.parts.with_convex(
+                                        part, [&](const Convex& convex) { return distance_m(disc, convex, least); }));
         }
         return least <= 0;
     });
@@ -67,7 +68,8 @@ bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
     const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
     const bool is_near = solids.parts.tree.any(gap, distance_m, [&](std::size_t part) {
         return gap(solids.parts.bounds(part)) <= distance_m &&
-               is_nearer_than(disc, solids.parts.convex(part), distance_m);
+               solids.parts.with_convex(part,
+                                        [&](const Convex& convex) { return is_nearer_than(disc, convex, distance_m); });
     });
     return !is_near && !solids.is_inside_mesh(center_m);
 }
@@ -78,7 +80,9 @@ double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
     const auto gap = [&](const Scene::Bounds& box) { return level_gap_m(box, point_m); };
     solids.parts.tree.any(gap, least, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < least) {
-            least = std::min(least, touching_radius_m(solids.parts.convex(part), point_m, least));
+            least = std::min(least, solids.parts.with_convex(part, [&](const Convex& convex) {
+                return touching_radius_m(convex, point_m, least);
+            }));
         }
         return least <= 0;
     });

@@ -21,7 +21,7 @@ void Parts::index() {
     tree = BoundsTree(all);
 }
 
-Convex Parts::convex(std::size_t part) const noexcept {
+Convex Parts::convex_of_other(std::size_t part) const noexcept {
     return visit(
         part, [this](std::size_t i) { return primitive_convexes[i]; },
         [](const OctreeBox& box, const Placement& placement) {
@@ -30,7 +30,7 @@ Convex Parts::convex(std::size_t part) const noexcept {
         [](const Triangle& triangle) { return convex_of(triangle); });
 }
 
-Scene::Bounds Parts::bounds(std::size_t part) const noexcept {
+Scene::Bounds Parts::bounds_of_other(std::size_t part) const noexcept {
     return visit(
         part, [this](std::size_t i) { return primitive_bounds[i]; },
         [](const OctreeBox& box, const Placement& placement) {

@@ -44,8 +44,14 @@ struct Parts {
     [[nodiscard]] std::size_t first_triangle() const noexcept { return primitives.size() + octree_boxes.size(); }
     [[nodiscard]] std::size_t count() const noexcept { return first_triangle() + triangles.size(); }
 
-    [[nodiscard]] Convex convex(std::size_t part) const noexcept;
-    [[nodiscard]] Scene::Bounds bounds(std::size_t part) const noexcept;
+    [[nodiscard]] Scene::Bounds bounds(std::size_t part) const noexcept {
+        return part < primitive_bounds.size() ? primitive_bounds[part] : bounds_of_other(part);
+    }
+    /// Calls `use(convex)` with the part as a solid.
+    template <class Use>
+    auto with_convex(std::size_t part, const Use& use) const {
+        return part < primitive_convexes.size() ? use(primitive_convexes[part]) : use(convex_of_other(part));
+    }
 
     /// Calls one of `of_primitive(index)`, `of_box(box, its placement)` and `of_triangle(triangle)`.
     template <class OfPrimitive, class OfBox, class OfTriangle>
@@ -60,6 +66,10 @@ struct Parts {
         }
         return of_triangle(triangles[part - first_triangle()]);
     }
+
+ private:
+    [[nodiscard]] Convex convex_of_other(std::size_t part) const noexcept;
+    [[nodiscard]] Scene::Bounds bounds_of_other(std::size_t part) const noexcept;
 };
 
 }  // namespace downwash

@@ -182,7 +182,7 @@ void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>&
     std::visit(SizeInspector{key, faults}, shape);
 }
 
-bool Scene::Solids::is_inside_mesh(const Vector3& p_m) const noexcept {
+bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {
     const auto apart_upwards = [&](const Bounds& box) {
         return std::max({box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1],
                          p_m[2] - box.high_m[2]});

@@ -25,7 +25,12 @@ struct Scene::Solids {
     std::vector<ClosedSurface> closed_surfaces;
 
     /// Whether a point lies inside a closed mesh. Points on its surface may count as either.
-    [[nodiscard]] bool is_inside_mesh(const Vector3& p_m) const noexcept;
+    [[nodiscard]] bool is_inside_mesh(const Vector3& p_m) const noexcept {
+        return !closed_surfaces.empty() && is_inside_closed_surface(p_m);
+    }
+
+ private:
+    [[nodiscard]] bool is_inside_closed_surface(const Vector3& p_m) const noexcept;
 };
 
 /// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
