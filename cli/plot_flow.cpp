@@ -49,7 +49,7 @@ FieldFigure potential_flow_figure(const PlotRequest& request) {
         flow_figure(velocity, {-1.6 * top, 1.6 * top, -top, top}, starts,
                     signed_scale("axial velocity over the induced velocity in free air [1], upwards positive", reach));
     figure.title =
-        fmt::format("Potential flow of a rotor {} radii over the ground and of its image", to_text(height, 4));
+        fmt::format("Potential flow of a rotor at z/R = {} over the ground and of its image", to_text(height, 4));
     figure.subtitle = "thesis (2.10) to (2.12): a source at each hub; the ground between them is a plane of symmetry";
     figure.x_label = "x/R [1]";
     figure.z_label = "z/R [1]";

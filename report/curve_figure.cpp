@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "downwash/base/fault.hpp"
@@ -58,6 +59,40 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
     }
 }
 
+/// What of the y axis the data need, with a little room.
+AxisRange needed_range(const CurveFigure& figure) {
+    constexpr double room = 0.04;
+    AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    const auto widen = [&](double x, double y) {
+        const bool is_shown = !figure.x_range || (x >= figure.x_range->low && x <= figure.x_range->high);
+        if (is_shown && std::isfinite(y)) {
+            range = {std::min(range.low, y), std::max(range.high, y)};
+        }
+    };
+    for (const Curve& curve : figure.curves) {
+        for (const DiagramPoint& p : curve.points) {
+            widen(p.x, p.y);
+        }
+    }
+    for (const MeasuredPoints& measured : figure.measurements) {
+        for (std::size_t i = 0; i < measured.points.size(); ++i) {
+            const DiagramPoint& p = measured.points[i];
+            const double error = measured.errors.empty() ? 0 : measured.errors[i];
+            widen(p.x, p.y - error);
+            widen(p.x, p.y + error);
+        }
+    }
+    if (figure.level) {
+        range = {std::min(range.low, *figure.level), std::max(range.high, *figure.level)};
+    }
+    if (!(range.low <= range.high)) {  // nothing within the range of x
+        return {0, 1};
+    }
+    const double size = range.high - range.low;
+    const double more = size > 0 ? room * size : std::max(1e-6, room * std::abs(range.high));
+    return {range.low - more, range.high + more};
+}
+
 /// One figure and its place.
 class Panel {
  public:
@@ -83,15 +118,15 @@ class Panel {
         legend_.place(script, middle_px, axes_top_px + legend_height_px_ + 4, right_px - left_px);
         script.set_axes(left_px, right_px, bottom_px + below_axes_px, axes_top_px);
         add_range(script, "x", figure_.x_range);
-        add_range(script, "y", figure_.y_range);
+        add_range(script, "y", figure_.y_range.value_or(needed_range(figure_)));
         script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label)));
         script.add(fmt::format("set ylabel {} offset 0.4,0", in_quotes(figure_.y_label)));
         script.add(data_);
         std::string level;
         if (figure_.level) {
-            level = fmt::format(", {} with lines linewidth 0.8 linecolor rgb '#606060' notitle", *figure_.level);
+            level = fmt::format("{} with lines linewidth 0.8 linecolor rgb '#606060' notitle, ", *figure_.level);
         }
-        script.add("plot " + elements_ + level);
+        script.add("plot " + level + elements_);
     }
 
  private:

@@ -286,7 +286,7 @@ void add_names(GnuplotScript& script, const FieldFigure& figure, const std::vect
                                           std::clamp(label.leader->y, label.box.bottom, label.box.top)),
                                    screen(label.leader->x, label.leader->y), outline_color));
         }
-        if (!label.is_inside) {
+        if (label.needs_ground) {
             script.add(
                 fmt::format("set object rectangle from {} to {} front fillcolor rgb '#ffffff' "
                             "fillstyle solid 0.85 noborder",
@@ -310,7 +310,7 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const MapExtent
         const PlanePoint& to = piece[piece.size() / 2];
         if (is_shown(from) && is_shown(to)) {
             script.add(
-                fmt::format("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} front size screen 0.008,22 filled "
+                fmt::format("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} front size screen 0.009,20 fixed filled "
                             "linecolor rgb {} linewidth {}",
                             from.x_m, from.z_m, to.x_m, to.z_m, in_quotes(lines.color), lines.width_px));
         }
@@ -367,7 +367,11 @@ void add_outlines(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
                           fmt::format("fillstyle solid noborder fillcolor rgb {}", obstacle_color),
                           std::exchange(has_cut, true) ? "" : "obstacle");
         }
-        plot.add_lines(edge, fmt::format("linewidth 1 linecolor rgb {}", outline_color));
+        // The many cubes of an octree are shown as one.
+        constexpr std::size_t most_outlined = 30;
+        plot.add_lines(edge, outline.rings.size() <= most_outlined
+                                 ? fmt::format("linewidth 1 linecolor rgb {}", outline_color)
+                                 : fmt::format("linewidth 0.5 linecolor rgb {}", obstacle_color));
     }
 }
 

@@ -161,6 +161,25 @@ class Placement {
         return true;
     }
 
+    /// Whether the outline of a shape passes through a box.
+    [[nodiscard]] bool crosses_lines(const PixelBox& box) const {
+        constexpr double step_px = 3;
+        for (const Visible& shape : visible_) {
+            for (const Ring& ring : shape.rings) {
+                for (std::size_t i = 0; i < ring.size(); ++i) {
+                    const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+                    const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / step_px);
+                    for (double k = 0; k < steps; ++k) {
+                        if (box.holds(PixelPoint{a.x + k / steps * (b.x - a.x), a.y + k / steps * (b.y - a.y)})) {
+                            return true;
+                        }
+                    }
+                }
+            }
+        }
+        return false;
+    }
+
     /// Whether a box lies on no filled shape, its own included.
     [[nodiscard]] bool is_off_shapes(const PixelBox& box) const {
         return std::none_of(visible_.begin(), visible_.end(), [&](const Visible& shape) {
@@ -194,7 +213,7 @@ class Placement {
                 const bool fits = all_points(box, [&](const PixelPoint& p) { return is_inside(shape.main, p); });
                 if (fits && is_free(box) &&
                     (shape.is_filled ? !covers_other(box, i) : is_off_shapes(box) && is_plain(box))) {
-                    labels_.push_back({i, box, shape.is_filled, {}});
+                    labels_.push_back({i, box, shape.is_filled, !shape.is_filled && crosses_lines(box), {}});
                     return;
                 }
             }
@@ -279,7 +298,7 @@ class Placement {
                 for (const PixelPoint& place : places_around(bounds, gap, shape.width_px, height_px_)) {
                     const PixelBox box = around(place, shape.width_px, height_px_);
                     if (meets(demand, box, i)) {
-                        labels_.push_back({i, box, false, {}});
+                        labels_.push_back({i, box, false, !is_plain(box) || crosses_lines(box), {}});
                         if (k > 0) {
                             labels_.back().leader = nearest_point(shape.main, place);
                         }

@@ -40,6 +40,7 @@ struct PlacedLabel {
     std::size_t shape = 0;
     PixelBox box;
     bool is_inside = false;            ///< on its own filled shape
+    bool needs_ground = false;         ///< something would be seen through the letters
     std::optional<PixelPoint> leader;  ///< where a line from the name should lead, when it stands apart
 };
 
