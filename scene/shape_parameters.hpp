@@ -9,7 +9,8 @@
 
 namespace downwash {
 
-/// Adds the primitive shapes that a solid can have to a parameter table, each with what add_place(rows, path) adds to it.
+/// Adds the primitive shapes that a solid can have to a parameter table, each with what add_place(rows, path) adds to
+/// it.
 /// @param path of the list element that the shape is in, for example "environment.obstacles[]"
 /// @param shape a lambda (model, index) -> Shape&
 template <class Model, class ShapeOf, class AddPlace>
