@@ -340,6 +340,7 @@ EffectFit fit_effect(EffectModel model, const std::vector<Measurement>& points, 
     check_points(points, free.size(), options);
 
     std::vector<double> source_values;
+    source_values.reserve(free.size());
     for (const Free& range : free) {
         source_values.push_back(std::clamp(start.parameters[range.index], range.low, range.high));
     }

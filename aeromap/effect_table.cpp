@@ -174,6 +174,7 @@ std::string distance_text(const Entry& entry, bool has_d) {
 std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*coordinate, const std::string& name,
                             LineFaults& faults) {
     std::vector<std::pair<double, std::size_t>> values;  // with the line of the first row that has it
+    values.reserve(entries.size());
     for (const Entry& entry : entries) {
         values.emplace_back(entry.*coordinate, entry.line);
     }

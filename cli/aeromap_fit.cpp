@@ -1,20 +1,25 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "downwash/aeromap/effect_fit.hpp"
+#include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/report/curve_figure.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -27,6 +32,7 @@ struct FitArguments {
     std::vector<std::string> fixed;
     bool is_weighted = false;
     bool as_json = false;
+    std::string plot;
 };
 
 /// "NAME=VALUE" as a parameter and its number.
@@ -140,8 +146,86 @@ void print_fit(const FitArguments& arguments, const EffectModelInfo& model, cons
     }
 }
 
+/// Measurements with the fitted curve and that of the model's source, and what is left of them below.
+std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const EffectFit& fit,
+                                      const std::vector<Measurement>& points, const RotorNeighbours& neighbours) {
+    CurveFigure curves;
+    curves.title = fmt::format("{} {} {} measurements", model.name, model.parameters.empty() ? "beside" : "fitted to",
+                               points.size());
+    for (const FittedParameter& parameter : fit.parameters) {
+        curves.subtitle += std::string(parameter.name) + " " + to_text(parameter.value, 4) +
+                           (parameter.standard_error ? " ± " + to_text(*parameter.standard_error, 2) : "") + ", ";
+    }
+    curves.subtitle += "RMSE " + to_text(fit.rmse, 4);
+    curves.x_label = "z/R";
+    curves.y_label = "thrust ratio K";
+    curves.level = 1;
+    CurveFigure rest;
+    rest.x_label = curves.x_label;
+    rest.y_label = "measured minus model";
+    rest.level = 0;
+    MeasuredPoints measured{"measured", {}, {}}, residuals{"residuals", {}, {}};
+    double near = points.front().z_over_r, far = near, largest = 1;
+    bool all_have_sigma = true;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        near = std::min(near, points[i].z_over_r);
+        far = std::max(far, points[i].z_over_r);
+        largest = std::max(largest, points[i].thrust_ratio);
+        measured.points.push_back({points[i].z_over_r, points[i].thrust_ratio});
+        residuals.points.push_back({points[i].z_over_r, fit.residuals[i]});
+        measured.errors.push_back(points[i].sigma.value_or(0));
+        all_have_sigma = all_have_sigma && points[i].sigma;
+    }
+    if (all_have_sigma) {
+        residuals.errors = measured.errors;
+    } else {
+        measured.errors.clear();
+    }
+    const auto curve_of = [&](std::string name, const SurfaceEffect& effect) {
+        constexpr int steps = 400;
+        Curve curve{std::move(name), {}};
+        for (int i = 0; i <= steps; ++i) {
+            const double z_over_r = near + (far - near) * i / steps;
+            const double factor = formula_factor(effect, z_over_r, neighbours);
+            // A formula near its pole would dwarf everything else: the curve leaves the picture there.
+            curve.points.push_back({z_over_r, factor <= 1.5 * largest ? factor : std::nan("")});
+        }
+        return curve;
+    };
+    curves.curves.push_back(curve_of(model.parameters.empty() ? "formula" : "fitted", fit.effect));
+    if (!model.parameters.empty()) {
+        curves.curves.push_back(curve_of("parameters of its source", model.model));
+    }
+    const double margin = 0.05 * std::max(far - near, 0.1 * far);
+    curves.x_range = rest.x_range = AxisRange{std::max(0.0, near - margin), far + margin};
+    curves.measurements.push_back(std::move(measured));
+    rest.measurements.push_back(std::move(residuals));
+    return {std::move(curves), std::move(rest)};
+}
+
+PictureFormat format_of(const std::string& file) {
+    const auto format = picture_format_of(file);
+    if (!format) {
+        throw UsageError("--plot '" + excerpt(file) + "': expected a file name that ends in .svg or .png");
+    }
+    return *format;
+}
+
+void write_plot(const std::string& file, std::span<const CurveFigure> figures) {
+    PictureSettings settings;
+    settings.format = format_of(file);
+    try {
+        write_file(file, draw(figures, settings));
+    } catch (const FileError& error) {
+        throw UsageError("--plot " + file + ": " + error.what());
+    }
+}
+
 ExitCode run(const FitArguments& arguments) {
     const EffectModelInfo& model = model_named(arguments.model);
+    if (!arguments.plot.empty()) {
+        static_cast<void>(format_of(arguments.plot));
+    }
     FitOptions options;
     options.neighbours = arguments.data.neighbours();
     options.is_weighted = arguments.is_weighted;
@@ -154,6 +238,9 @@ ExitCode run(const FitArguments& arguments) {
                    arguments.data.file);
     }
     const EffectFit fit = fit_effect(model.model, measurements.points, options);
+    if (!arguments.plot.empty()) {
+        write_plot(arguments.plot, figures_of(model, fit, measurements.points, options.neighbours));
+    }
     if (arguments.as_json) {
         fmt::print("{}\n", fit_json(model, fit, measurements.points).dump(2));
     } else {
@@ -174,6 +261,8 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
         ->expected(1)
         ->take_all();
     fit->add_flag("--weighted", arguments->is_weighted, "count each residual by 1 / sigma, a column of DATA");
+    fit->add_option("--plot", arguments->plot, "draw measurements, curve and residuals to a .svg or .png file")
+        ->type_name("FILE");
     fit->add_flag("--json", arguments->as_json, "print JSON");
     fit->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -70,6 +70,28 @@ TEST_CASE("Points can be left out and weighted") {
     CHECK(weighted.at("parameters").at("rho") > plain.at("parameters").at("rho"));
 }
 
+TEST_CASE("A fit is drawn with its measurements and residuals") {
+    const ScratchFolder folder;
+    const std::vector<std::string> fit{"aeromap",          "fit",       DOWNWASH_MEASUREMENTS,
+                                       "--model",          "he",        "--plot",
+                                       folder / "fit.svg", "--surface", "ceiling",
+                                       "--source",         "jirs2024"};
+    const Result result = run(folder, fit);
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Catch::StartsWith("he: "));
+    const std::string picture = read_file(folder / "fit.svg");
+    CHECK_THAT(picture, Catch::Contains("<svg"));
+    CHECK_THAT(picture, Catch::Contains("he fitted to 16 measurements"));
+    CHECK_THAT(picture, Catch::Contains("measured minus model"));
+    auto nowhere = fit;
+    nowhere[6] = folder / "missing/fit.svg";
+    CHECK(run(folder, nowhere).code == 2);
+    nowhere[6] = folder / "fit.jpeg";
+    const Result refused = run(folder, nowhere);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("ends in .svg or .png"));
+}
+
 TEST_CASE("Fits that cannot be made end with 2 and say why") {
     const ScratchFolder folder;
     write_file(folder / "m.csv", "z_over_r,thrust_ratio\n1,1.1\n1,1.2\n");
