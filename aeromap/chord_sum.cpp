@@ -26,8 +26,10 @@ struct Corner {
     double u, v, gap;
 };
 
-struct LocalTriangle {
-    std::array<Corner, 3> corners;
+/// A plane face over or under the disc.
+struct LocalFace {
+    std::array<Corner, 4> corners;
+    std::size_t corner_count;
     double v_low, v_high;
 };
 
@@ -39,7 +41,7 @@ struct Stretch {
     [[nodiscard]] double gap_at(double u) const { return gap_low + (gap_high - gap_low) * ((u - low) / (high - low)); }
 };
 
-/// A part that is no triangle.
+/// A part that is curved, or cut by the rotor plane.
 struct Solid {
     std::size_t part;
     bool is_level;
@@ -55,7 +57,8 @@ class ChordSum {
         : query_(query),
           background_m_(background_m),
           background_(query.factor(background_m)),
-          triangles_(memory),
+          faces_(memory),
+          local_faces_(memory),
           solids_(memory),
           stretches_(memory),
           cuts_(memory),
@@ -63,14 +66,23 @@ class ChordSum {
         double nearest_m = background_m;
         for (const std::size_t part : parts) {
             const Scene::Bounds bounds = query.scene.part_bounds(part);
-            nearest_m = std::min(nearest_m, query.gap(bounds.low_m[2], bounds.high_m[2]));
+            const double gap = query.gap(bounds.low_m[2], bounds.high_m[2]);
+            if (!(gap < background_m)) {
+                continue;
+            }
+            nearest_m = std::min(nearest_m, gap);
+            // A solid that the rotor plane cuts is touched there; a triangle has no inside.
+            const bool is_cut = gap == 0 && !query.scene.is_triangle(part);
+            if (is_cut || !query.scene.add_faces(part, query.side == Side::below, faces_)) {
+                solids_.push_back({part, query.scene.is_level(part)});
+            }
         }
         if (nearest_m < background_m) {
             stake_ = query.curve.largest_difference(nearest_m / query.unit_m, background_m / query.unit_m);
         }
         if (stake_ > negligible_stake) {
-            frame_ = across_edges(parts);
-            add(parts);
+            frame_ = across_edges();
+            place_faces();
         }
     }
 
@@ -93,7 +105,7 @@ class ChordSum {
 
  private:
     /// The chords' direction to which the fewest and shortest edges are parallel.
-    [[nodiscard]] ChordFrame across_edges(std::span<const std::size_t> parts) const {
+    [[nodiscard]] ChordFrame across_edges() const {
         std::array<ChordFrame, direction_count> frames{};
         std::array<double, direction_count> parallel{};
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -112,41 +124,36 @@ class ChordSum {
                 parallel[i] += weight * part * part * part * part;
             }
         };
-        for (const std::size_t part : parts) {
-            if (const auto* t = query_.scene.triangle(part)) {
-                for (std::size_t i = 0; i < 3; ++i) {
-                    const Vector3& a = (*t)[i];
-                    const Vector3& b = (*t)[(i + 1) % 3];
-                    add_edge(b[0] - a[0], b[1] - a[1]);
-                }
-            } else {
-                for (const OutlineSegment& edge : shadow_outline(query_.scene, part).segments) {
-                    add_edge(edge.bx - edge.ax, edge.by - edge.ay);
-                }
+        for (const Scene::Face& face : faces_) {
+            for (std::size_t i = 0; i < face.corner_count; ++i) {
+                const Vector3& a = face.corners_m[i];
+                const Vector3& b = face.corners_m[(i + 1) % face.corner_count];
+                add_edge(b[0] - a[0], b[1] - a[1]);
+            }
+        }
+        for (const Solid& solid : solids_) {
+            for (const OutlineSegment& edge : shadow_outline(query_.scene, solid.part).segments) {
+                add_edge(edge.bx - edge.ax, edge.by - edge.ay);
             }
         }
         return frames[static_cast<std::size_t>(std::min_element(parallel.begin(), parallel.end()) - parallel.begin())];
     }
 
-    void add(std::span<const std::size_t> parts) {
-        for (const std::size_t part : parts) {
-            const auto* corners = query_.scene.triangle(part);
-            if (corners == nullptr) {
-                solids_.push_back({part, query_.scene.is_level(part)});
-                continue;
+    void place_faces() {
+        for (const Scene::Face& face : faces_) {
+            LocalFace local{{}, face.corner_count, infinity, -infinity};
+            double nearest = infinity;
+            for (std::size_t i = 0; i < face.corner_count; ++i) {
+                const auto& [x, y, z] = face.corners_m[i];
+                Corner& corner = local.corners[i];
+                corner = {frame_.u_of(x, y), frame_.v_of(x, y),
+                          query_.side == Side::below ? query_.hub_m[2] - z : z - query_.hub_m[2]};
+                local.v_low = std::min(local.v_low, corner.v);
+                local.v_high = std::max(local.v_high, corner.v);
+                nearest = std::min(nearest, corner.gap);
             }
-            LocalTriangle local{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                const auto& [x, y, z] = (*corners)[i];
-                local.corners[i] = {frame_.u_of(x, y), frame_.v_of(x, y),
-                                    query_.side == Side::below ? query_.hub_m[2] - z : z - query_.hub_m[2]};
-            }
-            const auto& [a, b, c] = local.corners;
-            local.v_low = std::min({a.v, b.v, c.v});
-            local.v_high = std::max({a.v, b.v, c.v});
-            const double nearest = std::min({a.gap, b.gap, c.gap});
             if (local.v_low < query_.radius_m && local.v_high > -query_.radius_m && nearest < background_m_) {
-                triangles_.push_back(local);
+                local_faces_.push_back(local);
             }
         }
     }
@@ -154,9 +161,9 @@ class ChordSum {
     /// Integral of the excess over the background along one chord.
     double chord(double v, double half) {
         stretches_.clear();
-        for (const LocalTriangle& triangle : triangles_) {
-            if (triangle.v_low < v && v < triangle.v_high) {
-                add_stretch(triangle, v, half);
+        for (const LocalFace& face : local_faces_) {
+            if (face.v_low < v && v < face.v_high) {
+                add_stretch(face, v, half);
             }
         }
         for (const Solid& solid : solids_) {
@@ -165,12 +172,12 @@ class ChordSum {
         return swept();
     }
 
-    void add_stretch(const LocalTriangle& triangle, double v, double half) {
+    void add_stretch(const LocalFace& face, double v, double half) {
         std::array<Corner, 2> ends{};
         std::size_t count = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Corner& a = triangle.corners[i];
-            const Corner& b = triangle.corners[(i + 1) % 3];
+        for (std::size_t i = 0; i < face.corner_count; ++i) {
+            const Corner& a = face.corners[i];
+            const Corner& b = face.corners[i + 1 < face.corner_count ? i + 1 : 0];
             if ((a.v < v) != (b.v < v) && count < 2) {
                 const double part = (v - a.v) / (b.v - a.v);
                 ends[count++] = {a.u + part * (b.u - a.u), v, a.gap + part * (b.gap - a.gap)};
@@ -292,7 +299,8 @@ class ChordSum {
     double background_;
     double stake_ = 0;  ///< how much K may differ over the disc
     ChordFrame frame_{};
-    std::pmr::vector<LocalTriangle> triangles_;
+    std::pmr::vector<Scene::Face> faces_;
+    std::pmr::vector<LocalFace> local_faces_;
     std::pmr::vector<Solid> solids_;
     std::pmr::vector<Stretch> stretches_;
     std::pmr::vector<double> cuts_;

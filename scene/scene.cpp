@@ -238,9 +238,8 @@ void Scene::add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& 
     });
 }
 
-const std::array<Vector3, 3>* Scene::triangle(std::size_t part) const noexcept {
-    const std::size_t first = solids_->parts.first_triangle();
-    return part < first ? nullptr : &solids_->parts.triangles[part - first];
+bool Scene::is_triangle(std::size_t part) const noexcept {
+    return part >= solids_->parts.first_triangle();
 }
 
 Scene::Bounds Scene::part_bounds(std::size_t part) const noexcept {

@@ -49,8 +49,17 @@ class DOWNWASH_EXPORT Scene {
     /// Appends the parts other than primitives whose bounding boxes meet a box.
     void add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const;
 
-    /// The corners of a part that is a triangle, counter-clockwise seen from outside; nullptr of others.
-    [[nodiscard]] const std::array<Vector3, 3>* triangle(std::size_t part) const noexcept;
+    /// Whether a part is a triangle, which has no inside.
+    [[nodiscard]] bool is_triangle(std::size_t part) const noexcept;
+
+    /// A plane face: three or four corners in order around it, in the world [m].
+    struct Face {
+        std::array<Vector3, 4> corners_m;
+        std::size_t corner_count;
+    };
+    /// Appends the faces of a part with plane faces that are seen from above or from below, and returns true; false of
+    /// cylinders and spheres. A triangle is seen from both.
+    bool add_faces(std::size_t part, bool is_from_above, std::pmr::vector<Face>& faces) const;
 
     /// World-aligned bounding box of one part [m].
     [[nodiscard]] Bounds part_bounds(std::size_t part) const noexcept;

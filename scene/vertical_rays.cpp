@@ -2,6 +2,7 @@
 // is one interval, found in closed form.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -135,6 +136,29 @@ Interval shadow(double x_world, double y_world, double dx, double dy, const Cyli
     return hull(middle, hull(far_end, near_end));
 }
 
+/// Faces that turn up, or down, by more than a negligible tilt.
+void add_box_faces(const Vector3& size_m, const Vector3& center_m, const Matrix3& r, bool is_from_above,
+                   std::pmr::vector<Scene::Face>& faces) {
+    constexpr double negligible_tilt = 1e-12;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(r[2][axis]) > negligible_tilt)) {
+            continue;
+        }
+        const double out = 0.5 * size_m[axis] * ((r[2][axis] > 0) == is_from_above ? 1 : -1);
+        const std::size_t u = (axis + 1) % 3;
+        const std::size_t v = (axis + 2) % 3;
+        Scene::Face face{{}, 4};
+        constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                face.corners_m[i][k] = center_m[k] + out * r[k][axis] + signs[i][0] * 0.5 * size_m[u] * r[k][u] +
+                                       signs[i][1] * 0.5 * size_m[v] * r[k][v];
+            }
+        }
+        faces.push_back(face);
+    }
+}
+
 }  // namespace
 
 Interval Scene::vertical_extent(std::size_t part, double x_m, double y_m) const noexcept {
@@ -171,6 +195,30 @@ Interval Scene::shadow_on_line(std::size_t part, double px_m, double py_m, doubl
             return of_form(box.center_m, box_from_above(Box{box.size_m}, placement));
         },
         [&](const Triangle& triangle) { return downwash::shadow_on_line(triangle, px_m, py_m, dx, dy); });
+}
+
+bool Scene::add_faces(std::size_t part, bool is_from_above, std::pmr::vector<Face>& faces) const {
+    const auto of_box = [&](const Vector3& size_m, const Vector3& center_m, const Matrix3& rotation) {
+        add_box_faces(size_m, center_m, rotation, is_from_above, faces);
+        return true;
+    };
+    const Parts& parts = solids_->parts;
+    return parts.visit(
+        part,
+        [&](std::size_t i) {
+            const auto* box = std::get_if<Box>(&parts.primitives[i]);
+            return box != nullptr &&
+                   of_box(box->size_m, parts.primitive_centers_m[i], parts.primitive_placements[i].rotation);
+        },
+        [&](const OctreeBox& box, const Placement& placement) {
+            return of_box(box.size_m, box.center_m, placement.rotation);
+        },
+        [&](const Triangle& triangle) {
+            if (downwash::has_shadow(triangle)) {
+                faces.push_back({{triangle[0], triangle[1], triangle[2]}, 3});
+            }
+            return true;
+        });
 }
 
 bool Scene::has_shadow(std::size_t part) const noexcept {
