@@ -119,8 +119,10 @@ bool AeroMap::agrees_with_effect(std::size_t layer) const {
     }
     const std::size_t stride = std::max<std::size_t>(1, felt.size() / samples);
     for (std::size_t n = 0; n < felt.size(); n += stride) {
-        const double x_m = extent_.x_low_m + static_cast<double>(felt[n] % columns_) * cell_m_;
-        const double z_m = extent_.z_low_m + static_cast<double>(felt[n] / columns_) * cell_m_;
+        const std::size_t column = felt[n] % columns_;
+        const std::size_t row = felt[n] / columns_;
+        const double x_m = extent_.x_low_m + static_cast<double>(column) * cell_m_;
+        const double z_m = extent_.z_low_m + static_cast<double>(row) * cell_m_;
         const double now = layers_[layer].effect->factor(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
         if (nodes[cells[felt[n]].first_node] != static_cast<float>(now)) {
             return false;

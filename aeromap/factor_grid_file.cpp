@@ -31,6 +31,13 @@ std::optional<double> number_of(std::string_view text) {
     return error == std::errc() && parsed == end ? std::optional(value) : std::nullopt;
 }
 
+std::string provenance_line(std::string_view key, std::string_view value) {
+    std::string line(key);
+    line += value.empty() ? ":" : ": ";
+    line += value;
+    return line;
+}
+
 std::pair<std::string, std::string> provenance_entry(std::string_view line) {
     line = trimmed(line);
     std::size_t colon = line.find(": ");

@@ -1,7 +1,7 @@
 #include <array>
 #include <charconv>
 
-#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/aeromap/grid_formats.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -19,7 +19,9 @@ std::string grid_csv_text(const FactorGrid& grid) {
     std::string text = "# frame_origin_m: " + to_text(origin_m[0]) + " " + to_text(origin_m[1]) + " " +
                        to_text(origin_m[2]) + "\n# frame_heading_rad: " + to_text(grid.frame().heading_rad()) + "\n";
     for (const auto& [key, value] : grid.provenance()) {
-        text += "# " + key + ":" + (value.empty() ? "" : " ") + value + "\n";
+        text += "# ";
+        text += provenance_line(key, value);
+        text += '\n';
     }
     const bool has_offsets = !grid.lateral_offsets_m().empty();
     text += has_offsets ? "lateral_m,x_m" : "x_m";

@@ -15,7 +15,10 @@ namespace downwash {
 [[nodiscard]] FactorGrid parse_vti(std::string_view bytes, const std::string& name, const GridReading& reading);
 [[nodiscard]] FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const GridReading& reading);
 
-/// "key: value" as two texts; what has no key is a "comment".
+/// "key: value" for an entry of a provenance.
+[[nodiscard]] std::string provenance_line(std::string_view key, std::string_view value);
+
+/// The entry of such a line; what has no key is a "comment".
 [[nodiscard]] std::pair<std::string, std::string> provenance_entry(std::string_view line);
 
 /// Without blanks at both ends.

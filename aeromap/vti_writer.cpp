@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "downwash/aeromap/base64.hpp"
-#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/aeromap/grid_formats.hpp"
 #include "downwash/base/text.hpp"
 
 // VTK's XML format for ImageData: a head in XML that names the arrays, and their numbers behind it in base64.
@@ -65,8 +65,9 @@ std::string provenance(const FactorGrid& grid) {
     }
     std::string codes;
     for (const auto& [key, value] : grid.provenance()) {
-        for (const char letter : key + ": " + value) {
-            codes += std::to_string(static_cast<unsigned char>(letter)) + " ";
+        for (const char letter : provenance_line(key, value)) {
+            codes += std::to_string(static_cast<unsigned char>(letter));
+            codes += ' ';
         }
         codes += "0\n";
     }

@@ -72,8 +72,8 @@ TEST_CASE("what VTK writes is read, whatever the encoding") {
         REQUIRE(grid.nodes() == std::size_t{21} * 17);
         for (std::size_t node = 0; node < grid.nodes(); ++node) {
             const auto i = static_cast<double>(node % 21);
-            const auto k = static_cast<double>(node / 21);
-            REQUIRE((*grid.field("factor"))[node] == 1 + 0.125 * i + 0.5 * k);
+            const std::size_t k = node / 21;
+            REQUIRE((*grid.field("factor"))[node] == 1 + 0.125 * i + 0.5 * static_cast<double>(k));
         }
     }
 }
