@@ -13,8 +13,7 @@ namespace downwash {
 /// that are switched off are not written).
 /// @param folder in which the document will stand: paths of the files that it refers to are relative to it
 /// @pre problem_faults(problem) is empty, and every mesh and octree was read from a file
-[[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem,
-                                                         const std::filesystem::path& folder = ".");
+[[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem, const std::filesystem::path& folder);
 
 /// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits. Of files that it refers to, what was read
 /// counts, not where they lie.

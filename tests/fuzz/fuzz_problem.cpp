@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     downwash::write_file(folder.file(), {reinterpret_cast<const char*>(data), size});
     std::string written;
     try {
-        written = downwash::effective_yaml(downwash::read_problem(folder.file()));
+        written = downwash::effective_yaml(downwash::read_problem(folder.file()), folder.file().parent_path());
     } catch (const downwash::ProblemFileError&) {
         return 0;
     }

@@ -124,13 +124,13 @@ TEST_CASE("what is written is read again to the last bit") {
     const Problem sound = good(folder);
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         const Problem problem = ProblemMaker(seed).varied(sound);
-        const std::string yaml = effective_yaml(problem);
+        const std::string yaml = effective_yaml(problem, folder / "");
         folder.write("effective.yaml", yaml);
         CAPTURE(seed, yaml);
         REQUIRE(folder.faults_of("effective.yaml") == "sound");
         const Problem again = read_problem(folder / "effective.yaml");
         REQUIRE(bits(again) == bits(problem));
-        REQUIRE(effective_yaml(again) == yaml);
+        REQUIRE(effective_yaml(again, folder / "") == yaml);
     }
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("switched off surface effects stay off") {
     const TestFolder folder;
     Problem problem = good(folder);
     problem.aero.enabled = false;
-    folder.write("effective.yaml", effective_yaml(problem));
+    folder.write("effective.yaml", effective_yaml(problem, folder / ""));
     CHECK_FALSE(read_problem(folder / "effective.yaml").aero.enabled);
 }
 
