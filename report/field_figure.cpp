@@ -176,8 +176,7 @@ void add_color_bar(GnuplotScript& script, const FieldFigure& figure, const Layou
     script.add(fmt::format("set cbtics ({}) scale 0.3 offset 0,0.4", tics));
     script.add(fmt::format("set colorbox horizontal user origin {},{} size {},{} border", script.screen_x(layout.left),
                            script.screen_y(layout.bar_bottom), script.screen_x(layout.width()), script.screen_y(14)));
-    script.add(fmt::format("set label {} at screen {},{} center", in_quotes(scale.label),
-                           script.screen_x((layout.left + layout.right) / 2), script.screen_y(13)));
+    script.add_line_of_text(scale.label, (layout.left + layout.right) / 2, 13, 1, "'#000000'");
 }
 
 // --- obstacles ----------------------------------------------------------------------------------------------------

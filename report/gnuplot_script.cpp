@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "downwash/base/fault.hpp"
@@ -37,13 +38,25 @@ void GnuplotScript::set_axes(double left_px, double right_px, double bottom_px, 
     add(fmt::format("set tmargin at screen {}", screen_y(top_px)));
 }
 
+void GnuplotScript::add_line_of_text(std::string_view text, double middle_px, double bottom_px, double size,
+                                     std::string_view color) {
+    constexpr double rim_px = 8;
+    const double room_px = 2 * (std::min(middle_px, settings_.width_px - middle_px) - rim_px);
+    const double needed_px = text_width_px(text, size * font_px);
+    const double fitting = needed_px > room_px ? size * room_px / needed_px : size;
+    // pngcairo counts in points, of which 72 are 96 pixels.
+    const double unit = settings_.format == PictureFormat::png ? 0.75 : 1;
+    add(fmt::format("set label {} at screen {:.6f},{:.6f} center font ',{:.4g}' textcolor rgb {}", in_quotes(text),
+                    screen_x(middle_px), screen_y(bottom_px), unit * fitting * font_px, color));
+}
+
 void GnuplotScript::set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px) {
-    const double scale = settings_.format == PictureFormat::png ? 0.75 : 1;
-    add(fmt::format("set label {} at screen {},{} center font ',{}'", in_quotes(title), screen_x(middle_px),
-                    screen_y(top_px - 16), scale * 1.2 * font_px));
+    constexpr double title_size = 1.2, subtitle_size = 1;
+    if (!title.empty()) {
+        add_line_of_text(title, middle_px, top_px - 16, title_size, "'#000000'");
+    }
     if (!subtitle.empty()) {
-        add(fmt::format("set label {} at screen {},{} center textcolor rgb '#555555'", in_quotes(subtitle),
-                        screen_x(middle_px), screen_y(top_px - 42)));
+        add_line_of_text(subtitle, middle_px, top_px - 42, subtitle_size, "'#555555'");
     }
 }
 

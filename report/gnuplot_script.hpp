@@ -35,6 +35,10 @@ class GnuplotScript {
     /// Where the axes stand, in pixels from the lower left corner of the picture.
     void set_axes(double left_px, double right_px, double bottom_px, double top_px);
 
+    /// A text about a place in the picture, in `size` times the usual font or as small as it has to be.
+    void add_line_of_text(std::string_view text, double middle_px, double bottom_px, double size,
+                          std::string_view color);
+
     /// Title and, below it in grey, subtitle, `top_px` being where they begin.
     void set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px);
 

@@ -103,17 +103,20 @@ class Placement {
         : area_(area), height_px_(height_px), color_at_(color_at) {
         for (const NamedShape& shape : shapes) {
             Visible visible{shape.width_px, shape.is_filled, {}, {}};
-            double largest = 4;  // px^2; what is smaller cannot be seen
+            double largest = 3;  // what is smaller cannot be seen
             for (const Ring& ring : shape.rings) {
                 Ring part = clipped(ring, area);
-                const double size = area_of(part);
+                if (part.empty()) {
+                    continue;
+                }
+                const PixelBox box = box_of(part);
+                // The length tells among lines, which have no area.
+                const double size = area_of(part) + std::hypot(box.right - box.left, box.top - box.bottom);
                 if (size > largest) {
                     largest = size;
                     visible.main = part;
                 }
-                if (size > 0) {
-                    visible.rings.push_back(std::move(part));
-                }
+                visible.rings.push_back(std::move(part));
             }
             visible_.push_back(std::move(visible));
         }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "downwash/base/export.hpp"
+
 namespace downwash {
 
 struct PixelPoint {
@@ -47,8 +49,8 @@ struct PlacedLabel {
 /// Finds places for the names of what can be seen within `area`: inside its shape where there is room, else near it,
 /// never on another name and, where that can be had, on no other shape and where the background is of one colour.
 /// @param color_at the number of the background's colour at a point
-[[nodiscard]] std::vector<PlacedLabel> place_labels(const std::vector<NamedShape>& shapes, const PixelBox& area,
-                                                    double height_px,
-                                                    const std::function<int(const PixelPoint&)>& color_at);
+[[nodiscard]] DOWNWASH_EXPORT std::vector<PlacedLabel> place_labels(
+    const std::vector<NamedShape>& shapes, const PixelBox& area, double height_px,
+    const std::function<int(const PixelPoint&)>& color_at);
 
 }  // namespace downwash

@@ -53,6 +53,8 @@ std::string picture_text(std::string_view text, std::size_t most_characters) {
             shown += '?';
         } else if (is_control(character)) {
             shown += ' ';
+        } else if (character == "'") {
+            shown += "’";
         } else {
             shown += character;
         }
@@ -62,14 +64,9 @@ std::string picture_text(std::string_view text, std::size_t most_characters) {
 }
 
 std::string in_quotes(std::string_view text) {
-    std::string string = "'";
-    for (const char c : picture_text(text)) {
-        string += c;
-        if (c == '\'') {
-            string += c;
-        }
-    }
-    return string + "'";
+    // No apostrophe is left inside. Doubling them would not do: gnuplot reads ''' as an empty string and the beginning
+    // of another.
+    return "'" + picture_text(text) + "'";
 }
 
 double text_width_px(std::string_view text, double font_px) {

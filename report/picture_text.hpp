@@ -11,7 +11,7 @@
 namespace downwash {
 
 /// Text of others as it may stand in a picture: one line of valid UTF-8 that XML can hold, cut after so many
-/// characters. What cannot be shown becomes a space or a question mark.
+/// characters. What cannot be shown becomes a space or a question mark, and ' becomes ’.
 [[nodiscard]] DOWNWASH_EXPORT std::string picture_text(std::string_view text, std::size_t most_characters = 100);
 
 /// The same as a string of gnuplot, in single quotes, within which gnuplot replaces and runs nothing.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "../support/scratch_folder.hpp"
+
+namespace downwash::test {
+
+/// The texts of a picture, one line each. Fails the test when it is not well-formed XML with an <svg> at its root.
+[[nodiscard]] std::string svg_texts(const std::string& picture);
+
+/// Width and height that the head of a PNG file states; zeros when it is none.
+[[nodiscard]] std::array<unsigned, 2> png_size(const std::string& picture);
+
+[[nodiscard]] bool holds(std::string_view text, std::string_view part);
+
+/// Texts that would run a command, end a string, or break a line, if anything let them. Each would leave the file
+/// downwash-was-here in the current folder.
+[[nodiscard]] const std::array<std::string, 13>& hostile_texts();
+
+/// An empty folder to be in; it is gone with this, and the one before is back.
+class WorkingFolder {
+ public:
+    WorkingFolder() : before_(std::filesystem::current_path()) { std::filesystem::current_path(folder_.path()); }
+    ~WorkingFolder() {
+        std::error_code ignored;
+        std::filesystem::current_path(before_, ignored);
+    }
+    WorkingFolder(const WorkingFolder&) = delete;
+    WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+    [[nodiscard]] bool is_empty() const { return std::filesystem::is_empty(folder_.path()); }
+
+ private:
+    ScratchFolder folder_;
+    std::filesystem::path before_;
+};
+
+}  // namespace downwash::test

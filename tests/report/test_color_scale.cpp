@@ -1,0 +1,110 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "downwash/report/color_scale.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// Relative luminance as WCAG 2 defines it.
+double luminance(const Color& color) {
+    const auto linear = [](double byte) {
+        const double c = byte / 255;
+        return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * linear(color.red) + 0.7152 * linear(color.green) + 0.0722 * linear(color.blue);
+}
+
+void check_is_sound(const ColorScale& scale) {
+    REQUIRE(scale.colors.size() >= 2);
+    REQUIRE(scale.limits.size() == scale.colors.size() + 1);
+    for (std::size_t i = 0; i + 1 < scale.limits.size(); ++i) {
+        CHECK(scale.limits[i] < scale.limits[i + 1]);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("factors at or above one have limits that are finest at one") {
+    const ColorScale scale = factor_scale("K", 1, 2);
+    check_is_sound(scale);
+    CHECK(scale.limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 2});
+    CHECK(scale.colors.front() == Color{255, 255, 255});
+    CHECK(factor_scale("K", 1, 1).limits == std::vector<double>{1, 1.01, 1.02, 1.05});
+    CHECK(factor_scale("K", 1 - 1e-7, 1.2).limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2});
+}
+
+TEST_CASE("each colour of a rising scale is darker than the one before") {
+    for (const ColorScale& scale : {factor_scale("K", 1, 2), factor_scale("K", 1, 50), linear_scale("v", -3, 4)}) {
+        for (std::size_t i = 0; i + 1 < scale.colors.size(); ++i) {
+            CHECK(luminance(scale.colors[i + 1]) < luminance(scale.colors[i]));
+        }
+    }
+}
+
+TEST_CASE("factors below one are blue, above one red, about one neutral") {
+    const ColorScale scale = factor_scale("K", 0.93, 1.2);
+    check_is_sound(scale);
+    CHECK(scale.limits.front() == Approx(0.9));
+    CHECK(scale.limits.back() == Approx(1.2));
+    const auto color_of = [&](double value) {
+        return scale.colors[static_cast<std::size_t>(position_on(scale, value))];
+    };
+    CHECK(color_of(1) == Color{247, 247, 247});
+    CHECK(color_of(0.96).blue > color_of(0.96).red);
+    CHECK(color_of(1.04).red > color_of(1.04).blue);
+    CHECK(factor_scale("K", 0, 1).limits.front() == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("a value stands within its class, and those outside at the ends") {
+    const ColorScale scale{"v", {0, 1, 10, 100}, {{}, {}, {}}, {}};
+    CHECK(position_on(scale, 0) == 0);
+    CHECK(position_on(scale, 0.25) == 0.25);
+    CHECK(position_on(scale, 1) == 1);
+    CHECK(position_on(scale, 5.5) == 1.5);
+    CHECK(position_on(scale, 55) == 2.5);
+    CHECK(position_on(scale, 100) == 3);
+    CHECK(position_on(scale, -7) == 0);
+    CHECK(position_on(scale, std::numeric_limits<double>::infinity()) == 3);
+    CHECK(std::isnan(position_on(scale, std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST_CASE("equal classes have round limits that hold the range") {
+    CHECK(linear_scale("v", 0, 1).limits.size() == 11);
+    CHECK(linear_scale("v", 0.03, 0.97).limits.front() == Approx(0.0).margin(1e-12));
+    CHECK(linear_scale("v", 0.03, 0.97).limits.back() == Approx(1));
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<double> exponent(-6, 6), place(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const double low = place(generator) * std::pow(10, exponent(generator));
+        const double high = low + std::pow(10, exponent(generator));
+        const ColorScale scale = linear_scale("v", low, high);
+        check_is_sound(scale);
+        const double step = scale.limits[1] - scale.limits[0];
+        CHECK(scale.limits.front() <= low + 1e-6 * step);
+        CHECK(scale.limits.back() >= high - 1e-6 * step);
+        CHECK(scale.limits.size() <= 14);
+    }
+}
+
+TEST_CASE("a signed scale is symmetric, with limits at 1, 2 and 5 times powers of ten") {
+    const ColorScale scale = signed_scale("w", 0.7, 5);
+    check_is_sound(scale);
+    const std::vector<double> expected{-1, -0.5, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.5, 1};
+    REQUIRE(scale.limits.size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        CHECK(scale.limits[i] == Approx(expected[i]));
+    }
+    CHECK(signed_scale("w", 30, 3).limits.back() == Approx(50));
+}
+
+TEST_CASE("kinds stand in the middle of their fields") {
+    const ColorScale scale = scale_of_kinds("hover", {"no", "perhaps", "yes"}, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+    check_is_sound(scale);
+    for (int kind = 0; kind < 3; ++kind) {
+        CHECK(position_on(scale, kind) == kind + 0.5);
+    }
+}

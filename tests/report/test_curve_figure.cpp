@@ -1,0 +1,85 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/report/curve_figure.hpp"
+#include "pictures.hpp"
+
+using namespace downwash;
+using Catch::Matchers::Contains;
+using downwash::test::holds;
+
+namespace {
+
+CurveFigure sample_figure() {
+    CurveFigure figure;
+    figure.title = "K over z/R";
+    figure.x_label = "z/R";
+    figure.y_label = "K";
+    figure.level = 1;
+    figure.curves = {
+        {"a formula", {{0, 2}, {1, 1.2}, {std::numeric_limits<double>::quiet_NaN(), 0}, {2, 1.1}, {3, 1}}}};
+    figure.measurements = {{"measured", {{0.5, 1.5}, {1.5, 1.1}}, {0.1, 0.05}}, {"once", {{2, 1.05}}, {}}};
+    return figure;
+}
+
+}  // namespace
+
+TEST_CASE("a diagram names its axes, curves and measurements") {
+    const std::string texts = test::svg_texts(draw(sample_figure(), {PictureFormat::svg, 800}));
+    for (const char* text : {"K over z/R", "\nz/R\n", "\nK\n", "a formula", "measured", "once"}) {
+        INFO(text);
+        CHECK(holds(texts, text));
+    }
+    CHECK(test::png_size(draw(sample_figure(), {PictureFormat::png, 800}))[0] == 800);
+}
+
+TEST_CASE("diagrams stand one below the other, each with what is its own") {
+    std::vector<CurveFigure> figures{sample_figure(), sample_figure()};
+    figures[1].title.clear();
+    figures[1].y_label = "residual";
+    const std::string one = draw(std::span(figures).first(1), {PictureFormat::png, 600});
+    const std::string two = draw(figures, {PictureFormat::png, 600});
+    CHECK(test::png_size(two)[1] > test::png_size(one)[1] + 100);
+    const std::string texts = test::svg_texts(draw(figures, {PictureFormat::svg, 600}));
+    CHECK(holds(texts, "residual"));
+    CHECK(texts.find("K over z/R") == texts.rfind("K over z/R"));
+    CHECK(draw(figures, {PictureFormat::svg, 600}) == draw(figures, {PictureFormat::svg, 600}));
+}
+
+TEST_CASE("many curves of one value are drawn too") {
+    CurveFigure figure = sample_figure();
+    figure.level.reset();
+    figure.curves.clear();
+    figure.measurements.clear();
+    for (int i = 0; i < 40; ++i) {
+        figure.curves.push_back({"curve " + std::to_string(i), {{0, 1}, {1, 1}}});
+    }
+    const std::string texts = test::svg_texts(draw(figure, {PictureFormat::svg, 500}));
+    CHECK(holds(texts, "curve 39"));
+}
+
+TEST_CASE("names of curves that would run commands are shown as they are") {
+    const test::WorkingFolder folder;
+    for (const std::string& text : test::hostile_texts()) {
+        CurveFigure figure = sample_figure();
+        figure.title = figure.subtitle = figure.x_label = figure.y_label = text;
+        figure.curves[0].name = figure.measurements[0].name = text;
+        CHECK(holds(test::svg_texts(draw(figure, {PictureFormat::svg, 700})), "once"));
+    }
+    CHECK(folder.is_empty());
+}
+
+TEST_CASE("diagrams without anything to draw are refused") {
+    const PictureSettings settings{PictureFormat::svg, 800};
+    CHECK_THROWS_WITH(draw(std::span<const CurveFigure>(), settings), Contains("no figure"));
+    CHECK_THROWS_WITH(draw(CurveFigure{}, settings), Contains("nothing to draw"));
+    CurveFigure figure = sample_figure();
+    figure.measurements[0].errors.pop_back();
+    CHECK_THROWS_WITH(draw(figure, settings), Contains("2 points have 1 errors"));
+    figure = sample_figure();
+    figure.x_range = {2, 2};
+    CHECK_THROWS_WITH(draw(figure, settings), Contains("2 to 2 is empty"));
+    CHECK_THROWS_AS(draw(sample_figure(), {PictureFormat::svg, 10}), InputError);
+}

@@ -1,0 +1,151 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/report/field_figure.hpp"
+#include "pictures.hpp"
+
+using namespace downwash;
+using Catch::Matchers::Contains;
+using downwash::test::holds;
+
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// A field around a pole at the origin, not defined near it, with a box to the right.
+FieldFigure sample_figure() {
+    FieldFigure figure;
+    figure.title = "A pole and a box";
+    figure.subtitle = "for the test";
+    figure.extent = {-4, 4, -2, 2};
+    figure.scale = factor_scale("K [1]", 1, 2);
+    figure.value = [](double x_m, double z_m) {
+        const double r = std::hypot(x_m, z_m);
+        return r < 0.5 ? undefined : 1 + 0.25 / (r * r);
+    };
+    figure.obstacles = {{"box_of_bricks", true, {{{2, -1}, {3, -1}, {3, 1}, {2, 1}}}, {}},
+                        {"sheet", true, {}, {{{-3, 0}, {-2, 1}}}},
+                        {"beside", false, {{{-1, -1}, {1, -1}, {1, 1}}}, {}}};
+    figure.lines = {{"a boundary", {{{-4, 1}, {0, 1.5}, {4, 1}}}, {200, 0, 0}, 2, true, true}};
+    figure.points = {{"a point", {{1, 1}}, {0, 0, 200}}};
+    return figure;
+}
+
+std::string number_after(const std::string& text, const std::string& key) {
+    const std::size_t at = text.find(key) + key.size();
+    return text.substr(at, text.find('"', at) - at);
+}
+
+}  // namespace
+
+TEST_CASE("a picture in SVG is sound XML and says everything") {
+    const std::string picture = draw(sample_figure(), {PictureFormat::svg, 1000});
+    const std::string texts = test::svg_texts(picture);
+    for (const char* text : {"A pole and a box",
+                             "for the test",
+                             "K [1]",
+                             "x [m]",
+                             "z [m]",
+                             "not flyable",
+                             "obstacle",
+                             "obstacle beside the plane, projected",
+                             "box_of_bricks",
+                             "sheet",
+                             "beside",
+                             "a boundary",
+                             "a point",
+                             "1.01",
+                             "1.02",
+                             "1.05",
+                             "1.1",
+                             "1.2",
+                             "1.3",
+                             "1.5"}) {
+        INFO(text);
+        CHECK(holds(texts, text));
+    }
+    CHECK(holds(picture, "data:image/png;base64,"));
+    CHECK(number_after(picture, "width=\"") == "1000");
+    CHECK(picture.size() < 500'000);
+}
+
+TEST_CASE("a picture in PNG has the width that was asked for, and the scale of both axes is one") {
+    for (const int width_px : {400, 1200}) {
+        const auto [width, height] = test::png_size(draw(sample_figure(), {PictureFormat::png, width_px}));
+        CHECK(width == static_cast<unsigned>(width_px));
+        // Half as high as wide, and what stands around it.
+        CHECK(height > 0.5 * (width_px - 104) + 150);
+        CHECK(height < 0.5 * (width_px - 104) + 360);
+    }
+}
+
+TEST_CASE("equal figures give equal bytes, other ones do not") {
+    for (const PictureFormat format : {PictureFormat::svg, PictureFormat::png}) {
+        const std::string first = draw(sample_figure(), {format, 500});
+        CHECK(first == draw(sample_figure(), {format, 500}));
+        FieldFigure other = sample_figure();
+        other.title = "Another";
+        CHECK(first != draw(other, {format, 500}));
+    }
+}
+
+TEST_CASE(
+    "a field that is defined everywhere has no entry for where it is not, and one that is nowhere has no colours") {
+    FieldFigure figure = sample_figure();
+    figure.value = [](double, double) { return 1.0; };
+    CHECK_FALSE(holds(test::svg_texts(draw(figure, {PictureFormat::svg, 500})), "not flyable"));
+    figure.value = [](double, double) { return undefined; };
+    const std::string nowhere = draw(figure, {PictureFormat::svg, 500});
+    CHECK(holds(test::svg_texts(nowhere), "not flyable"));
+    CHECK_FALSE(holds(nowhere, "data:image/png"));
+}
+
+TEST_CASE("kinds are named at the colour bar instead of numbers") {
+    FieldFigure figure = sample_figure();
+    figure.scale = scale_of_kinds("hover", {"unstable", "stable"}, {{200, 0, 0}, {0, 200, 0}});
+    figure.value = [](double x_m, double) { return x_m < 0 ? 0.0 : 1.0; };
+    const std::string texts = test::svg_texts(draw(figure, {PictureFormat::svg, 600}));
+    CHECK(holds(texts, "\nunstable\n"));
+    CHECK(holds(texts, "\nstable\n"));
+    CHECK(holds(texts, "\nhover\n"));
+}
+
+TEST_CASE("obstacles that look the same share one name tag") {
+    FieldFigure figure = sample_figure();
+    figure.obstacles.push_back(figure.obstacles[0]);
+    figure.obstacles.back().name = "its_twin";
+    CHECK(holds(test::svg_texts(draw(figure, {PictureFormat::svg, 900})), "box_of_bricks, its_twin"));
+}
+
+TEST_CASE("names that would run commands are shown as they are") {
+    const test::WorkingFolder folder;
+    for (const std::string& text : test::hostile_texts()) {
+        FieldFigure figure = sample_figure();
+        figure.title = figure.subtitle = figure.x_label = figure.z_label = figure.undefined_name = text;
+        figure.scale.label = text;
+        figure.obstacles[0].name = figure.lines[0].name = figure.points[0].name = text;
+        const std::string texts = test::svg_texts(draw(figure, {PictureFormat::svg, 700}));
+        CHECK(holds(texts, "beside"));  // the drawing went on to its end
+        figure.scale = scale_of_kinds(text, {text, text}, {{}, {}});
+        CHECK(test::png_size(draw(figure, {PictureFormat::png, 700}))[0] == 700);
+    }
+    CHECK(folder.is_empty());
+}
+
+TEST_CASE("what cannot be drawn to scale is refused") {
+    const auto with_extent = [](const MapExtent& extent) {
+        FieldFigure figure = sample_figure();
+        figure.extent = extent;
+        return figure;
+    };
+    const PictureSettings settings{PictureFormat::svg, 800};
+    CHECK_THROWS_WITH(draw(with_extent({1, 1, 0, 1}), settings), Contains("hold no area"));
+    CHECK_THROWS_WITH(draw(with_extent({0, 1, 2, 1}), settings), Contains("hold no area"));
+    CHECK_THROWS_WITH(draw(with_extent({0, undefined, 0, 1}), settings), Contains("hold no area"));
+    CHECK_THROWS_WITH(draw(with_extent({0, 100, 0, 1}), settings), Contains("40 times"));
+    CHECK_THROWS_AS(draw(sample_figure(), {PictureFormat::svg, 399}), InputError);
+    CHECK_THROWS_AS(draw(sample_figure(), {PictureFormat::svg, 8001}), InputError);
+    CHECK(test::png_size(draw(with_extent({0, 1, 0, 39}), {PictureFormat::png, 400}))[0] == 400);
+}

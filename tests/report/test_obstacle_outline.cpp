@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "downwash/report/obstacle_outline.hpp"
+
+using namespace downwash;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+ObstacleOutline outline_of(const Shape& shape, const Vector3& center_m = {0, 0, 0}, const Vector3& rpy_rad = {0, 0, 0},
+                           const PlaneOfMotion& plane = {}, double lateral_m = 0) {
+    const Scene scene({Obstacle{"thing", shape, center_m, rpy_rad}});
+    return obstacle_outlines(scene, plane, lateral_m).at(0);
+}
+
+/// Positive where the ring runs counter-clockwise.
+double area(const std::vector<PlanePoint>& ring) {
+    double twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        twice += a.x_m * b.z_m - a.z_m * b.x_m;
+    }
+    return twice / 2;
+}
+
+double area(const ObstacleOutline& outline) {
+    double sum = 0;
+    for (const auto& ring : outline.rings) {
+        sum += area(ring);
+    }
+    return sum;
+}
+
+/// Twelve triangles of a box about the origin, corners counter-clockwise seen from outside.
+void add_box(TriangleMesh& mesh, const Vector3& size, bool is_cavity = false) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size());
+    for (int i = 0; i < 8; ++i) {
+        mesh.vertices_m.push_back({((i & 1) != 0 ? 0.5 : -0.5) * size[0], ((i & 2) != 0 ? 0.5 : -0.5) * size[1],
+                                   ((i & 4) != 0 ? 0.5 : -0.5) * size[2]});
+    }
+    const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& f : faces) {
+        for (const auto& t : {std::array<std::uint32_t, 3>{f[0], f[1], f[2]}, {f[0], f[2], f[3]}}) {
+            mesh.triangles.push_back({first + t[0], first + t[is_cavity ? 2 : 1], first + t[is_cavity ? 1 : 2]});
+        }
+    }
+}
+
+Mesh mesh_of(TriangleMesh mesh) {
+    return {"", 1, std::make_shared<const TriangleMesh>(std::move(mesh))};
+}
+
+}  // namespace
+
+TEST_CASE("a level box is cut in its side view") {
+    const ObstacleOutline outline = outline_of(Box{{4, 3, 2}}, {10, 1, 5});
+    CHECK(outline.name == "thing");
+    CHECK(outline.is_cut);
+    REQUIRE(outline.rings.size() == 1);
+    CHECK(outline.rings[0].size() == 4);
+    CHECK(area(outline) == Approx(8));
+    for (const PlanePoint& p : outline.rings[0]) {
+        CHECK(std::abs(p.x_m - 10) == Approx(2));
+        CHECK(std::abs(p.z_m - 5) == Approx(1));
+    }
+}
+
+TEST_CASE("a box turned by 45 degrees is cut along its diagonal") {
+    const ObstacleOutline outline = outline_of(Box{{1, 1, 3}}, {0, 0, 0}, {0, 0, pi / 4});
+    CHECK(area(outline) == Approx(3 * std::sqrt(2)));
+}
+
+TEST_CASE("a regular hexagon comes out of a cube cut square to its diagonal") {
+    // Turned so that its diagonal (1, 1, 1) lies along y: roll about x lifts (1, 1, 1) by 45 degrees into (1, sqrt 2,
+    // 0), yaw about z then turns that to (0, sqrt 3, 0).
+    const ObstacleOutline outline = outline_of(Box{{1, 1, 1}}, {0, 0, 0}, {-pi / 4, 0, std::atan(1 / std::sqrt(2.0))});
+    REQUIRE(outline.rings.size() == 1);
+    CHECK(outline.rings[0].size() == 6);
+    CHECK(area(outline) == Approx(3 * std::sqrt(3) / 4));
+}
+
+TEST_CASE("a cylinder is cut in a circle across its axis and in a rectangle along it") {
+    const double polygon = 96 * std::sin(2 * pi / 96) / 2;  // of the unit circle
+    CHECK(area(outline_of(Cylinder{0.5, 4, {0, 1, 0}})) == Approx(0.25 * polygon));
+    CHECK(area(outline_of(Cylinder{0.5, 4, {0, 0, 2}})) == Approx(4).epsilon(1e-3));
+    // Oblique by 60 degrees: an ellipse, twice as long as wide.
+    CHECK(area(outline_of(Cylinder{0.5, 40, {std::sqrt(3), 1, 0}})) == Approx(2 * 0.25 * pi).epsilon(2e-3));
+}
+
+TEST_CASE("a sphere is cut in a circle that shrinks towards its side") {
+    const ObstacleOutline outline = outline_of(Sphere{0.5}, {0, 0.3, 0});
+    CHECK(outline.is_cut);
+    for (const PlanePoint& p : outline.rings.at(0)) {
+        CHECK(std::hypot(p.x_m, p.z_m) == Approx(0.4));
+    }
+}
+
+TEST_CASE("what the plane misses is projected") {
+    const ObstacleOutline box = outline_of(Box{{4, 1, 2}}, {0, 2, 0});
+    CHECK_FALSE(box.is_cut);
+    CHECK(area(box) == Approx(8));
+    const ObstacleOutline sphere = outline_of(Sphere{0.5}, {0, 0.6, 0});
+    CHECK_FALSE(sphere.is_cut);
+    CHECK(area(sphere) == Approx(0.25 * pi).epsilon(1e-3));
+    CHECK(outline_of(Box{{4, 1, 2}}, {0, 2, 0}, {0, 0, 0}, {}, 1.8).is_cut);
+}
+
+TEST_CASE("cross sections move with scene and plane") {
+    std::mt19937 generator(3);
+    std::uniform_real_distribution<double> coordinate(-3, 3), angle(-3, 3);
+    for (int i = 0; i < 50; ++i) {
+        const Vector3 center{coordinate(generator), 0.1 * coordinate(generator), coordinate(generator)};
+        const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
+        const Shape shape = i % 2 == 0 ? Shape(Box{{1, 2, 3}}) : Shape(Cylinder{0.7, 2, {1, 2, 3}});
+        const PlaneOfMotion moved({5, -7, 2}, angle(generator));
+        const ObstacleOutline here = outline_of(shape, center, rpy);
+        const Vector3 there_m = moved.to_world(center[0], center[1], center[2]);
+        const ObstacleOutline there = outline_of(shape, there_m, {rpy[0], rpy[1], rpy[2] + moved.heading_rad()}, moved);
+        CHECK(here.is_cut == there.is_cut);
+        CHECK(area(here) == Approx(area(there)).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a mesh of a box has the box's cross section, whatever the pose") {
+    std::mt19937 generator(4);
+    std::uniform_real_distribution<double> angle(-3, 3);
+    TriangleMesh mesh;
+    add_box(mesh, {1, 2, 3});
+    for (int i = 0; i < 50; ++i) {
+        const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
+        const ObstacleOutline outline = outline_of(mesh_of(mesh), {0.1, 0.2, 0.3}, rpy);
+        REQUIRE(outline.rings.size() == 1);
+        CHECK(outline.lines.empty());
+        CHECK(area(outline) == Approx(area(outline_of(Box{{1, 2, 3}}, {0.1, 0.2, 0.3}, rpy))));
+    }
+}
+
+TEST_CASE("corners that a mesh repeats for each triangle are one, and cavities run the other way round") {
+    TriangleMesh shared;
+    add_box(shared, {4, 4, 4});
+    add_box(shared, {2, 2, 2}, true);
+    TriangleMesh repeated;
+    for (const auto& triangle : shared.triangles) {
+        for (const std::uint32_t corner : triangle) {
+            repeated.vertices_m.push_back(shared.vertices_m[corner]);
+        }
+        const auto last = static_cast<std::uint32_t>(repeated.vertices_m.size());
+        repeated.triangles.push_back({last - 3, last - 2, last - 1});
+    }
+    for (const TriangleMesh& mesh : {shared, repeated}) {
+        const ObstacleOutline outline = outline_of(mesh_of(mesh), {0, 0.3, 0});
+        REQUIRE(outline.rings.size() == 2);
+        CHECK(area(outline) == Approx(16 - 4));
+    }
+}
+
+TEST_CASE("a sheet is cut in an open line") {
+    TriangleMesh sheet;
+    sheet.vertices_m = {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const ObstacleOutline outline = outline_of(mesh_of(sheet));
+    CHECK(outline.is_cut);
+    CHECK(outline.rings.empty());
+    REQUIRE(outline.lines.size() == 1);
+    CHECK(outline.lines[0].size() == 3);
+    CHECK(std::abs(outline.lines[0].front().x_m - outline.lines[0].back().x_m) == Approx(4));
+}
+
+TEST_CASE("an octree is cut cube by cube") {
+    const auto tree =
+        std::make_shared<const OccupancyTree>(OccupancyTree{0.5, {{{0, 0, 0}, 0.5}, {{3, 0.1, 0}, 1}, {{0, 5, 0}, 1}}});
+    const ObstacleOutline outline = outline_of(Octomap{"", tree});
+    CHECK(outline.is_cut);
+    CHECK(outline.rings.size() == 2);
+    CHECK(area(outline) == Approx(0.25 + 1));
+    CHECK_FALSE(outline_of(Octomap{"", tree}, {0, 20, 0}).is_cut);
+}

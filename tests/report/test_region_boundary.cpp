@@ -1,0 +1,48 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "downwash/report/region_boundary.hpp"
+
+using namespace downwash;
+
+TEST_CASE("the boundary of a disc is one closed line on its circle, the disc to its left") {
+    const auto lines =
+        region_boundary([](double x, double z) { return std::hypot(x - 0.1, z + 0.2) < 1; }, {-2, 2, -2, 2}, 60, 50);
+    REQUIRE(lines.size() == 1);
+    double twice_area = 0;
+    for (std::size_t i = 0; i + 1 < lines[0].size(); ++i) {
+        const PlanePoint &a = lines[0][i], &b = lines[0][i + 1];
+        CHECK(std::hypot(a.x_m - 0.1, a.z_m + 0.2) == Approx(1).margin(2e-4));
+        twice_area += a.x_m * b.z_m - a.z_m * b.x_m;
+    }
+    CHECK(lines[0].front().x_m == lines[0].back().x_m);
+    CHECK(lines[0].front().z_m == lines[0].back().z_m);
+    CHECK(twice_area / 2 == Approx(3.14159265).epsilon(0.01));
+}
+
+TEST_CASE("a hole is a line of its own, and one that meets the rim of the extent is open") {
+    const auto ring = region_boundary(
+        [](double x, double z) { return std::hypot(x, z) < 1.5 && std::hypot(x, z) > 0.5; }, {-2, 2, -2, 2}, 40, 40);
+    CHECK(ring.size() == 2);
+    const auto slope = region_boundary([](double x, double z) { return z < 0.3 * x; }, {-2, 2, -2, 2}, 40, 40);
+    REQUIRE(slope.size() == 1);
+    CHECK(slope[0].front().x_m == Approx(2));
+    CHECK(slope[0].back().x_m == Approx(-2));
+    for (const PlanePoint& p : slope[0]) {
+        CHECK(p.z_m == Approx(0.3 * p.x_m).margin(2e-4));
+    }
+}
+
+TEST_CASE("regions that touch at a corner of the grid are kept apart, and none is lost") {
+    // A chequerboard whose fields are two cells: every field is a ring of its own.
+    const auto lines = region_boundary(
+        [](double x, double z) { return (static_cast<int>(std::floor(x)) + static_cast<int>(std::floor(z))) % 2 == 0; },
+        {0.25, 4.25, 0.25, 4.25}, 8, 8);
+    std::size_t points = 0;
+    for (const auto& line : lines) {
+        points += line.size();
+    }
+    CHECK(points > 40);
+    CHECK(region_boundary([](double, double) { return true; }, {0, 1, 0, 1}, 5, 5).empty());
+    CHECK(region_boundary([](double, double) { return false; }, {0, 1, 0, 1}, 5, 5).empty());
+}
