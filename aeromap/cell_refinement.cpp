@@ -33,22 +33,26 @@ bool may_hide_a_turn(const Values& v) {
 /// Finds the errors along one line by halving it where it is not straight.
 class LineProbe {
  public:
-    /// @param value K along the line, from 0 to 1
+    /// @param value K along the line, from 0 to 1   @param shortest_turn longer stretches are looked into anyway
     /// @param is_forbidden whether a stretch of the line with this middle and half width does not matter
     template <class Value, class IsForbidden>
-    static void run(const Values& v, Value&& value, IsForbidden&& is_forbidden, ErrorPerLevel& errors) {
-        descend(v, 0, 1, 0, value, is_forbidden, errors);
+    static void run(const Values& v, double shortest_turn, Value&& value, IsForbidden&& is_forbidden,
+                    ErrorPerLevel& errors) {
+        LineProbe(shortest_turn).descend(v, 0, 1, 0, value, is_forbidden, errors);
     }
 
  private:
+    explicit LineProbe(double shortest_turn) : shortest_turn_(shortest_turn) {}
+
     template <class Value, class IsForbidden>
-    static void descend(const Values& v, double low, double high, std::size_t level, Value& value,
-                        IsForbidden& is_forbidden, ErrorPerLevel& errors) {
+    void descend(const Values& v, double low, double high, std::size_t level, Value& value, IsForbidden& is_forbidden,
+                 ErrorPerLevel& errors) const {
         double error = deviation(v);
         const double width = high - low;
         Values lower{v[0], 0, v[1]};
         Values upper{v[1], 0, v[2]};
-        const bool is_split = error > negligible_error || may_hide_a_turn(v);
+        const bool is_long = width > shortest_turn_;
+        const bool is_split = is_long || error > negligible_error || may_hide_a_turn(v);
         if (is_split) {
             if (is_forbidden(low + 0.5 * width, 0.5 * width)) {
                 return;
@@ -58,7 +62,7 @@ class LineProbe {
             error = std::max({error, std::abs(lower[1] - (0.75 * v[0] + 0.25 * v[2])),
                               std::abs(upper[1] - (0.25 * v[0] + 0.75 * v[2]))});
         }
-        const bool is_last = error <= negligible_error || level + 1 == levels;
+        const bool is_last = (!is_long && error <= negligible_error) || level + 1 == levels;
         for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
             errors[finer] = std::max(errors[finer], error);
         }
@@ -67,6 +71,8 @@ class LineProbe {
             descend(upper, low + 0.5 * width, high, level + 1, value, is_forbidden, errors);
         }
     }
+
+    double shortest_turn_;
 };
 
 /// The fewest nodes within the allowance; the least error when nothing is.
@@ -107,10 +113,11 @@ CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const Cell
     for (std::size_t j = 0; j < 3; ++j) {
         const double at = 0.5 * static_cast<double>(j);
         LineProbe::run(
-            probes[j], [&](double x) { return field.factor(x_at(x), z_at(at)); },
+            probes[j], field.shortest_turn_m / cell.side_m, [&](double x) { return field.factor(x_at(x), z_at(at)); },
             [&](double x, double half) { return is_forbidden(x, at, half); }, along_x);
         LineProbe::run(
-            {probes[0][j], probes[1][j], probes[2][j]}, [&](double z) { return field.factor(x_at(at), z_at(z)); },
+            {probes[0][j], probes[1][j], probes[2][j]}, field.shortest_turn_m / cell.side_m,
+            [&](double z) { return field.factor(x_at(at), z_at(z)); },
             [&](double z, double half) { return is_forbidden(at, z, half); }, along_z);
     }
     return cheapest(along_x, along_z);

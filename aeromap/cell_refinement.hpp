@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace downwash {
@@ -28,6 +29,8 @@ struct CellField {
     /// Whether every position within `reach_m` of (x, z) is forbidden, so that the interpolation does not matter there.
     /// Empty: the whole cell is flyable.
     std::function<bool(double x_m, double z_m, double reach_m)> is_forbidden_around;
+    /// Between positions that are this far apart K may rise and fall again unseen: everything longer is looked into.
+    double shortest_turn_m = std::numeric_limits<double>::infinity();
 };
 
 /// K at the corners, edge middles and middle of a cell: [row from below][column from the left].

@@ -32,6 +32,9 @@ class DOWNWASH_EXPORT EffectCurve {
     /// on a wall: with no wall near.
     [[nodiscard]] double cap_distance() const noexcept { return cap_distance_; }
 
+    /// K never rises on the way outwards, and ends at 1.
+    [[nodiscard]] bool falls_with_distance() const noexcept { return falls_with_distance_; }
+
     /// K is 1 everywhere.
     [[nodiscard]] bool is_none() const noexcept { return effect_.model == EffectModel::none; }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "downwash/aeromap/effect_table.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -18,6 +19,19 @@ constexpr double clearance_slack_m = 1e-6;
 
 constexpr double unknown = -1;  // no K
 
+/// Formulas that fall with distance turn only from one obstacle to the next, which the ordinary probes see.
+double shortest_turn_m(const DirectEffect& effect) {
+    constexpr double turn_radii = 0.08;  // of tables and fountains
+    if (const auto& map = effect.settings().map) {
+        const double x_m = map->x().step_m();
+        const double y_m = map->is_planar() ? x_m : map->y().step_m();
+        return 0.5 * std::min({x_m, y_m, map->z().step_m()});
+    }
+    return effect.ground().falls_with_distance() && effect.ceiling().falls_with_distance()
+               ? std::numeric_limits<double>::infinity()
+               : turn_radii * effect.rotor_radius_m();
+}
+
 class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
@@ -29,7 +43,8 @@ class RowsBuilder {
         forget(lines_[2]);
         rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
         everywhere_.factor = [this](double x, double z) { return grid_.effect.factor(hub(x, z)); };
-        partly_.factor = everywhere_.factor;
+        everywhere_.shortest_turn_m = shortest_turn_m(grid.effect);
+        partly_ = everywhere_;
         partly_.is_forbidden_around = [this](double x, double z, double reach) {
             return clearance_m(x, z) + reach < least_clearance_m_;
         };
@@ -205,7 +220,7 @@ CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) 
 }
 
 double longest_cell_side_m(const DirectEffect& effect) {
-    const double from_radii = effect.settings().min_distance_radii;
+    const double from_radii = std::max(0.0, effect.least_clearance_m()) / effect.rotor_radius_m();
     const double slope = std::max(steepest(effect.ground(), from_radii), steepest(effect.ceiling(), from_radii));
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
     const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);

@@ -54,6 +54,10 @@ void add_model(Rows& rows, const std::string& path, Effect effect) {
             auto row = number(
                 path + "." + std::string(parameter.name), parameter.description,
                 [ effect, i ](auto& p) -> auto& { return effect(p).parameters[i]; });
+            row.get = [effect, i, which = known.model, otherwise = parameter.source_value](const Problem& p,
+                                                                                           std::size_t) {
+                return Value(effect(p).model == which ? effect(p).parameters[i] : otherwise);
+            };
             row.range = {parameter.low, parameter.high, parameter.is_open, false};
             rows.push_back(std::move(row).only(
                 "with the model " + std::string(known.name),
