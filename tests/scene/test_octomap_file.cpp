@@ -81,7 +81,7 @@ void fill(octomap::OcTree& tree, Random& random) {
         tree.updateNode(octomap::OcTreeKey(near(), near(), near()), random.integer(0, 2) > 0);
     }
     const auto block = static_cast<std::uint16_t>(32768 + 16 * random.integer(-3, 3));
-    for (std::uint16_t i = 0; i < 8 * 8 * 8; ++i) {
+    for (int i = 0; i < 8 * 8 * 8; ++i) {
         const auto at = [block](int offset) { return static_cast<std::uint16_t>(block + offset); };
         for (int hits = 0; hits < 8; ++hits) {  // up to the greatest probability: only equal leaves are pruned
             tree.updateNode(octomap::OcTreeKey(at(i % 8), at(i / 8 % 8), at(i / 64)), true);
