@@ -85,7 +85,7 @@ std::string parameters_text(const ModelScore& score) {
     for (std::size_t i = 0; i < known.size(); ++i) {
         text += (i > 0 ? ", " : "") + std::string(known[i].name) + " " + to_text(score.effect.parameters[i], 4);
     }
-    return text + (score.is_at_bound ? " (refit without success)" : score.is_refitted ? " (refitted)" : "");
+    return text + (score.is_at_bound ? " (at a bound)" : score.is_refitted ? " (refitted)" : "");
 }
 
 std::string band_name(const ErrorBand& band) {
