@@ -38,16 +38,15 @@ class LineProbe {
     template <class Value, class IsForbidden>
     static void run(const Values& v, double shortest_turn, Value&& value, IsForbidden&& is_forbidden,
                     ErrorPerLevel& errors) {
-        LineProbe(shortest_turn).descend(v, 0, 1, 0, value, is_forbidden, errors);
+        LineProbe(shortest_turn, errors).descend(v, 0, 1, 0, value, is_forbidden);
     }
 
  private:
-    explicit LineProbe(double shortest_turn) : shortest_turn_(shortest_turn) {}
+    LineProbe(double shortest_turn, ErrorPerLevel& errors) : shortest_turn_(shortest_turn), errors_(errors) {}
 
     template <class Value, class IsForbidden>
-    void descend(const Values& v, double low, double high, std::size_t level, Value& value, IsForbidden& is_forbidden,
-                 ErrorPerLevel& errors) const {
-        double error = deviation(v);
+    void descend(const Values& v, double low, double high, std::size_t level, Value& value, IsForbidden& is_forbidden) {
+        const double error = deviation(v);
         const double width = high - low;
         Values lower{v[0], 0, v[1]};
         Values upper{v[1], 0, v[2]};
@@ -59,20 +58,38 @@ class LineProbe {
             }
             lower[1] = value(low + 0.25 * width);
             upper[1] = value(low + 0.75 * width);
-            error = std::max({error, std::abs(lower[1] - (0.75 * v[0] + 0.25 * v[2])),
-                              std::abs(upper[1] - (0.25 * v[0] + 0.75 * v[2]))});
+            chords_[level] = {low, width, v[0], v[2]};
+            add(low + 0.25 * width, lower[1], level);
+            add(low + 0.75 * width, upper[1], level);
         }
         const bool is_last = (!is_long && error <= negligible_error) || level + 1 == levels;
         for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
-            errors[finer] = std::max(errors[finer], error);
+            errors_[finer] = std::max(errors_[finer], error);
         }
         if (!is_last) {
-            descend(lower, low, low + 0.5 * width, level + 1, value, is_forbidden, errors);
-            descend(upper, low + 0.5 * width, high, level + 1, value, is_forbidden, errors);
+            descend(lower, low, low + 0.5 * width, level + 1, value, is_forbidden);
+            descend(upper, low + 0.5 * width, high, level + 1, value, is_forbidden);
         }
     }
 
+    /// What the interpolation of this level and of all coarser ones misses at a point.
+    void add(double at, double value, std::size_t level) {
+        for (std::size_t coarser = 0; coarser <= level; ++coarser) {
+            const auto& [low, width, first, last] = chords_[coarser];
+            const double part = (at - low) / width;
+            errors_[coarser] = std::max(errors_[coarser], std::abs(value - (first + part * (last - first))));
+        }
+    }
+
+    /// The straight line through the ends of the stretch that is looked into on a level.
+    struct Chord {
+        double low, width;
+        double first, last;  ///< values at its ends
+    };
+
     double shortest_turn_;
+    ErrorPerLevel& errors_;
+    std::array<Chord, levels> chords_{};
 };
 
 /// The fewest nodes within the allowance; the least error when nothing is.

@@ -52,7 +52,7 @@ TEST_CASE("a measured table is read from beside its problem") {
 
 TEST_CASE("a table that is missing, broken or out of place is refused where it is named") {
     const TestFolder folder;
-    folder.write("broken.csv", "z_over_r,factor\n0.5,1.2\n0.5,1.1\n");
+    folder.write("broken.csv", "z_over_r,factor\n0.5,1.2\n1,-3\n");
     folder.write("good.csv", "z_over_r,factor\n0.5,1.2\n1,1.1\n");
     CHECK(faults_after(folder, {ground, "{model: table}", ""}) ==
           "problem.yaml:10:3: aero.ground.file is missing: expected the file of the table");
