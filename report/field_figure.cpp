@@ -10,10 +10,12 @@
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/report/field_samples.hpp"
 #include "downwash/report/gnuplot_script.hpp"
 #include "downwash/report/label_placement.hpp"
 #include "downwash/report/legend.hpp"
 #include "downwash/report/picture_text.hpp"
+#include "downwash/report/plot_elements.hpp"
 #include "downwash/report/region_boundary.hpp"
 
 namespace downwash {
@@ -75,47 +77,9 @@ Layout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& 
 
 // --- the field ----------------------------------------------------------------------------------------------------
 
-/// Values at regular points, row by row from the lower left, as places on the colour bar.
-struct Samples {
-    std::size_t columns = 0, rows = 0;
-    double x_m = 0, z_m = 0;    ///< of the first point
-    double dx_m = 0, dz_m = 0;  ///< between points
-    std::vector<float> places;  ///< NaN where the field is not defined
-
-    [[nodiscard]] std::string source() const {
-        return fmt::format("'-' binary array=({},{}) origin=({},{}) dx={} dy={} format='%float' using 1", columns, rows,
-                           x_m, z_m, dx_m, dz_m);
-    }
-    /// The same for splot.
-    [[nodiscard]] std::string surface_source() const {
-        return fmt::format("'-' binary array=({},{}) origin=({},{},0) dx={} dy={} format='%float' using 1", columns,
-                           rows, x_m, z_m, dx_m, dz_m);
-    }
-};
-
-/// The middles of columns x rows cells, or the corners between them.
-Samples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners) {
-    Samples samples;
-    const MapExtent& extent = figure.extent;
-    samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);
-    samples.dz_m = (extent.z_high_m - extent.z_low_m) / static_cast<double>(rows);
-    samples.columns = columns + (at_corners ? 1 : 0);
-    samples.rows = rows + (at_corners ? 1 : 0);
-    samples.x_m = extent.x_low_m + (at_corners ? 0 : samples.dx_m / 2);
-    samples.z_m = extent.z_low_m + (at_corners ? 0 : samples.dz_m / 2);
-    samples.places.reserve(samples.columns * samples.rows);
-    for (std::size_t k = 0; k < samples.rows; ++k) {
-        const double z_m = samples.z_m + static_cast<double>(k) * samples.dz_m;
-        for (std::size_t i = 0; i < samples.columns; ++i) {
-            const double x_m = samples.x_m + static_cast<double>(i) * samples.dx_m;
-            samples.places.push_back(static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m))));
-        }
-    }
-    return samples;
-}
-
-Samples sampled(const FieldFigure& figure, const Layout& layout, double points_per_px, std::size_t most_points,
-                bool at_corners) {
+/// So many points for each pixel of the axes, but no more than that in all.
+FieldSamples sampled_for(const FieldFigure& figure, const Layout& layout, double points_per_px, std::size_t most_points,
+                         bool at_corners) {
     const double height_px = layout.top - layout.bottom;
     const double points = layout.width() * height_px * points_per_px * points_per_px;
     const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(most_points) / points));
@@ -128,7 +92,7 @@ bool is_undefined(float place) {
 }
 
 /// Lines between the classes, as the data $contours.
-void add_contours(GnuplotScript& script, const FieldFigure& figure, const Samples& samples) {
+void add_contours(GnuplotScript& script, const FieldFigure& figure, const FieldSamples& samples) {
     script.add("set contour base");
     script.add("unset surface");
     script.add(fmt::format("set cntrparam levels incremental 1,1,{}", figure.scale.colors.size() - 1));
@@ -318,39 +282,6 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const MapExtent
 
 // --- the whole ----------------------------------------------------------------------------------------------------
 
-/// What is drawn, bottom first, as elements of a plot command; what has a name stands in the legend too.
-class Plot {
- public:
-    explicit Plot(Legend& legend) : legend_(legend) {}
-
-    void add(const std::string& element) { elements_ += (elements_.empty() ? "" : ", ") + element + " notitle"; }
-
-    void add_lines(const std::string& data, const std::string& style, const std::string& name = {}) {
-        add(data + " using 1:2 with lines " + style);
-        add_name(name, {style, {}, {}});
-    }
-    void add_fill(const std::string& data, const std::string& style, const std::string& name = {}) {
-        add(data + " using 1:2 with filledcurves closed " + style);
-        add_name(name, {{}, style, {}});
-    }
-    void add_points(const std::string& data, const std::string& style, const std::string& name = {}) {
-        add(data + " using 1:2 with points " + style);
-        add_name(name, {{}, {}, style});
-    }
-
-    [[nodiscard]] const std::string& elements() const { return elements_; }
-
- private:
-    void add_name(const std::string& name, LegendSample sample) {
-        if (!name.empty()) {
-            legend_.add(name, std::move(sample));
-        }
-    }
-
-    Legend& legend_;
-    std::string elements_;
-};
-
 void add_outlines(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
     bool has_cut = false, has_projected = false;
     for (std::size_t i = 0; i < outlines.size(); ++i) {
@@ -434,7 +365,7 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
 
     // The legend decides the layout, and the layout how finely the field is sampled: whether it is defined everywhere,
     // which the legend says, is found out beforehand.
-    const Samples glance = sampled(figure, 300, 300, false);
+    const FieldSamples glance = sampled(figure, 300, 300, false);
     const bool has_undefined = std::any_of(glance.places.begin(), glance.places.end(), is_undefined);
     const bool has_field = !std::all_of(glance.places.begin(), glance.places.end(), is_undefined);
     Legend legend;
@@ -463,14 +394,14 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
                           {extent.x_high_m, extent.z_high_m},
                           {extent.x_low_m, extent.z_high_m}},
                          true));
-    Samples image;
+    FieldSamples image;
     if (has_field) {
         constexpr std::size_t most_image_points = 1'500'000, most_contour_points = 300'000;
         const double points_per_px = settings.format == PictureFormat::svg ? 2 : 1;
-        image = sampled(figure, layout, points_per_px, most_image_points, false);
+        image = sampled_for(figure, layout, points_per_px, most_image_points, false);
         plot.add(image.source() + " with image");
         if (figure.has_contour_lines) {
-            add_contours(script, figure, sampled(figure, layout, 0.5, most_contour_points, true));
+            add_contours(script, figure, sampled_for(figure, layout, 0.5, most_contour_points, true));
             plot.add_lines("$contours", "linewidth 0.5 linecolor rgb '#404040'");
         }
         if (has_undefined) {

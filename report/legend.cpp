@@ -40,7 +40,8 @@ std::vector<double> Legend::columns_px(double width_px) const {
 
 double Legend::height_px(double width_px) const {
     const std::size_t in_a_row = columns_px(width_px).size();
-    return in_a_row == 0 ? 0 : row_px * static_cast<double>((entries_.size() + in_a_row - 1) / in_a_row);
+    const std::size_t rows = in_a_row == 0 ? 0 : (entries_.size() + in_a_row - 1) / in_a_row;
+    return row_px * static_cast<double>(rows);
 }
 
 void Legend::place(GnuplotScript& script, double middle_px, double top_px, double width_px) const {
@@ -56,7 +57,8 @@ void Legend::place(GnuplotScript& script, double middle_px, double top_px, doubl
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const LegendSample& sample = entries_[i].sample;
         const double left = first_px + lefts[i % columns.size()];
-        const double y = top_px - row_px * (static_cast<double>(i / columns.size()) + 0.5);
+        const std::size_t row = i / columns.size();
+        const double y = top_px - row_px * (static_cast<double>(row) + 0.5);
         const auto screen = [&](double dx, double dy) {
             return fmt::format("screen {:.6f},{:.6f}", script.screen_x(left + dx), script.screen_y(y + dy));
         };

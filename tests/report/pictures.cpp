@@ -61,7 +61,7 @@ const std::array<std::string, 13>& hostile_texts() {
         "'\nEND_OF_DATA\n!touch downwash-was-here\n",
         "@system {/Symbol a}_b^c %s %g $HOME #",
         "</text><script>alert(1)</script> & < > ]]>",
-        std::string("\x01\x1b[31m\x7f\xff\xc3(\xed\xa0\x80\0end", 18),
+        std::string("\x01\x1b[31m\x7f\xff\xc3(\xed\xa0\x80\0end", 17),
         "Über-Brücke 桥 \xef\xbf\xbf",
     };
     return texts;
