@@ -46,7 +46,7 @@ class LineProbe {
 
     template <class Value, class IsForbidden>
     void descend(const Values& v, double low, double high, std::size_t level, Value& value, IsForbidden& is_forbidden) {
-        const double error = deviation(v);
+        double error = deviation(v);
         const double width = high - low;
         Values lower{v[0], 0, v[1]};
         Values upper{v[1], 0, v[2]};
@@ -59,8 +59,8 @@ class LineProbe {
             lower[1] = value(low + 0.25 * width);
             upper[1] = value(low + 0.75 * width);
             chords_[level] = {low, width, v[0], v[2]};
-            add(low + 0.25 * width, lower[1], level);
-            add(low + 0.75 * width, upper[1], level);
+            error =
+                std::max({error, add(low + 0.25 * width, lower[1], level), add(low + 0.75 * width, upper[1], level)});
         }
         const bool is_last = (!is_long && error <= negligible_error) || level + 1 == levels;
         for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
@@ -72,13 +72,16 @@ class LineProbe {
         }
     }
 
-    /// What the interpolation of this level and of all coarser ones misses at a point.
-    void add(double at, double value, std::size_t level) {
+    /// Notes what the interpolation of this level and of all coarser ones misses at a point; returns that of this
+    /// level.
+    double add(double at, double value, std::size_t level) {
+        double missed = 0;
         for (std::size_t coarser = 0; coarser <= level; ++coarser) {
             const auto& [low, width, first, last] = chords_[coarser];
-            const double part = (at - low) / width;
-            errors_[coarser] = std::max(errors_[coarser], std::abs(value - (first + part * (last - first))));
+            missed = std::abs(value - (first + (at - low) / width * (last - first)));
+            errors_[coarser] = std::max(errors_[coarser], missed);
         }
+        return missed;
     }
 
     /// The straight line through the ends of the stretch that is looked into on a level.
