@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "../support/random.hpp"
 #include "downwash/aeromap/effect_fit.hpp"
 #include "downwash/base/fault.hpp"
-#include "../support/random.hpp"
 
 using namespace downwash;
 using downwash::test::Random;
