@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/effect_table.hpp"
 #include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
@@ -107,36 +108,12 @@ class RowsBuilder {
         }
     }
 
-    /// Nowhere in the cell does K differ more from 1: each side counts as covered by a flat surface somewhere from the
-    /// least vertical gap on.
-    [[nodiscard]] double largest_change(const CellSquare& cell) const {
-        if (grid_.effect.settings().map) {
-            return std::numeric_limits<double>::infinity();
-        }
-        const Scene& scene = grid_.effect.scene();
+    /// The box around the hubs in a cell.
+    [[nodiscard]] Scene::Bounds hubs_in(const CellSquare& cell) const {
         const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
         const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);
-        double below_m = std::numeric_limits<double>::infinity();
-        double above_m = below_m;
-        for (std::size_t o = 0; o < scene.obstacles().size(); ++o) {
-            const Scene::Bounds& bounds = scene.bounds(o);
-            const auto is_apart = [&](std::size_t axis) {
-                return bounds.high_m[axis] < std::min(from[axis], to[axis]) - radius_m_ ||
-                       bounds.low_m[axis] > std::max(from[axis], to[axis]) + radius_m_;
-            };
-            if (is_apart(0) || is_apart(1)) {
-                continue;
-            }
-            if (bounds.low_m[2] <= to[2]) {
-                below_m = std::min(below_m, std::max(0.0, from[2] - bounds.high_m[2]));
-            }
-            if (bounds.high_m[2] >= from[2]) {
-                above_m = std::min(above_m, std::max(0.0, bounds.low_m[2] - to[2]));
-            }
-        }
-        const double unit_m = grid_.effect.rotor_radius_m();
-        return grid_.effect.ground().largest_change_beyond(below_m / unit_m) +
-               grid_.effect.ceiling().largest_change_beyond(above_m / unit_m);
+        return {{std::min(from[0], to[0]), std::min(from[1], to[1]), from[2]},
+                {std::max(from[0], to[0]), std::max(from[1], to[1]), to[2]}};
     }
 
     void add_cell(std::size_t i, std::size_t k) {
@@ -148,7 +125,8 @@ class RowsBuilder {
             return;
         }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
-        const bool is_quiet = !grid_.effect.settings().enabled || largest_change(cell) <= quiet_change;
+        const bool is_quiet =
+            !grid_.effect.settings().enabled || largest_change(grid_.effect, hubs_in(cell)) <= quiet_change;
         const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, probes(i, k), field);
         rows_.steps.push_back(steps);
         if (steps.x == 1 && steps.z == 1) {

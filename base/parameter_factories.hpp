@@ -231,10 +231,9 @@ Parameter<Model> list(std::string_view path, std::string_view description, Membe
 }
 
 /// A file that is read when its path is set, in the one place that knows how.
-/// @param path_of names the std::string that keeps the path, an optional one where there need be no file  @param read
-/// (Model&, index, path) keeps what is in the file
-///     and throws InputError when it cannot be used  @param digest (const Model&, index) -> SHA-256 of what was read:
-///     it stands for the file wherever that lies
+/// @param path_of names the std::string that keeps the path, an optional one where there need be no file
+/// @param read (Model&, index, path) keeps what is in the file and throws InputError when it cannot be used
+/// @param digest (const Model&, index) -> SHA-256 of what was read: it stands for the file wherever that lies
 template <class Model, class PathOf, class Read, class Digest>
 Parameter<Model> file(std::string_view path, std::string_view description, PathOf path_of, Read read, Digest digest) {
     auto parameter = member_row<Model, std::string>(ParameterKind::file, path, description, path_of);

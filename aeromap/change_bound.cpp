@@ -1,0 +1,57 @@
+#include "downwash/aeromap/change_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory_resource>
+#include <vector>
+
+namespace downwash {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double largest_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
+    if (effect.settings().map) {
+        return infinity;
+    }
+    const Scene& scene = effect.scene();
+    const double r = effect.disc_radius_m();
+    const Scene::Bounds column{{hubs.low_m[0] - r, hubs.low_m[1] - r, -infinity},
+                               {hubs.high_m[0] + r, hubs.high_m[1] + r, infinity}};
+    double below_m = infinity;
+    double above_m = infinity;
+    const auto add = [&](const Scene::Bounds& part) {
+        for (const std::size_t axis : {0U, 1U}) {
+            if (part.high_m[axis] < column.low_m[axis] || part.low_m[axis] > column.high_m[axis]) {
+                return;
+            }
+        }
+        if (part.low_m[2] <= hubs.high_m[2]) {
+            below_m = std::min(below_m, std::max(0.0, hubs.low_m[2] - part.high_m[2]));
+        }
+        if (part.high_m[2] >= hubs.low_m[2]) {
+            above_m = std::min(above_m, std::max(0.0, part.low_m[2] - hubs.high_m[2]));
+        }
+    };
+    for (std::size_t i = 0; i < scene.primitive_count(); ++i) {
+        add(scene.part_bounds(i));
+    }
+    if (scene.part_count() > scene.primitive_count()) {
+        std::array<std::byte, 4096> room;
+        std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
+        std::pmr::vector<std::size_t> parts(&memory);
+        scene.add_parts_meeting(column, parts);
+        for (const std::size_t part : parts) {
+            add(scene.part_bounds(part));
+        }
+    }
+    const double unit_m = effect.rotor_radius_m();
+    return effect.ground().largest_change_beyond(below_m / unit_m) +
+           effect.ceiling().largest_change_beyond(above_m / unit_m);
+}
+
+}  // namespace downwash
