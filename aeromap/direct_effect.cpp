@@ -131,7 +131,7 @@ bool DirectEffect::is_flyable(const Vector3& hub_m) const {
     if (!settings_.enabled || least_clearance_m_ < 0) {
         return true;
     }
-    return (!settings_.map || settings_.map->contains(hub_m)) &&
+    return (!settings_.map || settings_.map->is_flyable(hub_m)) &&
            disc_is_clear(*scene_, hub_m, disc_radius_m_, least_clearance_m_);
 }
 

@@ -46,7 +46,8 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
     /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4), and a given map reaches
-    /// here. With the effects disabled every finite position is flyable.
+    /// here and does not say otherwise (FactorGrid::is_flyable). With the effects disabled every finite position is
+    /// flyable.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
 
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }

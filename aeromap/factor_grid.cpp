@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> field_names{"factor", "ground", "ceiling", "flyable"};
 constexpr double largest_coordinate_m = 1e6;
-constexpr double largest_factor = 100;
 constexpr double edge_slack_m = 1e-9;
 constexpr double layer_slack_m = 1e-6;
 
@@ -76,7 +75,7 @@ void check_field(const GridField& field, std::size_t nodes, std::vector<Fault>& 
     }
     const bool is_flag = field.name == "flyable";
     const auto is_good = [is_flag](double value) {
-        return is_flag ? value == 0 || value == 1 : value >= 0 && value <= largest_factor;  // NaN fails
+        return is_flag ? value == 0 || value == 1 : value >= 0 && value <= largest_grid_factor;  // NaN fails
     };
     const auto bad = std::find_if_not(field.values.begin(), field.values.end(), is_good);
     if (bad != field.values.end()) {
@@ -206,6 +205,41 @@ std::optional<FactorGrid::Place> FactorGrid::place_of(const Vector3& hub_m) cons
 
 bool FactorGrid::contains(const Vector3& hub_m) const noexcept {
     return place_of(hub_m).has_value();
+}
+
+bool FactorGrid::is_flyable_between(std::span<const Vector3> corners_m) const noexcept {
+    std::optional<Place> low;
+    std::optional<Place> high;
+    for (const Vector3& corner_m : corners_m) {
+        const auto place = place_of(corner_m);
+        if (!place || (low && place->layer != low->layer)) {
+            return false;
+        }
+        if (!low) {
+            low = high = place;
+        }
+        low->i = std::min(low->i, place->i);
+        low->j = std::min(low->j, place->j);
+        low->k = std::min(low->k, place->k);
+        high->i = std::max(high->i, place->i);
+        high->j = std::max(high->j, place->j);
+        high->k = std::max(high->k, place->k);
+    }
+    const std::vector<double>* flags = field("flyable");
+    if (!low || !flags) {
+        return low.has_value();
+    }
+    const std::size_t last_j = is_planar() ? 0 : high->j + 1;
+    for (std::size_t k = low->k; k <= high->k + 1; ++k) {
+        for (std::size_t j = low->j; j <= last_j; ++j) {
+            const double* row =
+                flags->data() + ((low->layer * parts_.z.count + k) * parts_.y.count + j) * parts_.x.count;
+            if (std::find(row + low->i, row + high->i + 2, 0.0) != row + high->i + 2) {
+                return false;
+            }
+        }
+    }
+    return true;
 }
 
 double FactorGrid::factor(const Vector3& hub_m) const noexcept {

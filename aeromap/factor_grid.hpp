@@ -85,6 +85,12 @@ class DOWNWASH_EXPORT FactorGrid {
     /// contain it: nothing is extrapolated.
     [[nodiscard]] double factor(const Vector3& hub_m) const noexcept;
 
+    /// Whether a rotor may fly with its hub there: the grid contains it, and all corners of the cell that holds it are
+    /// flagged 1 in the field "flyable", as far as there is one.
+    [[nodiscard]] bool is_flyable(const Vector3& hub_m) const noexcept { return is_flyable_between({&hub_m, 1}); }
+    /// The same for all hubs between these corners (in their convex hull) at once; false in doubt.
+    [[nodiscard]] bool is_flyable_between(std::span<const Vector3> corners_m) const noexcept;
+
  private:
     /// The layer and the cell that hold a position, and where in the cell it lies, 0 to 1.
     struct Place {
@@ -99,6 +105,9 @@ class DOWNWASH_EXPORT FactorGrid {
 
 /// The most nodes a grid may have, all layers together.
 inline constexpr std::size_t most_grid_nodes = std::size_t{1} << 27U;
+
+/// The largest factor a grid may hold.
+inline constexpr double largest_grid_factor = 100;
 
 /// The names a field may have, "factor" first.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const std::string_view> grid_field_names();

@@ -54,6 +54,9 @@ class RowsBuilder {
     CellRows build() {
         if (grid_.effect.settings().enabled) {
             classify(0, grid_.columns, first_, last_);
+            if (grid_.effect.settings().map && least_clearance_m_ >= 0) {
+                ask_given_map();
+            }
         }
         for (std::size_t k = first_; k < last_; ++k) {
             lines_[0].swap(lines_[2]);
@@ -104,6 +107,25 @@ class RowsBuilder {
         for (std::size_t k = k0; k < k1; ++k) {
             for (std::size_t i = i0; i < i1; ++i) {
                 flyability(i, k) = verdict;
+            }
+        }
+    }
+
+    /// Cells that the scene leaves flyable need the exact test wherever a given map may forbid a part of them.
+    void ask_given_map() {
+        constexpr double slack_m = 1e-9;  // the nodes of map and grid often coincide
+        for (std::size_t k = first_; k < last_; ++k) {
+            for (std::size_t i = 0; i < grid_.columns; ++i) {
+                const double x_low = x_at(i) - slack_m;
+                const double x_high = x_at(i + 1) + slack_m;
+                const double z_low = z_at(k) - slack_m;
+                const double z_high = z_at(k + 1) + slack_m;
+                const std::array<Vector3, 4> corners{hub(x_low, z_low), hub(x_high, z_low), hub(x_low, z_high),
+                                                     hub(x_high, z_high)};
+                if (flyability(i, k) == CellFlyability::flyable &&
+                    !grid_.effect.settings().map->is_flyable_between(corners)) {
+                    flyability(i, k) = CellFlyability::mixed;
+                }
             }
         }
     }

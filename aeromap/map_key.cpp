@@ -91,15 +91,21 @@ void add_axis(Description& description, const GridAxis& axis) {
     description.add(low_m).add(high_m).add(std::to_string(count));
 }
 
-/// What a grid says of K, not how it came about.
+void add_field(Description& description, const std::vector<double>& values) {
+    description.add(sha256_hex({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}));
+}
+
+/// What a grid says of K and the flyable area, not how it came about.
 void add_grid(Description& description, const FactorGrid& grid) {
     description.add("grid").add_all(grid.frame().origin_m()).add(grid.frame().heading_rad());
     add_axis(description, grid.x());
     add_axis(description, grid.y());
     add_axis(description, grid.z());
-    const std::vector<double>& factors = *grid.field("factor");
     description.add_all(grid.lateral_offsets_m());
-    description.add(sha256_hex({reinterpret_cast<const char*>(factors.data()), factors.size() * sizeof(double)}));
+    add_field(description, *grid.field("factor"));
+    if (const std::vector<double>* flyable = grid.field("flyable")) {
+        add_field(description.add("flyable"), *flyable);
+    }
 }
 
 }  // namespace

@@ -241,3 +241,55 @@ TEST_CASE("A given map takes the place of the models where it reaches") {
         CHECK(map.factor(0, x, 1.3) == Approx(1 + 0.1 * x + 0.26).margin(1e-6));
     }
 }
+
+TEST_CASE("A map says as the direct effect where one may fly on a given map") {
+    // The given map is smaller than the extent, and its nodes are those of some cells of the map.
+    test::Random random(32);
+    for (const bool has_flags : {true, false}) {
+        for (const bool is_turned : {true, false}) {
+            FactorGridParts parts;
+            const PlaneOfMotion plane({0.3, -0.2, 0.1}, 0.7);
+            // A volume may stand athwart the plane.
+            parts.frame = is_turned ? PlaneOfMotion({0, 0, 0}, 0.1) : plane;
+            parts.x = {-1, 1, 21};
+            parts.z = {0, 2, 21};
+            parts.y = is_turned ? GridAxis{-2, 2, 9} : GridAxis{};
+            const std::size_t nodes = parts.x.count * parts.y.count * parts.z.count;
+            parts.fields = {{"factor", std::vector<double>(nodes, 1.25)}};
+            if (has_flags) {
+                GridField flags{"flyable", std::vector<double>(nodes, 1)};
+                for (std::size_t n = 0; n < nodes / 40; ++n) {
+                    flags.values[static_cast<std::size_t>(random.integer(0, static_cast<int>(nodes) - 1))] = 0;
+                }
+                parts.fields.push_back(flags);
+            }
+            AeroSettings settings;
+            settings.map = std::make_shared<const FactorGrid>(std::move(parts));
+            const auto effect = std::make_shared<const DirectEffect>(scene_of({floor_slab}), settings, radius);
+            const AeroMap map(test::layers(effect, {0.2}), plane, {-1.2, 1.3, -0.1, 2.2});
+            int flyable = 0;
+            for (int n = 0; n < 20000; ++n) {
+                // Every other point is a node of the grid.
+                const double x = n % 2 == 0 ? random.uniform(-1.3, 1.4) : 0.1 * random.integer(-12, 12);
+                const double z = n % 2 == 0 ? random.uniform(-0.2, 2.3) : 0.1 * random.integer(-1, 22);
+                const bool is_flyable = effect->is_flyable(plane.to_world(x, 0.2, z));
+                flyable += is_flyable ? 1 : 0;
+                REQUIRE(map.is_flyable(0, x, z) == is_flyable);
+            }
+            CHECK(flyable > 3000);
+            CHECK(flyable < 17000);
+        }
+    }
+}
+
+TEST_CASE("Disabled effects heed no given map") {
+    AeroSettings settings;
+    settings.enabled = false;
+    FactorGridParts parts;
+    parts.x = parts.z = {0, 1, 2};
+    parts.fields = {{"factor", {1, 1, 1, 1}}, {"flyable", {0, 0, 0, 0}}};
+    settings.map = std::make_shared<const FactorGrid>(std::move(parts));
+    const auto effect = std::make_shared<const DirectEffect>(scene_of({}), settings, radius);
+    CHECK(effect->is_flyable({0.5, 0, 0.5}));
+    CHECK(AeroMap(test::layers(effect, {0}), {}, {0, 1, 0, 1}).is_flyable(0, 0.5, 0.5));
+}

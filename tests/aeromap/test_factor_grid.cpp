@@ -163,3 +163,52 @@ TEST_CASE("what is no grid is refused by its part") {
     CHECK(fault_of(twice) == "lateral_offsets_m: expected rising distances, more than 2e-6 m apart");
     CHECK(fault_of(two_by_two()) == "none");
 }
+
+TEST_CASE("one may fly where all corners of the cell are flagged") {
+    FactorGridParts parts = two_by_two();
+    parts.x = {0, 3, 4};
+    parts.fields = {{"factor", std::vector<double>(8, 1)}, {"flyable", {1, 1, 1, 0, 1, 1, 1, 1}}};
+    const FactorGrid grid(parts);
+    CHECK(grid.is_flyable({0.1, 5, 0.1}));
+    CHECK(grid.is_flyable({1.9, 0, 1.9}));
+    CHECK_FALSE(grid.is_flyable({2.1, 0, 1.9}));
+    CHECK_FALSE(grid.is_flyable({3.1, 0, 1}));
+    CHECK_FALSE(grid.is_flyable({not_a_number, 0, 1}));
+    parts.fields.pop_back();
+    CHECK(FactorGrid(parts).is_flyable({2.1, 0, 1.9}));
+    CHECK_FALSE(FactorGrid(parts).is_flyable({3.1, 0, 1}));
+}
+
+TEST_CASE("where one may fly between corners one may fly at every place between them") {
+    test::Random random(31);
+    int flyable = 0;
+    for (int n = 0; n < 3000; ++n) {
+        FactorGridParts parts = two_by_two();
+        parts.frame = PlaneOfMotion({1, 2, 3}, random.uniform(-4, 4));
+        parts.x = {0, 1, 6};
+        parts.z = {0, 1, 5};
+        if (n % 2 == 0) {
+            parts.y = {0, 1, 4};
+        } else {
+            parts.lateral_offsets_m = {0.25, 0.5};
+        }
+        const std::size_t nodes = parts.x.count * parts.z.count * (n % 2 == 0 ? 4 : 2);
+        parts.fields = {{"factor", std::vector<double>(nodes, 1)}, {"flyable", std::vector<double>(nodes, 1)}};
+        parts.fields[1].values[static_cast<std::size_t>(random.integer(0, static_cast<int>(nodes) - 1))] = 0;
+        const FactorGrid grid(parts);
+        const double y = n % 2 == 0 ? random.uniform(0, 1) : 0.25 * random.integer(1, 2);
+        const double x = random.uniform(0, 1);
+        const double z = random.uniform(0, 1);
+        const double side = random.uniform(0, 0.5);
+        const auto at = [&](double s, double t) { return grid.frame().to_world(x + s * side, y, z + t * side); };
+        const std::vector<Vector3> corners{at(0, 0), at(1, 0), at(0, 1), at(1, 1)};
+        if (grid.is_flyable_between(corners)) {
+            ++flyable;
+            for (int i = 0; i < 20; ++i) {
+                REQUIRE(grid.is_flyable(at(random.uniform(0, 1), random.uniform(0, 1))));
+            }
+        }
+    }
+    CHECK(flyable > 300);
+    CHECK_FALSE(FactorGrid(two_by_two()).is_flyable_between({}));
+}
