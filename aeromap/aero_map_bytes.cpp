@@ -5,6 +5,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"
+#include "downwash/aeromap/factor_grid.hpp"
 
 // A map as bytes: the counts of layers, columns and rows; then of every layer the count of its nodes, the cells, their
 // flyability, the nodes.
@@ -99,7 +100,8 @@ bool AeroMap::is_sound(const Raster& raster) const {
                cell.first_node + nodes <= raster.nodes.size();
     };
     const auto is_verdict = [](CellFlyability flyability) { return flyability <= CellFlyability::mixed; };
-    const double most = std::max(2.0, 2 * layers_.front().effect->settings().max_factor);
+    const AeroSettings& settings = layers_.front().effect->settings();
+    const double most = settings.map ? largest_grid_factor : std::max(2.0, 2 * settings.max_factor);
     const auto is_factor = [most](float value) { return value >= 0 && value <= most; };  // NaN fails
     return std::all_of(raster.cells.begin(), raster.cells.end(), is_cell) &&
            std::all_of(raster.flyability.begin(), raster.flyability.end(), is_verdict) &&

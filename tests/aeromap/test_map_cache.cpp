@@ -94,6 +94,23 @@ TEST_CASE("a map comes back from the cache to the last bit") {
     CHECK(found->memory_bytes() == built.memory_bytes());
 }
 
+TEST_CASE("a given map of large factors is served from the cache") {
+    const ScratchFolder folder;
+    const MapCache cache(folder.path());
+    Making making;
+    FactorGridParts parts = test::two_by_two();
+    parts.x = {-4, 2, 2};
+    parts.z = {0, 5, 2};
+    parts.fields = {{"factor", {5, 5, 100, 1}}};
+    making.settings.map = std::make_shared<const FactorGrid>(parts);
+    const AeroMap built = making.build();
+    CHECK(built.factor(0, -2.9, 3.5) > 5);
+    REQUIRE(cache.keep(built));
+    const auto found = making.find(cache);
+    REQUIRE(found);
+    CHECK(answers_alike(built, *found));
+}
+
 TEST_CASE("a map is built once and found from then on") {
     const ScratchFolder folder;
     const Making making;
@@ -172,6 +189,18 @@ TEST_CASE("whatever makes a map is part of its key") {
          [](Making& m) {
              FactorGridParts parts = test::two_by_two();
              parts.x.high_m = 1.5;
+             m.settings.map = std::make_shared<const FactorGrid>(parts);
+         }},
+        {"given flyable area",
+         [](Making& m) {
+             FactorGridParts parts = test::two_by_two();
+             parts.fields.push_back({"flyable", {1, 1, 1, 1}});
+             m.settings.map = std::make_shared<const FactorGrid>(parts);
+         }},
+        {"given flag",
+         [](Making& m) {
+             FactorGridParts parts = test::two_by_two();
+             parts.fields.push_back({"flyable", {1, 1, 1, 0}});
              m.settings.map = std::make_shared<const FactorGrid>(parts);
          }},
         {"mesh",
