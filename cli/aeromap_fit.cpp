@@ -18,6 +18,7 @@
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
+#include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/report/curve_figure.hpp"
 

@@ -147,7 +147,10 @@ void add_aeromap_hold(CLI::App& aeromap, Action& action) {
     hold->add_option("--at", arguments->at,
                      "centre of mass in plane coordinates [m]; may be given several times, in the bounds or not")
         ->required()
-        ->type_name("X Z");
+        ->type_name("X Z")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     hold->add_flag("--json", arguments->as_json, "print JSON");
     hold->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -14,6 +14,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/plot_request.hpp"
+#include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/cli/vehicle_figures.hpp"
 #include "downwash/planner/solve.hpp"
@@ -146,7 +147,7 @@ ExitCode run(const PlotRequest& request) {
         throw UsageError("--output " + request.output + " " + error.what());
     }
     if (!request.is_quiet) {
-        fmt::print(stderr, "wrote {}\n", request.output);
+        print_error(fmt::format("wrote {}\n", request.output));
     }
     return ExitCode::done;
 }
@@ -175,7 +176,7 @@ void add_options(CLI::App& plot, PlotRequest& request) {
     plot.add_option("--source", request.source, "only measurements of this source")->type_name("NAME");
     plot.add_option("--max-factor", request.max_factor, "cap of the models; default 2")->type_name("K");
     plot.add_option("--rotor-spacing", request.rotor_spacing,
-                    "multirotor models: a square quadrotor whose adjacent axes are so many radii apart")
+                    "multirotor models: a square quadrotor whose adjacent axes are so many radii apart; default 2.5")
         ->type_name("D");
     plot.add_flag("--flow", request.is_flow, "the potential flow of a rotor and its image below the ground");
     plot.add_option("--z-over-r", request.z_over_r,

@@ -252,7 +252,10 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
         ->add_option("--at", arguments->at,
                      "rotor hub in the world frame [m]; may be given several times. `factor` comes from the problem's "
                      "map where the point lies on one of its planes")
-        ->type_name("X Y Z");
+        ->type_name("X Y Z")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     query
         ->add_option("--points", arguments->points,
                      "file of many such points, a line each; - reads them from standard input")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/standard_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
@@ -39,7 +40,7 @@ ExitCode run(const CheckArguments& arguments) {
     for (const std::string& path : arguments.problems) {
         const std::vector<LocatedFault> faults = faults_of(path);
         for (const LocatedFault& fault : faults) {
-            fmt::print(stderr, "{}\n", to_text(fault));
+            print_error(fmt::format("{}\n", to_text(fault)));
         }
         if (faults.empty() && !arguments.as_json) {
             fmt::print("{}: ok\n", path);

@@ -12,6 +12,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -97,12 +98,13 @@ int main(int argc, char** argv) {
     try {
         code = downwash::cli::run(argc, argv);
     } catch (const downwash::ProblemFileError& error) {
-        fmt::print(stderr, "{}\n", error.what());
+        downwash::cli::print_error(fmt::format("{}\n", error.what()));
     } catch (const std::logic_error& error) {
-        fmt::print(stderr, "downwash: this is a bug in downwash, please report it: {}\n", error.what());
+        downwash::cli::print_error(
+            fmt::format("downwash: this is a bug in downwash, please report it: {}\n", error.what()));
         std::abort();
     } catch (const std::exception& error) {
-        fmt::print(stderr, "downwash: {}\n", error.what());
+        downwash::cli::print_error(fmt::format("downwash: {}\n", error.what()));
     }
     return static_cast<int>(code);
 }

@@ -61,7 +61,11 @@ SurfaceEffect effect_of(const ModelChoice& choice) {
         if (effect.table->depends_on_d() && !choice.d_over_r) {
             throw UsageError("--table " + choice.table + " is over two distances: expected --d-over-r D");
         }
+        checked("--d-over-r", choice.d_over_r, 0, 0, 10000);
         effect.d_over_r = choice.d_over_r;
+    }
+    if (choice.d_over_r && !(is_table && effect.table->depends_on_d())) {
+        throw UsageError("--d-over-r goes with a table over two distances only");
     }
     return effect;
 }
@@ -80,14 +84,21 @@ void add_model_options(CLI::App& command, ModelChoice& choice) {
     command.add_option("--max-factor", choice.max_factor, "cap of the model; default 2")->type_name("K");
 }
 
+bool is_multirotor(EffectModel model) {
+    return model == EffectModel::multirotor_images || model == EffectModel::multirotor_body;
+}
+
 bool is_given(const ModelChoice& choice) {
     return !choice.set.empty() || !choice.table.empty() || choice.d_over_r || choice.rotor_spacing || choice.max_factor;
 }
 
 EffectCurve curve_option(const ModelChoice& choice) {
-    constexpr double usual_spacing = 2.5;
-    return {effect_of(choice), checked("--max-factor", choice.max_factor, AeroSettings{}.max_factor, 1, 100),
-            square_quadrotor(checked("--rotor-spacing", choice.rotor_spacing, usual_spacing, 0.1, 100))};
+    const SurfaceEffect effect = effect_of(choice);
+    if (choice.rotor_spacing && !is_multirotor(effect.model)) {
+        throw UsageError("--rotor-spacing goes with the multirotor models only");
+    }
+    return {effect, checked("--max-factor", choice.max_factor, AeroSettings{}.max_factor, 1, 10),
+            square_quadrotor(checked("--rotor-spacing", choice.rotor_spacing, usual_rotor_spacing, 0.1, 100))};
 }
 
 const EffectModelInfo& model_named(const std::string& name) {

@@ -20,6 +20,12 @@ struct ModelChoice {
     std::optional<double> max_factor;
 };
 
+/// Spacing of adjacent rotors that the multirotor models take when none is said [radii].
+inline constexpr double usual_rotor_spacing = 2.5;
+
+/// Whether a model sees the vehicle's other rotors.
+[[nodiscard]] bool is_multirotor(EffectModel model);
+
 /// Adds the options that go with --model NAME: --set, --table, --d-over-r, --rotor-spacing and --max-factor.
 void add_model_options(CLI::App& command, ModelChoice& choice);
 

@@ -16,18 +16,6 @@
 namespace downwash::cli {
 namespace {
 
-RotorNeighbours neighbours(const PlotRequest& request) {
-    constexpr double most_spacing = 100;
-    if (!request.rotor_spacing) {
-        return {};
-    }
-    if (!(*request.rotor_spacing > 0 && *request.rotor_spacing <= most_spacing)) {
-        throw UsageError(fmt::format("--rotor-spacing {}: expected radii, above 0 and at most {}",
-                                     *request.rotor_spacing, most_spacing));
-    }
-    return square_quadrotor(*request.rotor_spacing);
-}
-
 AxisRange shown_range(const PlotRequest& request) {
     constexpr AxisRange usual{0, 4};
     constexpr double farthest = 1000;
@@ -49,7 +37,13 @@ Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRa
         throw UsageError(
             "--model table has no curve of its own; plot a problem that uses it, or give its CSV as --data");
     }
-    const EffectCurve effect(model.model, request.max_factor.value_or(AeroSettings{}.max_factor), neighbours(request));
+    ModelChoice choice;
+    choice.name = name;
+    choice.max_factor = request.max_factor;
+    if (is_multirotor(model.model)) {
+        choice.rotor_spacing = request.rotor_spacing;
+    }
+    const EffectCurve effect = curve_option(choice);
     Curve curve{std::string(model.name), {}};
     for (int i = 0; i <= intervals; ++i) {
         const double z_over_r = range.low + (range.high - range.low) * i / intervals;
@@ -129,17 +123,13 @@ void add_measurements(CurveFigure& figure, const PlotRequest& request, const Axi
 }  // namespace
 
 CurveFigure model_figure(const PlotRequest& request) {
-    constexpr double most_factor = 100;
-    if (request.max_factor && !(*request.max_factor >= 1 && *request.max_factor <= most_factor)) {
-        throw UsageError(
-            fmt::format("--max-factor {}: expected a number from 1 to {}", *request.max_factor, most_factor));
-    }
     CurveFigure figure;
     const AxisRange range = shown_range(request);
     figure.title = "Factor K on the thrust of a rotor near a wide flat surface";
-    if (request.rotor_spacing) {
+    if (std::any_of(request.models.begin(), request.models.end(),
+                    [](const std::string& name) { return is_multirotor(model_named(name).model); })) {
         figure.subtitle = fmt::format("multirotor models: square quadrotor, adjacent axes {} radii apart",
-                                      to_text(*request.rotor_spacing, 4));
+                                      to_text(request.rotor_spacing.value_or(usual_rotor_spacing), 4));
     }
     figure.x_label = "z/R, distance of the rotor from the surface in rotor radii [1]";
     figure.y_label = "K, thrust over that in free air [1]";

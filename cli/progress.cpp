@@ -1,4 +1,5 @@
 #include "downwash/cli/progress.hpp"
+#include "downwash/cli/standard_error.hpp"
 
 #include <fmt/core.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -66,8 +67,7 @@ void ProgressDisplay::show(const std::string& task, double share) {
 
 void ProgressDisplay::show_line(const std::string& text) {
     if (is_live_) {
-        fmt::print(stderr, "{}{}", erase_line, text);
-        std::fflush(stderr);
+        print_error(fmt::format("{}{}", erase_line, text));
         has_line_ = true;
     } else if (Clock::now() >= next_log_) {
         logger().info(text);
@@ -77,7 +77,7 @@ void ProgressDisplay::show_line(const std::string& text) {
 
 void ProgressDisplay::clear_line() {
     if (has_line_) {
-        fmt::print(stderr, "{}", erase_line);
+        print_error(erase_line);
         has_line_ = false;
     }
 }

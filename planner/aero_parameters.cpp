@@ -34,9 +34,9 @@ std::string digest_of(const EffectTable& table) {
 
 /// The model's name, and as many rows as all models together have parameters.
 template <class Effect>
-void add_model(Rows& rows, const std::string& path, Effect effect) {
+void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Effect effect) {
     std::vector<std::string_view> names;
-    for (const EffectModelInfo& model : effect_models()) {
+    for (const EffectModelInfo& model : models) {
         names.push_back(model.name);
     }
     auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
@@ -48,7 +48,7 @@ void add_model(Rows& rows, const std::string& path, Effect effect) {
         }
     };
     rows.push_back(std::move(model));
-    for (const EffectModelInfo& known : effect_models()) {
+    for (const EffectModelInfo& known : models) {
         for (std::size_t i = 0; i < known.parameters.size(); ++i) {
             const ModelParameter& parameter = known.parameters[i];
             auto row = number(
@@ -87,7 +87,8 @@ void add_table(Rows& rows, const std::string& path, Effect effect) {
 
 /// One side's surface effect; `effect` names it in a Problem.
 template <class Effect>
-void add_surface(Rows& rows, const std::string& path, const std::string& description, Effect effect) {
+void add_surface(Rows& rows, const std::string& path, const std::string& description,
+                 const std::vector<EffectModelInfo>& models, Effect effect) {
     auto surface = parameters::group<Problem>(path, description).or_none().only("without aero.map", has_no_map);
     surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
         if (count == 0) {
@@ -95,7 +96,7 @@ void add_surface(Rows& rows, const std::string& path, const std::string& descrip
         }
     };
     rows.push_back(std::move(surface));
-    add_model(rows, path, effect);
+    add_model(rows, path, models, effect);
     add_table(rows, path, effect);
 }
 
@@ -117,10 +118,15 @@ void add_aero_rows(Rows& rows) {
     aero.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
     rows.push_back(std::move(aero));
     add_map(rows);
+    std::vector<EffectModelInfo> below(effect_models().begin(), effect_models().end());
+    std::vector<EffectModelInfo> above = below;
+    std::erase_if(above, [](const EffectModelInfo& model) {  // a fountain rises from the ground only
+        return model.model == EffectModel::multirotor_body;
+    });
     add_surface(
-        rows, "aero.ground", "surfaces below a rotor", [](auto& p) -> auto& { return p.aero.ground; });
+        rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; });
     add_surface(
-        rows, "aero.ceiling", "surfaces above a rotor", [](auto& p) -> auto& { return p.aero.ceiling; });
+        rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; });
     rows.push_back(number(
                        "aero.max_factor", "most that a surface may multiply thrust by",
                        [](auto& p) -> auto& { return p.aero.max_factor; })
