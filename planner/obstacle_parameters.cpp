@@ -127,7 +127,8 @@ void add_obstacle_rows(Rows& rows) {
         to.push_back(orientation(at));
     });
     rows.push_back(parameters::alternative<Mesh, Problem>(
-        path + ".mesh", "a surface of triangles: solid when it is closed, else a sheet", shape));
+        path + ".mesh", "a surface of triangles: solid when no edge of it is open, else a sheet with no inside",
+        shape));
     add_mesh(rows, path + ".mesh");
     rows.push_back(parameters::alternative<Octomap, Problem>(path + ".octomap",
                                                              "the occupied cubes of an octree, each solid", shape));

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -31,21 +30,6 @@ bool has_area(const Corners& t) {
     const Vector3 ab{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
     const Vector3 ac{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};
     return ab[1] * ac[2] != ab[2] * ac[1] || ab[2] * ac[0] != ab[0] * ac[2] || ab[0] * ac[1] != ab[1] * ac[0];
-}
-
-/// For every vertex the first one with the same coordinates.
-std::vector<std::uint32_t> welded(const std::vector<Vector3>& vertices) {
-    std::vector<std::uint32_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return vertices[a] < vertices[b] || (vertices[a] == vertices[b] && a < b);
-    });
-    std::vector<std::uint32_t> first(vertices.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool is_known = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
-        first[order[i]] = is_known ? first[order[i - 1]] : order[i];
-    }
-    return first;
 }
 
 }  // namespace
@@ -85,41 +69,16 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& fault
     }
 }
 
-bool is_closed(const TriangleMesh& surface) {
-    struct Edge {
-        std::uint32_t low, high;
-        int direction;
-    };
-    const std::vector<std::uint32_t> corner = welded(surface.vertices_m);
-    std::vector<Edge> edges;
-    edges.reserve(3 * surface.triangles.size());
-    for (const auto& triangle : surface.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t from = corner[triangle[i]];
-            const std::uint32_t to = corner[triangle[(i + 1) % 3]];
-            if (from != to) {
-                edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
-            }
-        }
-    }
-    const auto ends = [](const Edge& edge) { return std::pair(edge.low, edge.high); };
-    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return ends(a) < ends(b); });
-    int balance = 0;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (i > 0 && ends(edges[i]) != ends(edges[i - 1]) && balance != 0) {
-            return false;
-        }
-        balance += edges[i].direction;
-    }
-    return balance == 0;
-}
-
-std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh) {
+std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned) {
+    const auto& triangles = mesh.surface->triangles;
     std::vector<Corners> all;
-    all.reserve(mesh.surface->triangles.size());
-    for (const auto& triangle : mesh.surface->triangles) {
-        const Corners corners = corners_of(mesh, triangle);
+    all.reserve(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        Corners corners = corners_of(mesh, triangles[i]);
         if (has_area(corners)) {
+            if (!is_turned.empty() && is_turned[i]) {
+                std::swap(corners[1], corners[2]);
+            }
             all.push_back(corners);
         }
     }

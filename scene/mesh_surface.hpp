@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "downwash/base/export.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/scene/shapes.hpp"
 
@@ -13,11 +12,9 @@ namespace downwash {
 /// Adds what is wrong with a mesh, under keys such as `key`.mesh.file.
 void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& faults);
 
-/// Whether a surface has no rim, so that it separates an inside from an outside: along every edge it is gone through
-/// as often one way as the other. Corners of equal coordinates are one corner.
-[[nodiscard]] DOWNWASH_EXPORT bool is_closed(const TriangleMesh& surface);
-
 /// The triangles that have an area, corners scaled, in the local frame.
-[[nodiscard]] std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh);
+/// @param is_turned for each triangle whether two of its corners change places; empty for none
+[[nodiscard]] std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh,
+                                                                   const std::vector<bool>& is_turned);
 
 }  // namespace downwash

@@ -8,6 +8,7 @@
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
+#include "downwash/scene/mesh_sides.hpp"
 #include "downwash/scene/mesh_surface.hpp"
 #include "downwash/scene/octree_boxes.hpp"
 #include "downwash/scene/solids.hpp"
@@ -143,18 +144,24 @@ struct PartsMaker {
     }
     Scene::Bounds operator()(const Mesh& mesh) const {
         require_room(mesh.surface->triangles.size(), ".mesh.file");
+        const MeshSides sides = sides_of(*mesh.surface);
+        if (sides.kind == SurfaceKind::contradictory) {
+            throw InputError({{key + ".mesh.file",
+                               "has triangles that disagree about which side is outside: repair the mesh so that it "
+                               "encloses a space, or has a rim and is a sheet"}});
+        }
         std::vector<Triangle>& triangles = solids.parts.triangles;
         const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
         const std::size_t first = triangles.size();
         Scene::Bounds bounds = nothing;
-        for (Triangle triangle : scaled_triangles(mesh)) {
+        for (Triangle triangle : scaled_triangles(mesh, sides.is_turned)) {
             for (Vector3& corner : triangle) {
                 corner = to_world(rotation, corner);
             }
             triangles.push_back(triangle);
             widen(bounds, bounds_of(triangle));
         }
-        if (is_closed(*mesh.surface)) {
+        if (sides.kind == SurfaceKind::solid) {
             solids.closed_surfaces.push_back({first, triangles.size(), bounds});
         }
         return bounds;

@@ -34,7 +34,8 @@ struct TriangleMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A surface from a file. Closed surfaces are solid, open ones are sheets of no thickness.
+/// A surface from a file. Closed surfaces are solid, even with triangles wound the wrong way around; one open edge,
+/// with an odd number of triangles, makes a sheet of no thickness of the whole.
 struct Mesh {
     std::string file;  ///< where it was read; says nothing to the scene
     double scale = 1;  ///< > 0; multiplies the vertices, which are as in the file

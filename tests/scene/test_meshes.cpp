@@ -7,7 +7,7 @@
 
 #include "../support/meshes.hpp"
 #include "downwash/base/fault.hpp"
-#include "downwash/scene/mesh_surface.hpp"
+#include "downwash/scene/mesh_sides.hpp"
 #include "reference.hpp"
 
 using namespace downwash;
@@ -53,6 +53,31 @@ Mesh soup_of(const std::vector<std::array<Vector3, 3>>& all) {
     return {"", 1, std::make_shared<const TriangleMesh>(std::move(surface))};
 }
 
+SurfaceKind kind_of(const Mesh& mesh) {
+    return sides_of(*mesh.surface).kind;
+}
+
+/// Which triangles of a solid have to be turned.
+std::vector<bool> turns_of(const Mesh& mesh) {
+    const MeshSides sides = sides_of(*mesh.surface);
+    CHECK(sides.kind == SurfaceKind::solid);
+    return sides.is_turned;
+}
+
+bool is_solid_as_it_is(const Mesh& mesh) {
+    const std::vector<bool> turns = turns_of(mesh);
+    return std::none_of(turns.begin(), turns.end(), [](bool is_turned) { return is_turned; });
+}
+
+/// With some triangles the other way around.
+Mesh with_turned(const Mesh& mesh, const std::vector<std::size_t>& triangles) {
+    TriangleMesh surface = *mesh.surface;
+    for (const std::size_t i : triangles) {
+        std::swap(surface.triangles[i][0], surface.triangles[i][2]);
+    }
+    return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
+}
+
 std::string refusal_of(Mesh mesh) {
     try {
         const Scene scene({{"", Sphere{1}, {}, {}}, {"", std::move(mesh), {}, {}}});
@@ -94,28 +119,26 @@ TEST_CASE("Two meshes that are too many together are refused") {
 
 TEST_CASE("A surface is closed when every edge is gone through both ways") {
     const Mesh box = box_mesh({1, 2, 3});
-    CHECK(is_closed(*box.surface));
-    CHECK(is_closed(*reversed(box).surface));
-    CHECK_FALSE(is_closed(*first_triangles(box, 11).surface));
+    CHECK(is_solid_as_it_is(box));
+    CHECK(is_solid_as_it_is(reversed(box)));
+    CHECK(kind_of(first_triangles(box, 11)) == SurfaceKind::sheet);
     SECTION("corners of their own for each triangle are joined where they meet") {
         std::vector<std::array<Vector3, 3>> all;
         for (const auto& t : box.surface->triangles) {
             const auto& v = box.surface->vertices_m;
             all.push_back({v[t[0]], v[t[1]], v[t[2]]});
         }
-        CHECK(is_closed(*soup_of(all).surface));
-        std::swap(all[5][0], all[5][1]);
-        CHECK_FALSE(is_closed(*soup_of(all).surface));
+        CHECK(is_solid_as_it_is(soup_of(all)));
     }
     SECTION("zero has two signs and one place") {
         const Mesh flap = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, -0.0, 0}, {1, -0.0, 0}, {-0.0, 1, 0}},
                                   {{0, 1, 2}, {3, 5, 4}});
-        CHECK(is_closed(*flap.surface));
+        CHECK(is_solid_as_it_is(flap));
     }
     SECTION("triangles that have shrunk to an edge leave no hole") {
         TriangleMesh surface = *box.surface;
         surface.triangles.push_back({0, 0, 1});
-        CHECK(is_closed(surface));
+        CHECK(is_solid_as_it_is(mesh_of(surface.vertices_m, surface.triangles)));
     }
     SECTION("boxes that touch along an edge") {
         Mesh moved = box_mesh({1, 2, 3});
@@ -125,8 +148,65 @@ TEST_CASE("A surface is closed when every edge is gone through both ways") {
             vertex[1] += 2;
         }
         moved.surface = std::make_shared<const TriangleMesh>(surface);
-        CHECK(is_closed(*joined(box, moved).surface));
+        CHECK(is_solid_as_it_is(joined(box, moved)));
     }
+}
+
+TEST_CASE("Triangles that are the wrong way around are turned, the fewest possible") {
+    using Catch::Matchers::Equals;
+    const Mesh box = box_mesh({1, 2, 3});
+    for (std::size_t wrong = 0; wrong < 12; ++wrong) {
+        std::vector<bool> expected(12);
+        expected[wrong] = true;
+        CHECK_THAT(turns_of(with_turned(box, {wrong})), Equals(expected));
+        CHECK_THAT(turns_of(with_turned(reversed(box), {wrong})), Equals(expected));
+    }
+    SECTION("a cavity stays one") {
+        const Mesh shell = joined(box_mesh({4, 4, 4}), reversed(box_mesh({2, 2, 2})));
+        std::vector<bool> expected(24);
+        expected[3] = expected[14] = expected[20] = true;
+        CHECK_THAT(turns_of(with_turned(shell, {3, 14, 20})), Equals(expected));
+    }
+    SECTION("a triangle that has shrunk to an edge does not part its neighbours") {
+        Mesh mesh = with_turned(box, {0});
+        TriangleMesh surface = *mesh.surface;
+        surface.triangles.push_back({0, 0, 1});
+        std::vector<bool> expected(13);
+        expected[0] = true;
+        CHECK_THAT(turns_of(mesh_of(surface.vertices_m, surface.triangles)), Equals(expected));
+    }
+    SECTION("boxes that touch along an edge") {
+        std::vector<Vector3> vertices = box.surface->vertices_m;
+        for (Vector3& vertex : vertices) {
+            vertex[0] += 1;
+            vertex[1] += 2;
+        }
+        const Mesh both = joined(box, reversed(mesh_of(vertices, box.surface->triangles)));
+        for (std::size_t wrong = 0; wrong < 24; ++wrong) {
+            std::vector<bool> expected(24);
+            expected[wrong] = true;
+            CHECK_THAT(turns_of(with_turned(both, {wrong})), Equals(expected));
+        }
+    }
+}
+
+TEST_CASE("A surface without a rim that has no outside is refused") {
+    using Catch::Matchers::Contains;
+    // The projective plane: an icosahedron whose opposite corners are one. Every edge has two triangles.
+    const Mesh one_sided = mesh_of(
+        {{0, 0, 1}, {1, 0, 0}, {0.3, 1, 0}, {-0.8, 0.6, 0}, {-0.8, -0.6, 0}, {0.3, -1, 0}},
+        {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}});
+    CHECK(kind_of(one_sided) == SurfaceKind::contradictory);
+    CHECK_THAT(refusal_of(one_sided), Contains("obstacles[1].mesh.file has triangles that disagree about which side"));
+    // Where more than two triangles meet nothing tells which of them is wrong.
+    const std::vector<Vector3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    CHECK(kind_of(mesh_of(corners, {{0, 1, 2}, {0, 2, 1}, {0, 1, 2}, {0, 2, 1}})) == SurfaceKind::solid);
+    CHECK(kind_of(mesh_of(corners, {{0, 1, 2}, {0, 2, 1}, {0, 1, 2}, {0, 1, 2}})) == SurfaceKind::contradictory);
+    // A strip with half a turn has a rim.
+    const Mesh moebius =
+        mesh_of(one_sided.surface->vertices_m, {{1, 2, 3}, {2, 3, 4}, {3, 4, 5}, {4, 5, 1}, {5, 1, 2}});
+    CHECK(kind_of(moebius) == SurfaceKind::sheet);
+    CHECK(refusal_of(moebius).empty());
 }
 
 TEST_CASE("A box of triangles is as near as the same box as a primitive, from outside and from inside") {
@@ -251,7 +331,48 @@ TEST_CASE("A body inside a closed mesh is in contact, in its cavity it is not") 
     CHECK(horizontal_clearance_m(scene, {1.5, 0, 0}) == 0);
 }
 
+TEST_CASE("A solid mesh stays solid when triangles of it are the wrong way around") {
+    reference::Dice dice(36);
+    const Mesh shell = joined(box_mesh({4, 4, 4}), reversed(box_mesh({2, 2, 2})));
+    const Mesh pipe = test::pipe_mesh(2, 4, 12, 3);
+    for (const Mesh& solid : {box_mesh({4, 4, 4}), reversed(box_mesh({4, 4, 4})), shell, pipe}) {
+        const Scene expected({{"", solid, {}, {0.3, 0.2, 0.1}}});
+        std::vector<std::size_t> wrong;
+        for (std::size_t i = 0; i < solid.surface->triangles.size(); ++i) {
+            if (dice.between(0, 1) < 0.25) {
+                wrong.push_back(i);
+            }
+        }
+        REQUIRE_FALSE(wrong.empty());
+        const Scene found({{"", with_turned(solid, wrong), {}, {0.3, 0.2, 0.1}}});
+        int inside = 0;
+        for (int i = 0; i < 500; ++i) {
+            const Vector3 p = dice.vector(-3, 3);
+            const double distance = disc_clearance_m(expected, p, 0.01);
+            REQUIRE(disc_clearance_m(found, p, 0.01) == Approx(distance).epsilon(0).margin(1e-12));
+            inside += distance == 0;
+        }
+        CHECK(inside > 50);
+    }
+}
+
+TEST_CASE("Of two boxes in one mesh both are solid when one is inside out") {
+    Mesh right = box_mesh({2, 2, 2});
+    TriangleMesh surface = *right.surface;
+    for (Vector3& vertex : surface.vertices_m) {
+        vertex[0] += 6;
+    }
+    const Mesh both = joined(box_mesh({2, 2, 2}), reversed(mesh_of(std::move(surface.vertices_m), surface.triangles)));
+    for (const Mesh& mesh : {both, with_turned(both, {0}), with_turned(both, {5, 20})}) {
+        const CollisionChecker checker = checker_of({{"", mesh, {}, {}}}, ball());
+        CHECK(checker.clearance_m({0, 0, 0, 0}) <= 0);
+        CHECK(checker.clearance_m({6, 0, 0, 0}) <= 0);
+        CHECK(checker.clearance_m({3, 0, 0, 0}) == Approx(1.9).epsilon(0).margin(1e-9));
+    }
+}
+
 TEST_CASE("An open mesh is a sheet: nothing is inside it") {
+    CHECK(kind_of(with_turned(first_triangles(box_mesh({4, 4, 4}), 11), {2})) == SurfaceKind::sheet);
     const CollisionChecker checker = checker_of({{"", first_triangles(box_mesh({4, 4, 4}), 11), {}, {}}}, ball());
     CHECK(checker.clearance_m({0, 0, 0, 0}) == Approx(1.9).epsilon(0).margin(1e-9));
     CHECK_FALSE(checker.is_nearer_than({0, 0, 0, 0}, 1));
