@@ -127,12 +127,14 @@ void add_aero_rows(Rows& rows) {
         rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; });
     add_surface(
         rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; });
-    rows.push_back(number(
-                       "aero.max_factor", "most that a surface may multiply thrust by",
-                       [](auto& p) -> auto& { return p.aero.max_factor; })
-                       .at_least(1)
-                       .at_most(10)
-                       .only("without aero.map", has_no_map));
+    rows.push_back(
+        number(
+            "aero.max_factor",
+            "most that a surface may multiply thrust by; a low one hides from plans how a near ceiling pulls",
+            [](auto& p) -> auto& { return p.aero.max_factor; })
+            .at_least(1)
+            .at_most(10)
+            .only("without aero.map", has_no_map));
     rows.push_back(number(
                        "aero.min_distance_radii", "flyable area: least distance of a rotor's disc from obstacles",
                        [](auto& p) -> auto& { return p.aero.min_distance_radii; })
