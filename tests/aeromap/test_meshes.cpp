@@ -120,6 +120,30 @@ TEST_CASE("A pipe of ten thousand triangles is felt as a cylinder") {
     CHECK(worst < 5e-3);
 }
 
+TEST_CASE("Close to a pipe of triangles under a cap of ten the error grows no faster than what is at stake") {
+    const AeroSettings settings = [] {
+        AeroSettings with;
+        with.max_factor = 10;
+        with.min_distance_radii = 0;
+        return with;
+    }();
+    test::Random random(70);
+    int strong = 0;
+    for (int compared = 0; compared < 12;) {
+        const Vector3 rpy{compared % 2 == 0 ? 0 : random.uniform(-1.5, 1.5), 0, random.uniform(-3, 3)};
+        const DirectEffect effect(scene_of({{"", test::pipe_mesh(0.25, 3, 32, 6), {}, rpy}}), settings, radius);
+        const Vector3 hub = some_hub(random);
+        const DirectEffect::Factors factors = effect.factors(hub);
+        if (effect.is_flyable(hub) && factors.ground + factors.ceiling > 3) {
+            CAPTURE(compared, factors.ground, factors.ceiling);
+            REQUIRE(difference(factors, test::by_rays(effect, hub, 150)) < 9 * 5e-3);
+            strong += std::max(factors.ground, factors.ceiling) > 4;
+            ++compared;
+        }
+    }
+    CHECK(strong > 3);
+}
+
 TEST_CASE("An octree of a box is felt ever more like the box as its cubes shrink") {
     const Vector3 size{0.5, 0.37, 0.23};
     const auto is_inside = [&](const Vector3& p) {
