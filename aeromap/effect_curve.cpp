@@ -90,6 +90,14 @@ void EffectCurve::prepare() {
             break;
         }
     }
+    flat_distance_ = is_none() ? -1 : factors.back() >= max_factor_ ? farthest : cap_distance_;
+    if (effect_.model == EffectModel::table) {
+        const EffectTable& table = *effect_.table;
+        flat_distance_ = std::max(flat_distance_, table.z_over_r().front());
+        if (depends_on_wall()) {
+            flat_distance_ = std::max(flat_distance_, table.distance_below(max_factor_));
+        }
+    }
 }
 
 bool EffectCurve::depends_on_wall() const noexcept {

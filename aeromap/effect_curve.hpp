@@ -32,6 +32,10 @@ class DOWNWASH_EXPORT EffectCurve {
     /// on a wall: with no wall near.
     [[nodiscard]] double cap_distance() const noexcept { return cap_distance_; }
 
+    /// Up to this distance, in radii, K may not change with it although the air does: at its cap, or before a table's
+    /// first row. Negative: nowhere. Of a table that depends on a wall: whatever the wall, found to a row.
+    [[nodiscard]] double flat_distance() const noexcept { return flat_distance_; }
+
     /// K never rises on the way outwards, and ends at 1.
     [[nodiscard]] bool falls_with_distance() const noexcept { return falls_with_distance_; }
 
@@ -58,6 +62,7 @@ class DOWNWASH_EXPORT EffectCurve {
     bool is_fountain_ = false;
     bool falls_with_distance_ = true;
     double cap_distance_ = -1;
+    double flat_distance_ = -1;
     /// Largest |K - 1| from each of the bounding distances on; empty when K falls with distance.
     std::shared_ptr<const std::vector<double>> changes_;
 };

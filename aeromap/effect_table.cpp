@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -99,6 +100,21 @@ double EffectTable::largest_change_beyond(double z_over_r) const {
         return changes_.back() * (last / z_over_r) * (last / z_over_r);
     }
     return changes_[interval(z_over_r_, z_over_r)];
+}
+
+double EffectTable::distance_below(double factor) const {
+    const auto last = std::find_if(factors_.rbegin(), factors_.rend(), [factor](double k) { return k >= factor; });
+    if (last == factors_.rend()) {
+        return 0;
+    }
+    const auto index = static_cast<std::size_t>(factors_.rend() - last) - 1;
+    const std::size_t behind = index / (depends_on_d() ? d_over_r_.size() : 1) + 1;
+    if (behind < z_over_r_.size()) {
+        return z_over_r_[behind];
+    }
+    const double most = *std::max_element(factors_.begin(), factors_.end());
+    return factor > 1 ? z_over_r_.back() * std::sqrt((most - 1) / (factor - 1))
+                      : std::numeric_limits<double>::infinity();
 }
 
 EffectTable::Curve::Curve(const EffectTable& table, double d_over_r) : table_(&table) {

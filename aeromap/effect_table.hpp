@@ -57,6 +57,10 @@ class DOWNWASH_EXPORT EffectTable {
     /// bound of the node before.
     [[nodiscard]] double largest_change_beyond(double z_over_r) const;
 
+    /// A distance from which on K is below `factor` whatever d: the row behind the last one that reaches it. 0 when
+    /// none does, infinite when K never gets there. @param factor >= 1
+    [[nodiscard]] double distance_below(double factor) const;
+
  private:
     std::vector<double> z_over_r_, d_over_r_, factors_;
     std::vector<double> slopes_z_;  ///< dK/dzeta at the nodes; of a table over zeta alone

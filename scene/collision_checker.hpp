@@ -52,6 +52,11 @@ class DOWNWASH_EXPORT CollisionChecker {
 [[nodiscard]] DOWNWASH_EXPORT bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                  double distance_m);
 
+/// True when no obstacle reaches into the upright cylinder of a height (>= 0) that stands on the level disc. Never true
+/// when one does; false is certain but for 1e-8 m.
+[[nodiscard]] DOWNWASH_EXPORT bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
+                                                   double height_m);
+
 /// Distance from a point to the nearest obstacle within the horizontal plane through the point [m]: that to walls, not
 /// to ground and ceiling. 0 inside an obstacle, infinity when the plane cuts none. Never above the truth but for
 /// rounding, and below it by at most 1e-8 m before a wall, 1e-6 m before a slope of one in a hundred; where the plane

@@ -14,6 +14,17 @@ Convex level_disc(const Vector3& center_m, double radius_m) {
     return {.center_m = center_m, .disc_radius_m = radius_m};
 }
 
+/// Whether a solid is nearer than a distance to some obstacle, or touches one.
+bool is_any_nearer(const Scene::Solids& solids, const Convex& solid, double distance_m) {
+    const Scene::Bounds bounds = bounds_of(solid);
+    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
+    return solids.parts.tree.any(gap, distance_m, [&](std::size_t part) {
+        return gap(solids.parts.bounds(part)) <= distance_m &&
+               solids.parts.with_convex(
+                   part, [&](const Convex& convex) { return is_nearer_than(solid, convex, distance_m); });
+    });
+}
+
 /// How far a point lies from a box within the horizontal plane through it; infinite when the plane passes the box by.
 double level_gap_m(const Scene::Bounds& box, const Vector3& p_m) {
     if (p_m[2] < box.low_m[2] || p_m[2] > box.high_m[2]) {
@@ -63,15 +74,16 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
 
 bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double distance_m) {
     const Scene::Solids& solids = scene.solids();
-    const Convex disc = level_disc(center_m, radius_m);
-    const Scene::Bounds bounds = bounds_of(disc);
-    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
-    const bool is_near = solids.parts.tree.any(gap, distance_m, [&](std::size_t part) {
-        return gap(solids.parts.bounds(part)) <= distance_m &&
-               solids.parts.with_convex(part,
-                                        [&](const Convex& convex) { return is_nearer_than(disc, convex, distance_m); });
-    });
-    return !is_near && !solids.is_inside_mesh(center_m);
+    return !is_any_nearer(solids, level_disc(center_m, radius_m), distance_m) && !solids.is_inside_mesh(center_m);
+}
+
+bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double height_m) {
+    const Scene::Solids& solids = scene.solids();
+    const double half_m = 0.5 * height_m;
+    Convex column = level_disc({center_m[0], center_m[1], center_m[2] + half_m}, radius_m);
+    column.segment_count = 1;
+    column.half_axes_m[0] = {0, 0, half_m};
+    return !is_any_nearer(solids, column, 0) && !solids.is_inside_mesh(center_m);
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {

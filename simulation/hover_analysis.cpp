@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_trim.hpp"
@@ -14,8 +16,8 @@ namespace {
 using simulation::LinearEffect;
 using simulation::TickModel;
 
-constexpr std::array<std::string_view, 5> verdict_names = {"not_flyable", "in_collision", "no_equilibrium", "unstable",
-                                                           "stable"};
+constexpr std::array<std::string_view, 6> verdict_names = {"not_flyable", "in_collision", "no_equilibrium",
+                                                           "unstable",    "unknown",      "stable"};
 constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "rotor_thrust", "joint_torque",
                                                          "tilt", "vertical",  "gain"};
 
@@ -66,8 +68,13 @@ class Coordinates {
     int count_ = 0;
 };
 
-/// Natural logarithm to some 1e-15, the same on every machine. @param x > 0
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Natural logarithm to some 1e-15, the same on every machine. @param x >= 0, perhaps infinite
 double natural_log(double x) {
+    if (!(x > 0 && x < infinity)) {
+        return x > 0 ? infinity : -infinity;
+    }
     double halvings = 1;
     while (x > 1.5 || x < 0.6) {
         x = std::sqrt(x);
@@ -108,8 +115,19 @@ Jacobian jacobian(const TickModel& model, const HoverTrim& trim, const LinearEff
     return result;
 }
 
+/// Modes that cannot be found, as with gains beyond all measure, count as growing without limit.
 void find_modes(const Jacobian& jacobian, double tick_s, HoverStability& stability) {
+    stability.spectral_radius = infinity;
+    stability.growth_rate_1_s = infinity;
+    stability.growing_modes = static_cast<int>(jacobian.rows());
+    if (!jacobian.allFinite()) {
+        return;
+    }
     const Eigen::EigenSolver<Jacobian> solver(jacobian, false);
+    if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
+        return;
+    }
+    stability.growing_modes = 0;
     double largest = 0;  // squared modulus
     for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
         const double re = solver.eigenvalues()[i].real();
@@ -152,6 +170,35 @@ void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearE
         inertia_kg_m2 * model.gains.attitude_k5 * model.gains.attitude_ku5 * wrench(q[1], 0, unit_n).pitch_torque_nm;
 }
 
+/// Whether what is above a rotor pulls it in a way that K does not tell: some of it is so near that its part of K is
+/// flat, or the sum of both sides is at the cap where it would rise on the way up. The ground is not asked for, and a
+/// given map is taken at its word.
+bool is_beyond_model(const DirectEffect& effect, const Vector3& hub_m) {
+    const AeroSettings& settings = effect.settings();
+    if (!settings.enabled || settings.map || effect.ceiling().is_none()) {
+        return false;
+    }
+    // Slopes are taken over a step to either side.
+    constexpr double h = simulation::slope_step_m;
+    constexpr double farthest_m = 1e6;
+    const double flat_m = effect.rotor_radius_m() * effect.ceiling().flat_distance();
+    if (flat_m > 0 &&
+        !column_is_clear(effect.scene(), hub_m, effect.disc_radius_m(), std::min(flat_m + h, farthest_m))) {
+        return true;
+    }
+    const auto above = effect.factors({hub_m[0], hub_m[1], hub_m[2] + h});
+    const auto below = effect.factors({hub_m[0], hub_m[1], hub_m[2] - h});
+    return std::max(above.total, below.total) >= settings.max_factor &&
+           std::max(above.ground, below.ground) < settings.max_factor &&
+           above.ground + above.ceiling > below.ground + below.ceiling;
+}
+
+bool is_within_model(const FlightModel& model, const FlightState& resting) {
+    return simulation::all_rotors(model, resting, [&](int rotor, double x_m, double z_m) {
+        return !is_beyond_model(model.effect(rotor), model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
+    });
+}
+
 }  // namespace
 
 std::string_view name_of(HoldVerdict verdict) {
@@ -184,8 +231,11 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
     }
     find_stiffness(tick, analysis.trim, effect, analysis.stability);
     find_modes(jacobian(tick, analysis.trim, effect), tick.tick_s, analysis.stability);
-    analysis.verdict =
-        analysis.stability.spectral_radius < 1 - radius_slack ? HoldVerdict::stable : HoldVerdict::unstable;
+    if (!(analysis.stability.spectral_radius < 1 - radius_slack)) {
+        analysis.verdict = HoldVerdict::unstable;
+    } else {
+        analysis.verdict = is_within_model(model, resting) ? HoldVerdict::stable : HoldVerdict::unknown;
+    }
     return analysis;
 }
 

@@ -15,6 +15,7 @@ enum class HoldVerdict : std::uint8_t {
     in_collision,    ///< touches an obstacle
     no_equilibrium,  ///< no reference makes the controller ask for what balances weight and surfaces
     unstable,        ///< balanced, but the smallest disturbance grows
+    unknown,         ///< balanced, and stable but for a ceiling whose pull is beyond the model: capped, or not measured
     stable,          ///< balanced, and small disturbances decay
 };
 
@@ -50,7 +51,8 @@ struct HoverTrim {
 
 /// How a small disturbance of a hover develops, and what competes there.
 struct HoverStability {
-    double spectral_radius = 0;  ///< of the Jacobian of one tick at the fixed point; stable below 1
+    /// Of the Jacobian of one tick at the fixed point; stable below 1. Infinite where numbers are too large to tell.
+    double spectral_radius = 0;
     double growth_rate_1_s = 0;  ///< of the slowest decay, or fastest growth: ln(spectral radius) / tick
     double frequency_rad_s = 0;  ///< of that mode; 0 when it does not swing
     int growing_modes = 0;       ///< eigenvalues outside the unit circle
@@ -65,7 +67,7 @@ struct HoverStability {
 struct HoverAnalysis {
     HoldVerdict verdict = HoldVerdict::not_flyable;
     HoverTrim trim;            ///< from no_equilibrium on
-    HoverStability stability;  ///< for unstable and stable
+    HoverStability stability;  ///< from unstable on; for unknown without what the model does not know
 };
 
 /// Whether the vehicle can hover with its centre of mass at (x, z) and the arm at an angle, with surface effects

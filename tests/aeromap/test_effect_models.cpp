@@ -169,6 +169,29 @@ TEST_CASE("A curve knows where it meets its cap") {
     CHECK(EffectCurve(EffectModel::none, 2).cap_distance() < 0);
 }
 
+TEST_CASE("A curve knows up to where it is flat for want of knowledge") {
+    const auto of_table = [](const EffectTable& table, double max_factor) {
+        SurfaceEffect effect(EffectModel::table);
+        effect.table = std::make_shared<const EffectTable>(table);
+        return EffectCurve(effect, max_factor).flat_distance();
+    };
+    // (z/R + 0.3168)^2 = 1.3 / (0.3 * 6.924)
+    CHECK(EffectCurve(EffectModel::sanchez_cuevas, 1.3).flat_distance() ==
+          Approx(std::sqrt(1.3 / (0.3 * 6.924)) - 0.3168).epsilon(1e-12));
+    CHECK(EffectCurve(EffectModel::he, 2).flat_distance() < 0);
+    CHECK(EffectCurve(EffectModel::none, 1).flat_distance() < 0);
+    CHECK(EffectCurve(EffectModel::sanchez_cuevas, 1).flat_distance() >= 1000);  // flat everywhere
+    CHECK(of_table(EffectTable({0.6, 1, 3}, {}, {1.3, 1.2, 1}), 2) == 0.6);
+    CHECK(of_table(EffectTable({0.6, 1, 3}, {}, {1.4, 1.2, 1}), 1.2) == Approx(1).epsilon(1e-9));
+    // Over a second distance: at 5 the second row reaches the cap, so that the third ends it.
+    const EffectTable with_walls({0.6, 1, 3}, {0, 5, 9}, {1.1, 1.5, 1.1, 1.1, 1.3, 1.1, 1, 1, 1});
+    CHECK(of_table(with_walls, 1.25) == 3);
+    CHECK(of_table(with_walls, 1.4) == 1);
+    CHECK(of_table(with_walls, 1.6) == 0.6);
+    // K - 1 fades as 1 / z^2 from 0.8 at 3: 0.2 at 6.
+    CHECK(EffectTable({0.6, 3}, {}, {1.9, 1.8}).distance_below(1.225) == Approx(6));
+}
+
 TEST_CASE("Models are found by the name that a problem file uses") {
     for (const char* name : {"none", "cheeseman-bennett", "multirotor-images", "multirotor-body", "hayden", "li", "he",
                              "sanchez-cuevas", "fairing-cfd", "momentum-theory", "table"}) {

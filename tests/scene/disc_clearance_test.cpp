@@ -103,6 +103,27 @@ TEST_CASE("A disc is clear where its clearance says so") {
     CHECK(clear > 300);
 }
 
+TEST_CASE("A column over a disc is clear of what stands beside it, below it and higher up") {
+    const Scene slab = scene_of(Box{{2, 2, 0.2}}, {0, 0, 1.1});  // from 1 m up
+    CHECK(column_is_clear(slab, {0, 0, 0}, 0.2, 0.999));
+    CHECK_FALSE(column_is_clear(slab, {0, 0, 0}, 0.2, 1.001));
+    CHECK(column_is_clear(slab, {1.201, 0, 0}, 0.2, 5));        // beside its edge
+    CHECK_FALSE(column_is_clear(slab, {1.199, 0, 0}, 0.2, 5));  // a millimetre under it
+    CHECK(column_is_clear(slab, {0, 0, 1.3}, 0.2, 5));          // over it
+    CHECK(column_is_clear(Scene({}), {0, 0, 0}, 1, 1e9));
+    // Under a slope of 0.3 rad the edge of the disc on the low side is the nearest.
+    const double slope = 0.3;
+    const Scene sloped = scene_of(Box{{20, 20, 2}}, {0, 0, 3}, {0, slope, 0});
+    const double gap = 3 - 1 / std::cos(slope) - 0.4 * std::tan(slope);
+    CHECK(column_is_clear(sloped, {0, 0, 0}, 0.4, gap - 1e-6));
+    CHECK_FALSE(column_is_clear(sloped, {0, 0, 0}, 0.4, gap + 1e-6));
+    // The lowest point of a pipe of radius 0.3 m at 1 m, seen from the rim of a disc 0.4 m aside.
+    const Scene pipe = scene_of(Cylinder{0.3, 20, {0, 1, 0}}, {0, 0, 1});
+    const double rim_gap = 1 - std::sqrt(0.3 * 0.3 - 0.2 * 0.2);
+    CHECK(column_is_clear(pipe, {0.4, 0, 0}, 0.2, rim_gap - 1e-6));
+    CHECK_FALSE(column_is_clear(pipe, {0.4, 0, 0}, 0.2, rim_gap + 1e-6));
+}
+
 TEST_CASE("The distance to walls is measured within the horizontal plane") {
     const auto at = [](const Shape& shape, const Vector3& rpy_rad, const Vector3& point) {
         return horizontal_clearance_m(scene_of(shape, {}, rpy_rad), point);
