@@ -4,6 +4,7 @@
 
 #include "../support/random.hpp"
 #include "downwash/aeromap/effect_curve.hpp"
+#include "downwash/aeromap/effect_table.hpp"
 
 using namespace downwash;
 
