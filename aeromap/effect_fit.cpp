@@ -258,6 +258,27 @@ void check_points(const std::vector<Measurement>& points, std::size_t free_count
     }
 }
 
+/// Names parameters of which hardly more than a combination is known: one of a pair that goes together is not told from
+/// zero by the data.
+void find_combinations(EffectFit& fit) {
+    constexpr double most_correlation = 0.999;
+    const auto is_vague = [&fit](std::size_t i) {
+        return *fit.parameters[i].standard_error > std::abs(fit.parameters[i].value);
+    };
+    std::set<std::size_t> vague;
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const auto correlation = fit.correlation(i, j);
+            if (correlation && std::abs(*correlation) > most_correlation && (is_vague(i) || is_vague(j))) {
+                vague.insert({i, j});
+            }
+        }
+    }
+    for (const std::size_t i : vague) {
+        fit.undetermined.push_back(fit.parameters[i].name);
+    }
+}
+
 /// Fills in standard errors, covariance and what is undetermined, from the slopes at the minimum.
 void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, const FitOptions& options) {
     std::vector<std::size_t> inner;  // free parameters that no bound holds
@@ -274,6 +295,9 @@ void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, c
     Eigen::MatrixXd slopes(static_cast<Eigen::Index>(residuals.count()), p);
     for (Eigen::Index j = 0; j < p; ++j) {
         slopes.col(j) = residuals.slopes(minimum.values.data(), inner[static_cast<std::size_t>(j)]);
+        if (!slopes.col(j).allFinite()) {  // a pole is nearer than the step: the data say nothing of this parameter
+            slopes.col(j).setZero();
+        }
     }
     const double degrees = static_cast<double>(residuals.count()) - static_cast<double>(inner.size());
     if (options.is_weighted && degrees > 0) {
@@ -317,6 +341,7 @@ void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, c
         }
         fit.parameters[row].standard_error = std::sqrt(fit.covariance[row][row]);
     }
+    find_combinations(fit);
 }
 
 }  // namespace

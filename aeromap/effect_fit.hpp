@@ -42,7 +42,9 @@ struct EffectFit {
     /// p.
     std::optional<double> reduced_chi_squared;
     bool is_converged = true;
-    /// Parameters that the data do not determine: another value fits as well. Their values mean nothing.
+    /// Parameters that the data do not determine: another value fits as well. Their values mean nothing. Those that
+    /// have a standard error nevertheless go together with another one (correlation above 0.999 in size), and for one
+    /// of the pair it is larger than the value.
     std::vector<std::string_view> undetermined;
 
     /// Correlation of two parameters, in [-1, 1]; empty where one has no standard error.

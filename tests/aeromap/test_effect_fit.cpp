@@ -279,6 +279,18 @@ TEST_CASE("What the data do not determine is named") {
     CHECK_FALSE(exact.correlation(0, 1));
 }
 
+TEST_CASE("Parameters that go together and could be zero are named") {
+    // Over 0.03 radii nothing tells increment and decay apart: b = 2 with a standard error of several.
+    const EffectFit fit = fit_effect(EffectModel::he, points_of({{1, 1.1}, {1.01, 1.11}, {1.02, 1.09}, {1.03, 1.1}}));
+    CHECK(fit.correlation(0, 1).value() > 0.999);
+    CHECK(fit.parameters[1].standard_error.value() > fit.parameters[1].value);
+    CHECK(fit.undetermined == std::vector<std::string_view>{"a", "b"});
+    for (const char* source : {"jirs2024", "hydrus15_isolated"}) {
+        CHECK(fit_effect(EffectModel::he, shipped(source, "ceiling")).undetermined.empty());
+        CHECK(fit_effect(EffectModel::sanchez_cuevas, shipped(source, "ceiling")).undetermined.empty());
+    }
+}
+
 TEST_CASE("A weighted fit believes each point by its sigma") {
     SurfaceEffect truth(EffectModel::he);
     Random random(5);
