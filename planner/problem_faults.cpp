@@ -91,9 +91,43 @@ std::vector<Fault> incomplete_effects(const Problem& p) {
     return faults;
 }
 
-/// A map of the user's has to hold wherever a rotor can get, and has to be of such a rotor.
-std::vector<Fault> unfit_map(const Problem& p) {
+/// A planar map of the user's has to stand in the plane of motion, or beside it.
+std::vector<Fault> map_of_another_plane(const Problem& p) {
+    constexpr double least_sine = 1e-6;
+    if (!p.aero.enabled || !p.aero.map || !p.aero.map->is_planar()) {
+        return {};
+    }
+    const PlaneOfMotion& frame = p.aero.map->frame();
+    const double sine = frame.sin_heading() * p.plane.cos_heading() - frame.cos_heading() * p.plane.sin_heading();
+    if (std::abs(sine) <= least_sine) {
+        return {};
+    }
+    return {{"aero.map", "stands in another vertical plane (" + to_text(frame.heading_rad() * degrees_per_radian, 8) +
+                             " deg): expected the heading of environment.plane (" +
+                             to_text(p.plane.heading_rad() * degrees_per_radian, 8) + " deg)"}};
+}
+
+/// A map of the user's that says of which rotors it is has to be of the robot's.
+std::vector<Fault> map_of_another_rotor(const Problem& p) {
+    constexpr double largest_difference = 1e-6;  // relative
     if (!p.aero.enabled || !p.aero.map) {
+        return {};
+    }
+    const double radius_m = p.robot.rotors.radius_m;
+    for (const auto& [key, value] : p.aero.map->provenance()) {
+        const auto map_radius_m = key == "rotor_radius_m" ? parse_number<double>(value) : std::nullopt;
+        if (map_radius_m && std::abs(*map_radius_m - radius_m) > largest_difference * radius_m) {
+            return {{"aero.map", "is of rotors of " + to_text(*map_radius_m) +
+                                     " m radius, as its rotor_radius_m says: expected robot.rotors.radius_m, " +
+                                     to_text(radius_m) + " m"}};
+        }
+    }
+    return {};
+}
+
+/// A map of the user's has to hold wherever a rotor can get.
+std::vector<Fault> unreached_places(const Problem& p) {
+    if (!p.aero.enabled || !p.aero.map || !map_of_another_plane(p).empty()) {
         return {};
     }
     const MapExtent reach = rotor_extent(p.robot.rotors, p.bounds);
@@ -290,13 +324,15 @@ std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
              "nearer to it than planner.safety_margin_m"}};
 }
 
-const std::array<Check<Problem>, 17> checks{{
+const std::array<Check<Problem>, 19> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
     {{"environment.obstacles"}, unplaceable_obstacles},
     {{"aero"}, incomplete_effects},
-    {{"environment.bounds", "environment.plane", "aero.map", "robot.rotors"}, unfit_map},
+    {{"environment.bounds", "environment.plane", "aero.map", "robot.rotors"}, unreached_places},
+    {{"environment.plane", "aero.map"}, map_of_another_plane},
+    {{"aero.map", "robot.rotors"}, map_of_another_rotor},
     {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
     {{"environment.bounds", "start"}, start_outside_bounds},
     {{"start", "motion"}, start_too_fast},

@@ -100,6 +100,41 @@ TEST_CASE("a grid that does not reach as far as the rotors is refused") {
     CHECK(said.find("-6.3 to 6.3 m along the plane") != std::string::npos);
 }
 
+TEST_CASE("a planar grid in another vertical plane is refused") {
+    const TestFolder folder;
+    const std::string heading = "# frame_heading_rad: ";
+    const std::string sixty_degrees = "1.0471975511965976";
+    folder.write("map.csv", heading + sixty_degrees + "\n" + grid_csv("-7"));
+    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) ==
+          "problem.yaml:10:8: aero.map stands in another vertical plane (60 deg): expected the heading of "
+          "environment.plane (0 deg)");
+    // Turned by 180 degrees it is the same plane; sideways it may stand anywhere.
+    folder.write("map.csv", heading + "3.141592653589793\n# frame_origin_m: 0 5 0\n" + grid_csv("-7"));
+    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
+    // A volume may stand in any way.
+    std::string volume = heading + sixty_degrees + "\nx_m,y_m,z_m,factor\n";
+    for (const char* node : {"-9,-9,0", "9,-9,0", "-9,9,0", "9,9,0", "-9,-9,6", "9,-9,6", "-9,9,6", "9,9,6"}) {
+        volume += std::string(node) + ",1.25\n";
+    }
+    folder.write("map.csv", volume);
+    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
+}
+
+TEST_CASE("a grid of other rotors is refused") {
+    const TestFolder folder;
+    const auto faults_with = [&](const std::string& radius) {
+        folder.write("map.csv", "# rotor_radius_m: " + radius + "\n" + grid_csv("-7"));
+        return faults_after(folder, {models, "  map: map.csv\n", ""});
+    };
+    CHECK(faults_with("0.2") ==
+          "problem.yaml:10:8: aero.map is of rotors of 0.2 m radius, as its rotor_radius_m says: expected "
+          "robot.rotors.radius_m, 0.19 m");
+    CHECK(faults_with("0.190001") != "sound");
+    CHECK(faults_with("0.1900001") == "sound");
+    CHECK(faults_with("0.19") == "sound");
+    CHECK(faults_with("about 8 inches") == "sound");
+}
+
 TEST_CASE("models beside a grid of factors are refused") {
     const TestFolder folder;
     folder.write("map.csv", grid_csv("-7"));
