@@ -53,7 +53,7 @@ class DOWNWASH_EXPORT CollisionChecker {
                                                  double distance_m);
 
 /// True when no obstacle reaches into the upright cylinder of a height (>= 0) that stands on the level disc. Never true
-/// when one does; false is certain but for a fraction of a millimetre.
+/// when one does; false is certain but for some 1e-6 m.
 [[nodiscard]] DOWNWASH_EXPORT bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                    double height_m);
 

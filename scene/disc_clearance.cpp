@@ -83,7 +83,8 @@ bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_
     Convex column = level_disc({center_m[0], center_m[1], center_m[2] + half_m}, radius_m);
     column.segment_count = 1;
     column.half_axes_m[0] = {0, 0, half_m};
-    return !is_any_nearer(solids, column, 0) && !solids.is_inside_mesh(center_m);
+    constexpr double touching_m = 1e-6;  // with 0 the search for a distance ends at its first bound
+    return !is_any_nearer(solids, column, touching_m) && !solids.is_inside_mesh(center_m);
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
