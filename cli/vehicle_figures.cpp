@@ -44,6 +44,20 @@ double reach_of(const FieldFigure& figure) {
     return most;
 }
 
+/// Where the problem lets the centre of mass be, cut to what is shown.
+FigureLines bounds_lines(const Bounds& bounds, const MapExtent& shown) {
+    FigureLines lines{"bounds of the problem", {}, {40, 40, 40}, 1.5, true, false};
+    const double x_low_m = std::max(bounds.x_low_m, shown.x_low_m),
+                 x_high_m = std::min(bounds.x_high_m, shown.x_high_m);
+    const double z_low_m = std::max(bounds.z_low_m, shown.z_low_m),
+                 z_high_m = std::min(bounds.z_high_m, shown.z_high_m);
+    if (x_low_m < x_high_m && z_low_m < z_high_m) {
+        lines.pieces.push_back(
+            {{x_low_m, z_low_m}, {x_high_m, z_low_m}, {x_high_m, z_high_m}, {x_low_m, z_high_m}, {x_low_m, z_low_m}});
+    }
+    return lines;
+}
+
 /// The kinds of hold_figure, as its scale numbers them. Not flyable is not defined.
 double kind_of(HoldVerdict verdict) {
     return verdict == HoldVerdict::not_flyable
@@ -103,9 +117,10 @@ FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const 
         make_hold_map(model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m}, width_m / cells_across,
                       arm_rad, threads));
     figure.value = [&model, map](double x_m, double z_m) { return kind_of(verdict_at(model, *map, x_m, z_m)); };
-    figure.scale = scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "stable"},
-                                  {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {196, 226, 190}});
+    figure.scale = scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "beyond the model", "stable"},
+                                  {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {250, 222, 140}, {196, 226, 190}});
     figure.has_contour_lines = false;
+    figure.lines.push_back(bounds_lines(problem.bounds, extent));
     FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, false, false};
     for (const std::vector<HoldPoint>& line : stability_boundary(model, *map)) {
         std::vector<PlanePoint>& piece = boundary.pieces.emplace_back();

@@ -40,6 +40,37 @@ TEST_CASE("A hold query tells flyable from stable points and says what competes 
     }
 }
 
+TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without an answer") {
+    const ScratchFolder folder;
+    const auto verdicts = [&](const std::string& aero) {
+        std::string text = read_file(problem_file("bridge_inspection"));
+        const std::string robot = "robots/ars_lrm.yaml";
+        const auto at = text.find(robot);
+        REQUIRE(at != std::string::npos);
+        const std::string problems = problem_file("bridge_inspection");
+        text.replace(at, robot.size(), problems.substr(0, problems.rfind('/') + 1) + robot);
+        REQUIRE(text.find("\naero:") == std::string::npos);
+        write_file(folder / "capped.yaml", text + aero);
+        std::vector<std::string> found;
+        const auto answer =
+            run(folder, {"aeromap", "hold", folder / "capped.yaml", "--arm-deg", "90", "--at", "1", "9.7", "--at", "1",
+                         "9.86", "--at", "1", "9.87", "--at", "1", "9.88", "--json"})
+                .json();
+        for (const auto& point : answer.at("points")) {
+            CHECK(point.at("stability").is_object());
+            found.push_back(point.at("verdict"));
+        }
+        return found;
+    };
+    using Verdicts = std::vector<std::string>;
+    CHECK(verdicts("") == Verdicts{"unstable", "unstable", "unstable", "unstable"});
+    CHECK(verdicts("aero: {max_factor: 1.3}\n") == Verdicts{"unstable", "unknown", "unknown", "unknown"});
+    write_file(folder / "k.csv", "z_over_r,factor\n0.9,1.2\n3,1\n");
+    const Verdicts measured = verdicts("aero: {ceiling: {model: table, file: k.csv}}\n");
+    CHECK(measured[2] == "unknown");
+    CHECK(measured[3] == "unknown");
+}
+
 TEST_CASE("A hold query prints a table for people") {
     const ScratchFolder folder;
     const auto answer = run(folder, {"aeromap", "hold", problem_file("bridge_inspection"), "--arm-deg", "90", "--at",

@@ -62,6 +62,19 @@ TEST_CASE("One side, one rotor or place, and a part of the plane may be asked fo
     CHECK(picture_in(folder, "b.png").substr(1, 3) == "PNG");
 }
 
+TEST_CASE("Where a vehicle can hover is drawn with the bounds of its problem") {
+    const ScratchFolder folder;
+    const std::vector<std::string> hold{
+        problem_file("bridge_inspection"), "--what", "hold", "--arm-deg", "90", "--width", "600"};
+    CHECK(run(folder, plot("hold.svg", hold)).code == 0);
+    const std::string whole = picture_in(folder, "hold.svg");
+    for (const char* text :
+         {"unstable", "beyond the model", "stability boundary", "bounds of the problem", "dasharray"}) {
+        INFO(text);
+        CHECK(whole.find(text) != std::string::npos);
+    }
+}
+
 TEST_CASE("Curves of models are drawn with measurements, repeated ones as mean and deviation") {
     const ScratchFolder folder;
     write_file(folder.path() / "run" / "data.csv", measurements);
