@@ -14,6 +14,15 @@ namespace {
     throw InputError(std::vector<Fault>{{"", message}});
 }
 
+/// The ending that says how a grid is written.
+std::string checked_kind(const std::filesystem::path& file) {
+    std::string kind = file.extension().string();
+    if (kind != ".vti" && kind != ".csv") {
+        refuse(file.string() + " ends in '" + excerpt(kind) + "': expected .vti (VTK ImageData) or .csv");
+    }
+    return kind;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -74,11 +83,17 @@ FactorGrid read_factor_grid(const std::filesystem::path& file, const GridReading
     return parse_factor_grid(bytes, file.string(), reading);
 }
 
-void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid) {
-    const std::string kind = file.extension().string();
-    if (kind != ".vti" && kind != ".csv") {
-        refuse(file.string() + " ends in '" + excerpt(kind) + "': expected .vti (VTK ImageData) or .csv");
+void require_grid_writable(const std::filesystem::path& file) {
+    static_cast<void>(checked_kind(file));
+    try {
+        require_writable(file);
+    } catch (const FileError& error) {
+        refuse(file.string() + " " + error.what());
     }
+}
+
+void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid) {
+    const std::string kind = checked_kind(file);
     try {
         write_file(file, kind == ".vti" ? vti_text(grid) : grid_csv_text(grid));
     } catch (const FileError& error) {

@@ -29,6 +29,9 @@ struct GridReading {
 /// @throws InputError when the file ends otherwise or cannot be written
 DOWNWASH_EXPORT void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid);
 
+/// Whether write_factor_grid would get as far as its first byte. @throws InputError when it would not
+DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
+
 /// What write_factor_grid writes.
 [[nodiscard]] DOWNWASH_EXPORT std::string vti_text(const FactorGrid& grid);
 [[nodiscard]] DOWNWASH_EXPORT std::string grid_csv_text(const FactorGrid& grid);

@@ -62,6 +62,9 @@ FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, cons
     const MapLayer& first = model.layer(rotor_option(arguments.rotor, model));
     Provenance provenance = provenance_of(*first.effect);
     provenance.insert(provenance.begin() + 1, {{"problem", problem.name}, {"problem_sha256", problem_sha256(problem)}});
+    if (model.tick().plant.has_fountain) {
+        provenance.emplace_back("fountain", "not contained: the grid holds the factors of rotors");
+    }
     if (arguments.lateral_m.empty()) {
         return sample_planes(chosen_layers(arguments, model), sampling, provenance);
     }
@@ -76,6 +79,7 @@ ExitCode build(const BuildArguments& arguments) {
     if (arguments.threads < 1 || arguments.threads > 256) {
         throw UsageError(fmt::format("--threads {}: expected a number from 1 to 256", arguments.threads));
     }
+    require_grid_writable(arguments.output);
     const Problem problem = read_problem(arguments.problem);
     if (!problem.aero.enabled) {
         throw UsageError(arguments.problem + ": aero is none, so there is no map to build");
@@ -87,6 +91,9 @@ ExitCode build(const BuildArguments& arguments) {
                           [&display](double share) { display.show("building the map", share); }};
     const FactorGrid grid = sampled(arguments, problem, *model, sampling);
     write_factor_grid(arguments.output, grid);
+    if (model->tick().plant.has_fountain) {
+        display.say("the fountain that pushes the body is not contained: the grid holds the factors of rotors");
+    }
     display.say(fmt::format("{}: {} x {} x {} nodes, {} layer(s)", arguments.output, grid.x().count, grid.y().count,
                             grid.z().count, grid.layers()));
     return ExitCode::done;

@@ -9,6 +9,7 @@
 #include "downwash/aeromap/effect_comparison.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/usage_error.hpp"
 
@@ -139,7 +140,7 @@ ExitCode run(const CompareArguments& arguments) {
     const std::vector<DataSetComparison> comparisons =
         compare_effects(measurements, arguments.data.neighbours(), max_factor);
     if (arguments.as_json) {
-        fmt::print("{}\n", comparison_json(comparisons).dump(2));
+        fmt::print("{}\n", json_text(comparison_json(comparisons)));
         return ExitCode::done;
     }
     fmt::print("{}", explanation);

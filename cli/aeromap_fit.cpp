@@ -16,6 +16,7 @@
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/standard_error.hpp"
@@ -106,7 +107,8 @@ std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
     }
     for (const std::string_view name : fit.undetermined) {
         if (name == parameter.name) {
-            return "  undetermined: other values fit as well";
+            return (parameter.standard_error ? " +- " + to_text(*parameter.standard_error, 3) : std::string()) +
+                   "  not determined: other values fit as well";
         }
     }
     return parameter.standard_error ? " +- " + to_text(*parameter.standard_error, 3)
@@ -140,6 +142,14 @@ void print_fit(const FitArguments& arguments, const EffectModelInfo& model, cons
     }
     if (!fit.is_converged) {
         fmt::print("The search did not converge; the values are the best it found.\n");
+    }
+    if (!fit.undetermined.empty()) {
+        std::string names;
+        for (const std::string_view name : fit.undetermined) {
+            names += (names.empty() ? "" : ", ") + std::string(name);
+        }
+        fmt::print("Not determined by these measurements: {}. Keep a known value with --fix, or add other distances.\n",
+                   names);
     }
     const std::string surface = arguments.data.surface.empty() ? std::string(model.surface) : arguments.data.surface;
     if (surface == "ground" || surface == "ceiling") {
@@ -229,6 +239,13 @@ ExitCode run(const FitArguments& arguments) {
     }
     FitOptions options;
     options.neighbours = arguments.data.neighbours();
+    const bool is_multirotor =
+        model.model == EffectModel::multirotor_images || model.model == EffectModel::multirotor_body;
+    if (is_multirotor && !arguments.data.rotor_spacing) {
+        throw UsageError("--model " + std::string(model.name) +
+                         " needs the other rotors: expected --rotor-spacing S, the distance of neighbouring axes of a "
+                         "square quadrotor in radii");
+    }
     options.is_weighted = arguments.is_weighted;
     for (const std::string& text : arguments.fixed) {
         options.fixed.push_back(fixed_parameter(text));
@@ -243,7 +260,7 @@ ExitCode run(const FitArguments& arguments) {
         write_plot(arguments.plot, figures_of(model, fit, measurements.points, options.neighbours));
     }
     if (arguments.as_json) {
-        fmt::print("{}\n", fit_json(model, fit, measurements.points).dump(2));
+        fmt::print("{}\n", json_text(fit_json(model, fit, measurements.points)));
     } else {
         print_fit(arguments, model, fit);
     }

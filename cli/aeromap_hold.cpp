@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -130,7 +131,7 @@ ExitCode run(const HoldArguments& arguments) {
     for (const HoldAnswer& answer : answers) {
         points.push_back(json_of(answer, model->tick().plant.rotor_count));
     }
-    fmt::print("{}\n", Json{{"arm_deg", arguments.arm_deg}, {"points", std::move(points)}}.dump(2));
+    fmt::print("{}\n", json_text(Json{{"arm_deg", arguments.arm_deg}, {"points", std::move(points)}}));
     return ExitCode::done;
 }
 

@@ -7,6 +7,7 @@
 
 #include "downwash/aeromap/factor_grid_file.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -81,7 +82,7 @@ void add_aeromap_info(CLI::App& aeromap, Action& action) {
         action = [arguments] {
             const FactorGrid grid = read_factor_grid(arguments->file);
             if (arguments->as_json) {
-                fmt::print("{}\n", json_of(arguments->file, grid).dump(2));
+                fmt::print("{}\n", json_text(json_of(arguments->file, grid)));
             } else {
                 print_text(arguments->file, grid);
             }

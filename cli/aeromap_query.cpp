@@ -17,6 +17,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -129,7 +130,7 @@ void print_points(const std::vector<PointEffect>& effects, bool as_json) {
         }
     }
     if (as_json) {
-        fmt::print("{}\n", Json{{"points", std::move(points)}}.dump(2));
+        fmt::print("{}\n", json_text(Json{{"points", std::move(points)}}));
     }
 }
 
@@ -184,11 +185,19 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& arguments) {
     if (arguments.points == "-") {
         further = read_points(std::cin, "standard input");
     } else if (!arguments.points.empty()) {
-        std::ifstream file(arguments.points);
+        std::error_code none;
+        if (std::filesystem::is_directory(arguments.points, none)) {
+            throw UsageError("--points " + arguments.points + ": is a directory, expected a file");
+        }
+        std::ifstream file(arguments.points);  // or a pipe
         if (!file) {
             throw UsageError("--points " + arguments.points + ": cannot be read");
         }
         further = read_points(file, arguments.points);
+    }
+    if (further.empty() && !arguments.points.empty()) {
+        throw UsageError("--points " + arguments.points +
+                         ": holds no point, expected lines of three numbers, x_m y_m z_m");
     }
     points.insert(points.end(), further.begin(), further.end());
     return points;
@@ -215,7 +224,7 @@ void query_model(const QueryArguments& arguments) {
         points.push_back({{"z_over_r", z_over_r}, {"factor", curve(z_over_r)}});
     }
     if (arguments.as_json) {
-        fmt::print("{}\n", Json{{"model", model.name}, {"points", std::move(points)}}.dump(2));
+        fmt::print("{}\n", json_text(Json{{"model", model.name}, {"points", std::move(points)}}));
         return;
     }
     fmt::print("{}: {}\nK = {}\nholds: {}\n{:>10}  {:>10}\n", model.name, model.source, model.formula, model.validity,

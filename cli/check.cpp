@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -32,7 +33,7 @@ void print_json(const std::vector<LocatedFault>& faults) {
             {{"file", fault.file}, {"line", fault.line}, {"column", fault.column}, {"message", fault.message}});
     }
     const nlohmann::ordered_json document{{"faults", std::move(list)}};
-    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(document));
 }
 
 ExitCode run(const CheckArguments& arguments) {

@@ -49,8 +49,8 @@ void MeasuredData::add_options(CLI::App& command) {
     command
         .add_option(
             "--rotor-spacing", rotor_spacing,
-            "the measured vehicle is a square quadrotor whose adjacent axes are so many radii apart (multirotor "
-            "models); default: one rotor alone")
+            "the measured vehicle is a square quadrotor whose adjacent axes are so many radii apart; multirotor models "
+            "need it")
         ->type_name("D");
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/json_text.hpp"
 #include "downwash/planner/solve.hpp"
 
 namespace downwash::cli {
@@ -16,7 +17,7 @@ void print_json() {
                         {"description", algorithm.description},
                         {"parameters", nlohmann::ordered_json::array()}});
     }
-    fmt::print("{}\n", nlohmann::ordered_json{{"planners", std::move(list)}}.dump(2));
+    fmt::print("{}\n", json_text(nlohmann::ordered_json{{"planners", std::move(list)}}));
 }
 
 void print_table() {

@@ -43,6 +43,19 @@ TEST_CASE("A fit for people ends with what a problem file wants") {
     CHECK_THAT(plain.out, Catch::Contains("  ceiling: {model: he,"));
 }
 
+TEST_CASE("A fit that its data do not determine says so before it offers the problem file's lines") {
+    const ScratchFolder folder;
+    write_file(folder / "m.csv", "z_over_r,thrust_ratio\n1,1.1\n1.01,1.11\n1.02,1.09\n1.03,1.1\n");
+    const std::string said =
+        run(folder, {"aeromap", "fit", folder / "m.csv", "--model", "he", "--surface", "ceiling"}).out;
+    const auto warned = said.find("Not determined by these measurements: a, b. Keep a known value with --fix");
+    REQUIRE(warned != std::string::npos);
+    CHECK(warned < said.find("For a problem file"));
+    const Result fixed =
+        run(folder, {"aeromap", "fit", folder / "m.csv", "--model", "he", "--surface", "ceiling", "--fix", "b=2"});
+    CHECK_THAT(fixed.out, !Catch::Contains("ot determined"));
+}
+
 TEST_CASE("A fit to several surfaces at once says that it is one") {
     const ScratchFolder folder;
     const Result result =
@@ -115,6 +128,8 @@ TEST_CASE("Fits that cannot be made end with 2 and say why") {
         {{"aeromap", "fit", good, "--model", "he", "--fix", "c=2"}, "no parameter 'c'"},
         {{"aeromap", "fit", good, "--model", "he", "--weighted"}, "line 5 has no sigma"},
         {{"aeromap", "fit", good, "--model", "he", "--rotor-spacing", "0"}, "expected radii, above 0"},
+        {{"aeromap", "fit", good, "--model", "multirotor-body"}, "multirotor-body needs the other rotors"},
+        {{"aeromap", "fit", good, "--model", "multirotor-images"}, "expected --rotor-spacing"},
         {{"aeromap", "compare", good, "--json", "--markdown"}, "expected at most one"},
     };
     for (const auto& [arguments, reason] : wrongs) {
