@@ -35,8 +35,8 @@ struct HoldPoint {
 };
 
 /// The lines between stable and unstable hover, as their crossings with the grid, each found to 1e-4 m along its edge.
-/// Where either side is bounded by something else (not flyable, no equilibrium, unknown) there is no line. A closed line ends
-/// with its first point.
+/// Where either side is bounded by something else (not flyable, no equilibrium, unknown) there is no line. A closed
+/// line ends with its first point.
 /// @param model,map the map was made from this model
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::vector<HoldPoint>> stability_boundary(const FlightModel& model,
                                                                                      const HoldMap& map);
