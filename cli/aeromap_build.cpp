@@ -58,7 +58,7 @@ std::vector<MapLayer> chosen_layers(const BuildArguments& arguments, const Fligh
 }
 
 FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, const FlightModel& model,
-                   GridSampling sampling) {
+                   const GridSampling& sampling) {
     const MapLayer& first = model.layer(rotor_option(arguments.rotor, model));
     Provenance provenance = provenance_of(*first.effect);
     provenance.insert(provenance.begin() + 1, {{"problem", problem.name}, {"problem_sha256", problem_sha256(problem)}});

@@ -36,6 +36,7 @@ std::string digest_of(const EffectTable& table) {
 template <class Effect>
 void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Effect effect) {
     std::vector<std::string_view> names;
+    names.reserve(models.size());
     for (const EffectModelInfo& model : models) {
         names.push_back(model.name);
     }

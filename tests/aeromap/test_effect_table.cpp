@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "../support/random.hpp"
 #include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
-#include "../support/random.hpp"
 
 using namespace downwash;
 using Catch::Matchers::Equals;

@@ -19,7 +19,10 @@ constexpr std::string_view models =
 std::string grid_csv(const std::string& lowest_x) {
     std::string text = "x_m,z_m,factor\n";
     for (const std::string& x : {lowest_x, std::string("7")}) {
-        text += x + ",0,1.25\n" + x + ",6,1.25\n";
+        for (const char* rest : {",0,1.25\n", ",6,1.25\n"}) {
+            text += x;
+            text += rest;
+        }
     }
     return text;
 }
