@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "downwash/report/chains.hpp"
+
 namespace downwash {
 namespace {
 
@@ -58,37 +60,16 @@ PlanePoint point_on(const Edge& edge, const std::vector<Vector3>& vertices_m) {
 MeshSection mesh_section(const std::vector<Vector3>& vertices_m,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     Pieces pieces = pieces_of(vertices_m, triangles);
-    std::map<Edge, int> arrivals;
-    for (const auto& [from, to] : pieces) {
-        ++arrivals[to];
-    }
     MeshSection section;
-    const auto follow = [&](Edge edge) {
-        const Edge first = edge;
-        std::vector<PlanePoint> points{point_on(edge, vertices_m)};
-        for (auto piece = pieces.find(edge); piece != pieces.end(); piece = pieces.find(edge)) {
-            edge = piece->second;
-            pieces.erase(piece);
-            if (edge == first) {
-                section.rings.push_back(std::move(points));
-                return;
-            }
+    for (auto& edges : take_chains(pieces)) {
+        const bool is_ring = edges.size() > 1 && edges.front() == edges.back();
+        if (is_ring) {
+            edges.pop_back();
+        }
+        auto& points = (is_ring ? section.rings : section.lines).emplace_back();
+        for (const Edge& edge : edges) {
             points.push_back(point_on(edge, vertices_m));
         }
-        section.lines.push_back(std::move(points));
-    };
-    // Open lines have to be followed from their beginnings, rings from anywhere.
-    std::vector<Edge> beginnings;
-    for (const auto& [from, to] : pieces) {
-        if (arrivals.find(from) == arrivals.end()) {
-            beginnings.push_back(from);
-        }
-    }
-    for (const Edge& beginning : beginnings) {
-        follow(beginning);
-    }
-    while (!pieces.empty()) {
-        follow(pieces.begin()->first);
     }
     return section;
 }

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "downwash/report/chains.hpp"
+
 namespace downwash {
 namespace {
 
@@ -79,32 +81,12 @@ std::vector<std::vector<PlanePoint>> region_boundary(const std::function<bool(do
             add_cell(grid, {grid.node(i, k), grid.node(i + 1, k), grid.node(i + 1, k + 1), grid.node(i, k + 1)}, steps);
         }
     }
-    std::map<Side, bool> is_reached;
-    for (const auto& [from, to] : steps) {
-        is_reached[to] = true;
-    }
     std::vector<std::vector<PlanePoint>> lines;
-    const auto follow = [&](Side side) {
+    for (const auto& sides : take_chains(steps)) {
         auto& line = lines.emplace_back();
-        line.push_back(grid.crossing(side.first, side.second));
-        for (auto step = steps.find(side); step != steps.end(); step = steps.find(side)) {
-            side = step->second;
-            steps.erase(step);
-            line.push_back(grid.crossing(side.first, side.second));
+        for (const auto& [inside, outside] : sides) {
+            line.push_back(grid.crossing(inside, outside));
         }
-    };
-    // Lines that begin at the rim of the extent have to be followed from there, closed ones from anywhere.
-    std::vector<Side> beginnings;
-    for (const auto& [from, to] : steps) {
-        if (is_reached.find(from) == is_reached.end()) {
-            beginnings.push_back(from);
-        }
-    }
-    for (const Side& beginning : beginnings) {
-        follow(beginning);
-    }
-    while (!steps.empty()) {
-        follow(steps.begin()->first);
     }
     return lines;
 }

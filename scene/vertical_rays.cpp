@@ -159,15 +159,9 @@ void add_box_faces(const Vector3& size_m, const Vector3& center_m, const Matrix3
     }
 }
 
-}  // namespace
-
-Interval Scene::vertical_extent(std::size_t part, double x_m, double y_m) const noexcept {
-    const auto of_form = [&](const Vector3& center_m, const auto& form) {
-        const Interval stretch = vertical(x_m - center_m[0], y_m - center_m[1], form);
-        return stretch.low <= stretch.high ? Interval{center_m[2] + stretch.low, center_m[2] + stretch.high}
-                                           : Interval{};
-    };
-    const Parts& parts = solids_->parts;
+/// Asks one part: of_form(centre, form) for what is seen from above as a primitive, else of_triangle(triangle).
+template <class OfForm, class OfTriangle>
+Interval of_part(const Parts& parts, std::size_t part, const OfForm& of_form, const OfTriangle& of_triangle) {
     return parts.visit(
         part,
         [&](std::size_t i) {
@@ -176,23 +170,28 @@ Interval Scene::vertical_extent(std::size_t part, double x_m, double y_m) const 
         },
         [&](const OctreeBox& box, const Placement& placement) {
             return of_form(box.center_m, box_from_above(Box{box.size_m}, placement));
+        },
+        of_triangle);
+}
+
+}  // namespace
+
+Interval Scene::vertical_extent(std::size_t part, double x_m, double y_m) const noexcept {
+    return of_part(
+        solids_->parts, part,
+        [&](const Vector3& center_m, const auto& form) {
+            const Interval stretch = vertical(x_m - center_m[0], y_m - center_m[1], form);
+            return stretch.low <= stretch.high ? Interval{center_m[2] + stretch.low, center_m[2] + stretch.high}
+                                               : Interval{};
         },
         [&](const Triangle& triangle) { return downwash::vertical_extent(triangle, x_m, y_m); });
 }
 
 Interval Scene::shadow_on_line(std::size_t part, double px_m, double py_m, double dx, double dy) const noexcept {
-    const auto of_form = [&](const Vector3& center_m, const auto& form) {
-        return shadow(px_m - center_m[0], py_m - center_m[1], dx, dy, form);
-    };
-    const Parts& parts = solids_->parts;
-    return parts.visit(
-        part,
-        [&](std::size_t i) {
-            return std::visit([&](const auto& form) { return of_form(parts.primitive_centers_m[i], form); },
-                              parts.primitives_from_above[i]);
-        },
-        [&](const OctreeBox& box, const Placement& placement) {
-            return of_form(box.center_m, box_from_above(Box{box.size_m}, placement));
+    return of_part(
+        solids_->parts, part,
+        [&](const Vector3& center_m, const auto& form) {
+            return shadow(px_m - center_m[0], py_m - center_m[1], dx, dy, form);
         },
         [&](const Triangle& triangle) { return downwash::shadow_on_line(triangle, px_m, py_m, dx, dy); });
 }
