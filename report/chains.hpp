@@ -24,7 +24,7 @@ std::vector<std::vector<typename Steps::key_type>> take_chains(Steps& steps) {
         }
     }
     std::vector<std::vector<Place>> chains;
-    const auto follow = [&](const Place& first) {
+    const auto follow = [&](Place first) {
         std::vector<Place> chain{first};
         for (auto step = steps.find(first); step != steps.end(); step = steps.find(chain.back())) {
             chain.push_back(step->second);
