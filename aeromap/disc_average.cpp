@@ -270,7 +270,8 @@ class DiscQuadrature {
     std::pmr::vector<double> cuts_;
 };
 
-/// Triangles and boxes of octrees over or under the disc; none that is seen from its edge only.
+/// Triangles and boxes of octrees over or under the disc, in the scene's order, however they were found; none that is
+/// seen from its edge only.
 void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
     const auto& [x, y, z] = query.hub_m;
     const double r = query.radius_m;
@@ -280,6 +281,7 @@ void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
     parts.erase(
         std::remove_if(parts.begin(), parts.end(), [&](std::size_t part) { return !query.scene.has_shadow(part); }),
         parts.end());
+    std::sort(parts.begin(), parts.end());
 }
 
 }  // namespace

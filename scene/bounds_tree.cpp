@@ -19,6 +19,15 @@ Scene::Bounds hull(const Scene::Bounds& a, const Scene::Bounds& b) {
     return both;
 }
 
+/// The point in the middle of a box, as a box.
+Scene::Bounds middle_of(const Scene::Bounds& box) {
+    Vector3 middle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        middle[k] = 0.5 * (box.low_m[k] + box.high_m[k]);
+    }
+    return {middle, middle};
+}
+
 }  // namespace
 
 BoundsTree::BoundsTree(std::span<const Scene::Bounds> parts) : order_(parts.size()) {
@@ -29,11 +38,14 @@ BoundsTree::BoundsTree(std::span<const Scene::Bounds> parts) : order_(parts.size
     nodes_.shrink_to_fit();
 }
 
-/// Halves the parts at the median of their middles along the longest side of their common box.
+/// Halves the parts at the median of their middles along the axis on which these lie widest apart. (Not along the
+/// longest side of their common box: the triangles of a long girder are as long as itself.)
 void BoundsTree::build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last) {
     Scene::Bounds all = parts[order_[first]];
+    Scene::Bounds middles = middle_of(all);
     for (std::uint32_t i = first + 1; i < last; ++i) {
         all = hull(all, parts[order_[i]]);
+        middles = hull(middles, middle_of(parts[order_[i]]));
     }
     const std::size_t index = nodes_.size();
     nodes_.push_back({all, first, last - first});
@@ -42,7 +54,7 @@ void BoundsTree::build(std::span<const Scene::Bounds> parts, std::uint32_t first
     }
     std::size_t axis = 0;
     for (const std::size_t k : {1U, 2U}) {
-        axis = all.high_m[k] - all.low_m[k] > all.high_m[axis] - all.low_m[axis] ? k : axis;
+        axis = middles.high_m[k] - middles.low_m[k] > middles.high_m[axis] - middles.low_m[axis] ? k : axis;
     }
     const std::uint32_t middle = first + (last - first) / 2;
     const auto is_lower = [&](std::uint32_t a, std::uint32_t b) {

@@ -142,7 +142,7 @@ struct CollisionChecker::Impl {
                                        {center[0] + reach_m, center[1] + reach_m, center[2] + reach_m}};
         const auto gap = [&](const Scene::Bounds& box) { return gap_m(everywhere, box); };
         const auto is_near = [&](std::size_t part) { return gap(solids.parts.bounds(part)) <= margin_m; };
-        return !solids.parts.tree.any(gap, margin_m, is_near) && !solids.is_inside_mesh(center);
+        return !solids.parts.any(gap, margin_m, is_near) && !solids.is_inside_mesh(center);
     }
 
     std::shared_ptr<const Scene> scene;
@@ -193,7 +193,7 @@ bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) c
                    solids.parts.with_convex(part,
                                             [&](const Convex& convex) { return is_nearer(piece, convex, margin_m); });
         };
-        return solids.parts.tree.any(gap, near_m, is_near) || solids.is_inside_mesh(piece.center_m);
+        return solids.parts.any(gap, near_m, is_near) || solids.is_inside_mesh(piece.center_m);
     });
 }
 
@@ -205,7 +205,7 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     double least = infinity;
     impl_->any_piece(pose, [&](const Convex& piece, const Scene::Bounds& bounds) {
         const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
-        solids.parts.tree.any(gap, least, [&](std::size_t part) {
+        solids.parts.any(gap, least, [&](std::size_t part) {
             if (gap(solids.parts.bounds(part)) >= least) {
                 return false;
             }

@@ -18,7 +18,7 @@ Convex level_disc(const Vector3& center_m, double radius_m) {
 bool is_any_nearer(const Scene::Solids& solids, const Convex& solid, double distance_m) {
     const Scene::Bounds bounds = bounds_of(solid);
     const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
-    return solids.parts.tree.any(gap, distance_m, [&](std::size_t part) {
+    return solids.parts.any(gap, distance_m, [&](std::size_t part) {
         return gap(solids.parts.bounds(part)) <= distance_m &&
                solids.parts.with_convex(
                    part, [&](const Convex& convex) { return is_nearer_than(solid, convex, distance_m); });
@@ -62,7 +62,7 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
     const Scene::Bounds bounds = bounds_of(disc);
     double least = infinity;
     const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
-    solids.parts.tree.any(gap, least, [&](std::size_t part) {
+    solids.parts.any(gap, least, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < least) {
             least = std::min(least, solids.parts.with_convex(
                                         part, [&](const Convex& convex) { return distance_m(disc, convex, least); }));
@@ -91,7 +91,7 @@ double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
     const Scene::Solids& solids = scene.solids();
     double least = infinity;
     const auto gap = [&](const Scene::Bounds& box) { return level_gap_m(box, point_m); };
-    solids.parts.tree.any(gap, least, [&](std::size_t part) {
+    solids.parts.any(gap, least, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < least) {
             least = std::min(least, solids.parts.with_convex(part, [&](const Convex& convex) {
                 return touching_radius_m(convex, point_m, least);

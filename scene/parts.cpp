@@ -13,12 +13,13 @@ void Parts::add(const Primitive& primitive, const Vector3& center_m, const Place
 }
 
 void Parts::index() {
-    std::vector<Scene::Bounds> all;
-    all.reserve(count());
-    for (std::size_t part = 0; part < count(); ++part) {
-        all.push_back(bounds(part));
+    std::vector<Scene::Bounds> others;
+    others.reserve(count() - primitives.size());
+    for (std::size_t part = primitives.size(); part < count(); ++part) {
+        others.push_back(bounds(part));
     }
-    tree = BoundsTree(all);
+    primitive_tree_ = BoundsTree(primitive_bounds);
+    other_tree_ = BoundsTree(others);
 }
 
 Convex Parts::convex_of_other(std::size_t part) const noexcept {

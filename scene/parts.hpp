@@ -35,10 +35,21 @@ struct Parts {
 
     std::vector<Triangle> triangles;
 
-    BoundsTree tree;  ///< over all of them; made by index()
-
     void add(const Primitive& primitive, const Vector3& center_m, const Placement& placement);
+
+    /// Makes the trees that `any` and `any_other` ask, when all parts are there.
     void index();
+
+    /// BoundsTree::any over all parts, primitives first.
+    template <class Gap, class Visit>
+    bool any(const Gap& gap, const double& limit, const Visit& visit) const {
+        return primitive_tree_.any(gap, limit, visit) || any_other(gap, limit, visit);
+    }
+    /// The same over all but primitives. Their tree is one of its own: a ground or a deck would spoil its upper boxes.
+    template <class Gap, class Visit>
+    bool any_other(const Gap& gap, const double& limit, const Visit& visit) const {
+        return other_tree_.any(gap, limit, [&](std::size_t other) { return visit(primitives.size() + other); });
+    }
 
     [[nodiscard]] std::size_t first_octree_box() const noexcept { return primitives.size(); }
     [[nodiscard]] std::size_t first_triangle() const noexcept { return primitives.size() + octree_boxes.size(); }
@@ -70,6 +81,9 @@ struct Parts {
  private:
     [[nodiscard]] Convex convex_of_other(std::size_t part) const noexcept;
     [[nodiscard]] Scene::Bounds bounds_of_other(std::size_t part) const noexcept;
+
+    BoundsTree primitive_tree_;
+    BoundsTree other_tree_;
 };
 
 }  // namespace downwash

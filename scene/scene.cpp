@@ -199,7 +199,7 @@ bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept 
             return false;
         }
         int turns = 0;
-        parts.tree.any(apart_upwards, 0, [&](std::size_t part) {
+        parts.any_other(apart_upwards, 0, [&](std::size_t part) {
             const std::size_t triangle = part - parts.first_triangle();  // huge for other parts
             if (triangle >= surface.first && triangle < surface.last) {
                 turns += winding_above(parts.triangles[triangle], p_m);
@@ -233,12 +233,9 @@ std::size_t Scene::primitive_count() const noexcept {
 
 void Scene::add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const {
     const Parts& all = solids_->parts;
-    if (all.count() == all.primitives.size()) {
-        return;
-    }
     const auto gap = [&](const Bounds& other) { return gap_m(box, other); };
-    all.tree.any(gap, 0, [&](std::size_t part) {
-        if (part >= all.primitives.size() && gap(all.bounds(part)) <= 0) {
+    all.any_other(gap, 0, [&](std::size_t part) {
+        if (gap(all.bounds(part)) <= 0) {
             parts.push_back(part);
         }
         return false;
