@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
@@ -99,34 +100,51 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress)
         },
         on_progress);
 
-    rasters_.resize(grids.size());
-    for (std::size_t task = 0; task < parts.size(); ++task) {
-        Raster& raster = rasters_[task / tasks_per_layer];
-        std::size_t node = raster.nodes.size();
-        for (const CellSteps& steps : parts[task].steps) {
-            raster.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
-            node += std::size_t{steps.x + 1U} * (steps.z + 1U);
+    for (std::size_t layer = 0; layer < grids.size(); ++layer) {
+        Raster raster;
+        for (std::size_t task = layer * tasks_per_layer; task < (layer + 1) * tasks_per_layer; ++task) {
+            std::size_t node = raster.nodes.size();
+            for (const CellSteps& steps : parts[task].steps) {
+                raster.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
+                node += std::size_t{steps.x + 1U} * (steps.z + 1U);
+            }
+            if (node > std::numeric_limits<std::uint32_t>::max()) {
+                throw InputError(
+                    std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
+            }
+            raster.flyability.insert(raster.flyability.end(), parts[task].flyability.begin(),
+                                     parts[task].flyability.end());
+            raster.nodes.insert(raster.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
+            parts[task] = {};
         }
-        if (node > std::numeric_limits<std::uint32_t>::max()) {
-            throw InputError(
-                std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
-        }
-        raster.flyability.insert(raster.flyability.end(), parts[task].flyability.begin(), parts[task].flyability.end());
-        raster.nodes.insert(raster.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
-        parts[task] = {};
-    }
-    for (Raster& raster : rasters_) {
         raster.cells.shrink_to_fit();
         raster.flyability.shrink_to_fit();
         raster.nodes.shrink_to_fit();
+        add_raster(std::move(raster));
     }
+}
+
+void AeroMap::add_raster(Raster raster) {
+    const auto is_same = [&raster](const std::shared_ptr<const Raster>& other) {
+        const auto bytes_agree = [](const auto& a, const auto& b) {
+            return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+        };
+        return bytes_agree(raster.cells, other->cells) && bytes_agree(raster.flyability, other->flyability) &&
+               bytes_agree(raster.nodes, other->nodes);
+    };
+    const auto known = std::find_if(rasters_.begin(), rasters_.end(), is_same);
+    rasters_.push_back(known != rasters_.end() ? *known : std::make_shared<const Raster>(std::move(raster)));
 }
 
 std::size_t AeroMap::memory_bytes() const noexcept {
     std::size_t bytes = sizeof(*this);
-    for (const Raster& raster : rasters_) {
-        bytes += raster.cells.capacity() * sizeof(Cell) + raster.flyability.capacity() +
-                 raster.nodes.capacity() * sizeof(float);
+    for (std::size_t layer = 0; layer < rasters_.size(); ++layer) {
+        const std::shared_ptr<const Raster>& raster = rasters_[layer];
+        if (std::find(rasters_.begin(), rasters_.begin() + static_cast<std::ptrdiff_t>(layer), raster) ==
+            rasters_.begin() + static_cast<std::ptrdiff_t>(layer)) {
+            bytes += raster->cells.capacity() * sizeof(MapCell) + raster->flyability.capacity() +
+                     raster->nodes.capacity() * sizeof(float);
+        }
     }
     return bytes;
 }
@@ -143,7 +161,7 @@ bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
     const double w = (z_m - extent_.z_low_m) * cells_per_m_;
     if (u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_)) {
         const std::size_t cell = static_cast<std::size_t>(w) * columns_ + static_cast<std::size_t>(u);
-        const CellFlyability flyability = rasters_[layer].flyability[cell];
+        const CellFlyability flyability = rasters_[layer]->flyability[cell];
         if (flyability != CellFlyability::mixed) {
             return flyability == CellFlyability::flyable;
         }

@@ -35,6 +35,22 @@ inline constexpr double most_map_cells = 16777216;
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
+/// A cell of a layer: where its own grid of values begins, and how fine it is.
+struct MapCell {
+    std::uint32_t first_node;
+    std::uint16_t steps_x;  ///< intervals along x, a power of two
+    std::uint16_t steps_z;  ///< intervals along z, a power of two
+};
+
+/// A layer as plain arrays, for code that looks up many points at once. AeroMap::factor() says how to read them.
+struct MapView {
+    double x_low_m, z_low_m, cells_per_m;
+    std::uint32_t columns, rows;
+    const MapCell* cells;                ///< x running fastest
+    const CellFlyability* flyability;    ///< of each cell
+    const float* nodes;
+};
+
 /// K stored over rotor positions in the plane of motion, one layer for all rotors that share lateral offset and effect.
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
@@ -81,12 +97,13 @@ class DOWNWASH_EXPORT AeroMap {
         }
         const auto i = static_cast<std::size_t>(u);
         const auto k = static_cast<std::size_t>(w);
-        const Cell& cell = rasters_[layer].cells[k * columns_ + i];
+        const Raster& raster = *rasters_[layer];
+        const MapCell& cell = raster.cells[k * columns_ + i];
         const double a = (u - static_cast<double>(i)) * cell.steps_x;
         const double b = (w - static_cast<double>(k)) * cell.steps_z;
         const auto ia = static_cast<std::uint32_t>(a);
         const auto ib = static_cast<std::uint32_t>(b);
-        const float* node = rasters_[layer].nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
+        const float* node = raster.nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
         const double s = a - ia;
         const double t = b - ib;
         const double low = node[0] + s * (static_cast<double>(node[1]) - node[0]);
@@ -95,18 +112,32 @@ class DOWNWASH_EXPORT AeroMap {
         return low + t * (high - low);
     }
 
+    /// Whether two layers hold the same values, as those of the left and the right rotors of a vehicle that flies along
+    /// the middle of a scene do. Look-ups inside the extent then agree to the last bit.
+    [[nodiscard]] bool are_equal(std::size_t layer, std::size_t other) const noexcept {
+        return rasters_[layer] == rasters_[other];
+    }
+
+    /// Valid as long as the map.
+    [[nodiscard]] MapView view(std::size_t layer) const noexcept {
+        const Raster& raster = *rasters_[layer];
+        return {extent_.x_low_m,
+                extent_.z_low_m,
+                cells_per_m_,
+                static_cast<std::uint32_t>(columns_),
+                static_cast<std::uint32_t>(rows_),
+                raster.cells.data(),
+                raster.flyability.data(),
+                raster.nodes.data()};
+    }
+
     /// Whether a rotor hub there is inside the flyable area; exact (decided by the cell where the whole cell agrees).
     [[nodiscard]] bool is_flyable(std::size_t layer, double x_m, double z_m) const;
 
  private:
-    struct Cell {
-        std::uint32_t first_node;
-        std::uint16_t steps_x;  ///< intervals along x, a power of two
-        std::uint16_t steps_z;  ///< intervals along z, a power of two
-    };
     /// The values of one layer.
     struct Raster {
-        std::vector<Cell> cells;
+        std::vector<MapCell> cells;
         std::vector<CellFlyability> flyability;  ///< of each cell
         std::vector<float> nodes;
     };
@@ -117,6 +148,7 @@ class DOWNWASH_EXPORT AeroMap {
 
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
     void build(int threads, const std::function<void(double)>& on_progress);
+    void add_raster(Raster raster);
     [[nodiscard]] bool is_sound(const Raster& raster) const;
     [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;
 
@@ -127,7 +159,7 @@ class DOWNWASH_EXPORT AeroMap {
     double cells_per_m_;
     std::size_t columns_;
     std::size_t rows_;
-    std::vector<Raster> rasters_;  ///< one per layer
+    std::vector<std::shared_ptr<const Raster>> rasters_;  ///< one per layer; layers of equal values share theirs
 };
 
 }  // namespace downwash

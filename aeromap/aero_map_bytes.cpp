@@ -54,17 +54,17 @@ bool is_step_count(unsigned steps) {
 }  // namespace
 
 std::string AeroMap::to_bytes() const {
-    static_assert(sizeof(Cell) == 8, "no bytes between the members");
+    static_assert(sizeof(MapCell) == 8, "no bytes between the members");
     std::string bytes;
     bytes.reserve(memory_bytes());
     append_count(bytes, rasters_.size());
     append_count(bytes, columns_);
     append_count(bytes, rows_);
-    for (const Raster& raster : rasters_) {
-        append_count(bytes, raster.nodes.size());
-        append(bytes, raster.cells.data(), raster.cells.size());
-        append(bytes, raster.flyability.data(), raster.flyability.size());
-        append(bytes, raster.nodes.data(), raster.nodes.size());
+    for (const std::shared_ptr<const Raster>& raster : rasters_) {
+        append_count(bytes, raster->nodes.size());
+        append(bytes, raster->cells.data(), raster->cells.size());
+        append(bytes, raster->flyability.data(), raster->flyability.size());
+        append(bytes, raster->nodes.data(), raster->nodes.size());
     }
     return bytes;
 }
@@ -79,13 +79,16 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
         layer_count != map.layers_.size() || columns != map.columns_ || rows != map.rows_) {
         return std::nullopt;
     }
-    map.rasters_.resize(map.layers_.size());
-    for (std::size_t layer = 0; layer < map.rasters_.size(); ++layer) {
-        Raster& raster = map.rasters_[layer];
+    for (std::size_t layer = 0; layer < map.layers_.size(); ++layer) {
+        Raster raster;
         std::uint64_t nodes = 0;
         if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
             !take(bytes, columns * rows, raster.flyability) || !take(bytes, nodes, raster.nodes) ||
-            !map.is_sound(raster) || !map.agrees_with_effect(layer)) {
+            !map.is_sound(raster)) {
+            return std::nullopt;
+        }
+        map.add_raster(std::move(raster));
+        if (!map.agrees_with_effect(layer)) {
             return std::nullopt;
         }
     }
@@ -94,7 +97,7 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
 
 /// Whether look-ups stay within the raster and find numbers there.
 bool AeroMap::is_sound(const Raster& raster) const {
-    const auto is_cell = [&raster](const Cell& cell) {
+    const auto is_cell = [&raster](const MapCell& cell) {
         const std::size_t nodes = std::size_t{cell.steps_x + 1U} * (cell.steps_z + 1U);
         return is_step_count(cell.steps_x) && is_step_count(cell.steps_z) &&
                cell.first_node + nodes <= raster.nodes.size();
@@ -112,7 +115,7 @@ bool AeroMap::is_sound(const Raster& raster) const {
 /// integration without a new map_format_version is found out here.
 bool AeroMap::agrees_with_effect(std::size_t layer) const {
     constexpr std::size_t samples = 64;
-    const auto& [cells, flyability, nodes] = rasters_[layer];
+    const auto& [cells, flyability, nodes] = *rasters_[layer];
     std::vector<std::size_t> felt;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         if (flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "downwash/controllers/quintic.hpp"
+
 namespace downwash {
 namespace {
 
@@ -75,12 +77,10 @@ ReferencePoint ReferenceSegment::at_tick(std::int64_t tick) const noexcept {
     const double s = static_cast<double>(tick) * tick_s_ * inverse_duration_1_s_;
     ReferencePoint point;
     for (int axis = 0; axis < 3; ++axis) {
-        const double* c = coefficient_[axis];
-        point.position[axis] = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
-        point.velocity[axis] =
-            (c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * (5 * c[5]))))) * inverse_duration_1_s_;
-        point.acceleration[axis] = (2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * (20 * c[5])))) *
-                                   inverse_duration_1_s_ * inverse_duration_1_s_;
+        const auto at = controllers::quintic_at(coefficient_[axis], s, inverse_duration_1_s_);
+        point.position[axis] = at.position;
+        point.velocity[axis] = at.velocity;
+        point.acceleration[axis] = at.acceleration;
     }
     return point;
 }

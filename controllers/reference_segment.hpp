@@ -30,6 +30,10 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// The reference at the beginning of tick `tick`, 0 <= tick <= ticks(); exactly `from` and `to` at the ends.
     [[nodiscard]] ReferencePoint at_tick(std::int64_t tick) const noexcept;
 
+    /// Of the powers of the time over the duration, (x, z, arm); see quintic_at().
+    [[nodiscard]] const double (&coefficients() const noexcept)[3][6] { return coefficient_; }
+    [[nodiscard]] double inverse_duration_1_s() const noexcept { return inverse_duration_1_s_; }
+
  private:
     ReferencePoint from_;
     ReferencePoint to_;

@@ -37,6 +37,17 @@ struct RotorWrench {
     T pitch_torque_nm;
 };
 
+/// The earlier rotor, or the rotor itself, whose K is known to be that of rotor i: a factor says so, if it can, by
+/// `same_as(rotor)`.
+template <class Factor>
+int rotor_with_factor_of(const Factor& factor, int rotor) {
+    if constexpr (requires { factor.same_as(rotor); }) {
+        return factor.same_as(rotor);
+    } else {
+        return rotor;
+    }
+}
+
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
 /// centre between them (model 4.3).
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane; rotor_count stands for the body
@@ -44,9 +55,15 @@ template <class T, class Factor>
 RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
                             const Factor& factor) {
     RotorWrench<T> wrench{T(0), T(0)};
+    T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
-        const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
-        const T acting_n = factor(i, hub.x, hub.z) * thrust_n[i];
+        if (const int same = rotor_with_factor_of(factor, i); same != i) {
+            factors[i] = factors[same];
+        } else {
+            const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
+            factors[i] = factor(i, hub.x, hub.z);
+        }
+        const T acting_n = factors[i] * thrust_n[i];
         wrench.thrust_n = wrench.thrust_n + acting_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
     }

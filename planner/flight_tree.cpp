@@ -37,6 +37,8 @@ std::string cause_of(FlightFault fault) {
             return "unstable";
         case FlightFault::bounds:
             return "bounds";
+        case FlightFault::goal_missed:
+            return "goal_missed";
         case FlightFault::none:
         case FlightFault::interrupted:
             break;

@@ -150,7 +150,8 @@ struct CollisionChecker::Impl {
     PlaneOfMotion plane;
     std::vector<Piece> pieces;
     Vector3 joint_m;  ///< in the body frame
-    double reach_m = 0;
+    double reach_m = 0;       ///< of all pieces
+    double body_reach_m = 0;  ///< of those of the multirotor
 };
 
 CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const PlaneOfMotion& the_plane,
@@ -165,6 +166,7 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const Plane
         const double offset =
             piece.is_arm ? std::sqrt(robot.joint_x_m * robot.joint_x_m + robot.joint_z_m * robot.joint_z_m) : 0;
         reach_m = std::max(reach_m, offset + reach_of(piece.convex));
+        body_reach_m = piece.is_arm ? body_reach_m : std::max(body_reach_m, reach_of(piece.convex));
     }
     // FCL fills its static tables in the first query; later threads only read them.
     static_cast<void>(fcl_says_contact(pieces.back().convex, pieces.back().convex));
@@ -195,6 +197,10 @@ bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) c
         };
         return solids.parts.any(gap, near_m, is_near) || solids.is_inside_mesh(piece.center_m);
     });
+}
+
+double CollisionChecker::body_reach_m() const noexcept {
+    return impl_->body_reach_m;
 }
 
 double CollisionChecker::clearance_m(const PlanarPose& pose) const {

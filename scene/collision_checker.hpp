@@ -34,6 +34,9 @@ class DOWNWASH_EXPORT CollisionChecker {
     /// false when it is; true is certain but for 1e-8 m.
     [[nodiscard]] bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
 
+    /// No point of the multirotor's bodies is farther from its centre of mass [m].
+    [[nodiscard]] double body_reach_m() const noexcept;
+
     /// Smallest distance from the robot to any obstacle [m]; <= 0 on contact, infinity without obstacles.
     [[nodiscard]] double clearance_m(const PlanarPose& pose) const;
 

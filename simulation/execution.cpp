@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/flight_rules.hpp"
 
 namespace downwash {
 namespace {
@@ -84,7 +85,7 @@ class Recorder {
     FlightFault after_tick(const FlightState& before, const ReferencePoint& reference, const TickRecord<double>& record,
                            const FlightState& next, const ReferencePoint& next_reference) {
         add_row(before, reference, record);
-        execution_.length_m += simulation::step_length_m(model_, before, next);
+        execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
         const FlightFault fault = judge(next, next_reference);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
         return fault;

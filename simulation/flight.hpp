@@ -19,6 +19,7 @@ enum class FlightFault : std::uint8_t {
     tracking,      ///< the vehicle or the arm strayed too far from its reference
     unstable,      ///< tumbling, or numbers that are not finite
     bounds,        ///< the centre of mass left the bounds, or the arm its limits
+    goal_missed,   ///< held at the goal and did not meet it
     interrupted,   ///< ended from outside; says nothing about the flight
 };
 

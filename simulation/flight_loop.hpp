@@ -11,15 +11,34 @@ namespace downwash::simulation {
 /// No surface effect anywhere.
 struct NoEffect {
     double operator()(int, double, double) const noexcept { return 1; }
+    [[nodiscard]] int same_as(int) const noexcept { return 0; }
 };
 
-/// The effect looked up in a map.
-struct MapEffect {
-    const FlightModel& model;
-    const AeroMap& map;
-    double operator()(int rotor, double x_m, double z_m) const noexcept {
-        return map.factor(model.rotor_layer(rotor), x_m, z_m);
+/// The effect looked up in a map. Rotors one behind the other as seen along the lateral axis share a look-up where
+/// their layers hold the same.
+class MapEffect {
+ public:
+    MapEffect(const FlightModel& model, const AeroMap& map) : model_(model), map_(map) {
+        const PlantModel& plant = model.tick().plant;
+        for (int i = 0; i < plant.rotor_count; ++i) {
+            same_as_[i] = i;
+            for (int j = i; j-- > 0;) {
+                if (plant.rotor_x_m[i] == plant.rotor_x_m[j] && plant.rotor_z_m[i] == plant.rotor_z_m[j] &&
+                    map.are_equal(model.rotor_layer(i), model.rotor_layer(j))) {
+                    same_as_[i] = j;
+                }
+            }
+        }
     }
+    double operator()(int rotor, double x_m, double z_m) const noexcept {
+        return map_.factor(model_.rotor_layer(rotor), x_m, z_m);
+    }
+    [[nodiscard]] int same_as(int rotor) const noexcept { return same_as_[rotor]; }
+
+ private:
+    const FlightModel& model_;
+    const AeroMap& map_;
+    int same_as_[max_rotors] = {};
 };
 
 /// The effect evaluated exactly.
@@ -36,14 +55,6 @@ inline controllers::Setpoint<double> setpoint(const ReferencePoint& point) noexc
         s.acceleration[i] = point.acceleration[i];
     }
     return s;
-}
-
-/// Path length of one step in the metric of the objective `length` [m].
-inline double step_length_m(const FlightModel& model, const FlightState& from, const FlightState& to) noexcept {
-    const double dx = to.plant.q[0] - from.plant.q[0];
-    const double dz = to.plant.q[1] - from.plant.q[1];
-    const double da = 0.5 * model.tick().plant.arm_length_m * (to.plant.q[3] - from.plant.q[3]);
-    return std::sqrt(dx * dx + dz * dz + da * da);
 }
 
 /// Integrand of the objective `clearance` [1/m].

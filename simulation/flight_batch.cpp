@@ -1,0 +1,340 @@
+#include "downwash/simulation/flight_batch.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_kernel.hpp"
+#include "downwash/simulation/flight_loop.hpp"
+
+namespace downwash {
+namespace {
+
+using simulation::FlightKernelModel;
+using simulation::FlightLanes;
+using simulation::lane_count;
+
+constexpr int most_ticks_per_call = 1024;
+
+/// How much clearance beyond the margin is asked for at first, then less and less [m]: a large one lets the robot fly
+/// far until the next look, a small one is found sooner.
+constexpr double free_motions_m[] = {0.4, 0.1, 0.025};
+constexpr int no_free_motion = 3;
+
+/// Queries of clearance are certain but for so much [m].
+constexpr double clearance_error_m = 1e-7;
+
+simulation::FlightKernel kernel_for(Instructions instructions) {
+#ifdef DOWNWASH_HAS_AVX2_KERNEL
+    if (instructions == Instructions::avx2) {
+        return simulation::fly_lanes_avx2;
+    }
+#endif
+    assert(instructions == Instructions::baseline);
+    static_cast<void>(instructions);
+    return simulation::fly_lanes_baseline;
+}
+
+double reach_m(const Vector3& half_size_m, const Vector3& center_m) {
+    const double x = std::abs(center_m[0]) + half_size_m[0];
+    const double z = std::abs(center_m[2]) + half_size_m[2];
+    return std::sqrt(x * x + z * z);
+}
+
+/// What the flights of a batch have in common.
+struct World {
+    const FlightModel& model;
+    const AeroMap* map;
+    const FlightRules& rules;
+    const Goal* goal;
+};
+
+double factor_outside(const void* context, int rotor, double x_m, double z_m) {
+    const auto& world = *static_cast<const World*>(context);
+    return world.map->factor(world.model.rotor_layer(rotor), x_m, z_m);
+}
+
+FlightKernelModel kernel_model(const World& world) {
+    const simulation::TickModel& tick = world.model.tick();
+    const PlantModel& plant = tick.plant;
+    FlightKernelModel kernel{};
+    kernel.tick = &tick;
+    kernel.limits = simulation::rule_limits(world.rules, world.model.robot().arm);
+    kernel.joint_reach_m = std::sqrt(plant.joint_x_m * plant.joint_x_m + plant.joint_z_m * plant.joint_z_m);
+    kernel.arm_length_m = plant.arm_length_m;
+    kernel.body_reach_m = world.model.collisions().body_reach_m();
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        kernel.body_reach_m =
+            std::max(kernel.body_reach_m, reach_m({0, 0, 0}, {plant.rotor_x_m[i], 0, plant.rotor_z_m[i]}));
+    }
+    kernel.has_map = world.map != nullptr;
+    if (kernel.has_map) {
+        const simulation::MapEffect effect(world.model, *world.map);
+        for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
+            kernel.view[i] = world.map->view(world.model.rotor_layer(i));
+        }
+        for (int i = 0; i < plant.rotor_count; ++i) {
+            kernel.same_as[i] = effect.same_as(i);
+        }
+        kernel.factor_outside = factor_outside;
+        kernel.context = &world;
+    }
+    return kernel;
+}
+
+/// The flight of one job in one lane.
+class Lane {
+ public:
+    Lane(const World& world, FlightLanes& lanes, int number) : world_(&world), lanes_(&lanes), number_(number) {}
+
+    [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
+
+    /// Takes on a job. One that is refused before its first tick leaves the lane free.
+    void begin(FlightJob& job) {
+        job_ = &job;
+        leg_ = 0;
+        put_state(job.start);
+        lanes_->is_active[number_] = 1;
+        level_ = 0;
+        look_after_every_tick();
+        begin_leg();
+    }
+
+    /// Copies another lane, so that a lane without a job computes nothing that is odd.
+    void idle_like(const Lane& other) {
+        const auto copy_all = [&](double* first, std::size_t rows) {
+            for (std::size_t i = 0; i < rows; ++i) {
+                first[i * lane_count + static_cast<std::size_t>(number_)] =
+                    first[i * lane_count + static_cast<std::size_t>(other.number_)];
+            }
+        };
+        static_assert(sizeof(FlightLanes) % (lane_count * sizeof(double)) == 0);
+        copy_all(&lanes_->q[0][0], sizeof(FlightLanes) / (lane_count * sizeof(double)));
+        lanes_->is_active[number_] = 0;
+    }
+
+    /// Judges where the kernel stopped.
+    void look(bool is_interrupted) {
+        FlightLeg& leg = job_->legs[leg_];
+        leg.flight.ticks = static_cast<std::int64_t>(lanes_->tick[number_]);
+        leg.flight.length_m = lanes_->length_m[number_];
+        const bool is_end = leg.flight.ticks >= leg.segment.ticks();
+        const bool is_unclear = lanes_->is_unclear[number_] > 0;
+        FlightFault fault = static_cast<FlightFault>(static_cast<int>(lanes_->fault[number_]));
+        if (fault == FlightFault::none && !is_unclear && !is_end) {
+            if (is_interrupted) {
+                end_with(FlightFault::interrupted);
+            }
+            return;
+        }
+        if (fault == FlightFault::none && is_unclear) {
+            fault = fault_nearby();
+        }
+        if (fault == FlightFault::none && is_judged() && !meets_goal(*world_->goal, plant(), state())) {
+            fault = FlightFault::goal_missed;
+        }
+        if (fault != FlightFault::none || is_end) {
+            end_with(fault);
+        }
+    }
+
+ private:
+    [[nodiscard]] const PlantModel& plant() const noexcept { return world_->model.tick().plant; }
+
+    void begin_leg() {
+        const ReferenceSegment& segment = job_->legs[leg_].segment;
+        const auto write = [&](double(&rows)[3][3][lane_count], const ReferencePoint& point) {
+            for (int axis = 0; axis < 3; ++axis) {
+                rows[0][axis][number_] = point.position[axis];
+                rows[1][axis][number_] = point.velocity[axis];
+                rows[2][axis][number_] = point.acceleration[axis];
+            }
+        };
+        write(lanes_->reference, segment.from());
+        write(lanes_->end, segment.to());
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int power = 0; power < 6; ++power) {
+                lanes_->coefficient[axis][power][number_] = segment.coefficients()[axis][power];
+            }
+        }
+        lanes_->inverse_duration_1_s[number_] = segment.inverse_duration_1_s();
+        lanes_->tick[number_] = 0;
+        lanes_->ticks[number_] = static_cast<double>(segment.ticks());
+        lanes_->length_m[number_] = 0;
+        if (is_judged_leg()) {
+            look_after_every_tick();
+            if (is_judged() && !meets_goal(*world_->goal, plant(), state())) {
+                end_with(FlightFault::goal_missed);
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_judged_leg() const noexcept {
+        return job_->judged_ticks > 0 && leg_ + 1 == job_->legs.size();
+    }
+    [[nodiscard]] bool is_judged() const noexcept {
+        return is_judged_leg() &&
+               static_cast<std::int64_t>(lanes_->tick[number_]) + job_->judged_ticks >= job_->legs.back().segment.ticks();
+    }
+
+    void look_after_every_tick() { lanes_->free_motion_m[number_] = -1; }
+
+    /// Flyable area and collision at the state of now; how far the robot may move until the next look.
+    FlightFault fault_nearby() {
+        const FlightState now = state();
+        if (world_->map != nullptr &&
+            !simulation::all_rotors(world_->model, now, [&](int rotor, double x_m, double z_m) {
+                return world_->map->is_flyable(world_->model.rotor_layer(rotor), x_m, z_m);
+            })) {
+            return FlightFault::flyable_area;
+        }
+        const PlanarPose pose = pose_of(now);
+        const CollisionChecker& collisions = world_->model.collisions();
+        const bool has_to_look_on = is_judged_leg() || world_->rules.measures_clearance;
+        if (has_to_look_on || !find_free_motion(pose)) {
+            look_after_every_tick();
+            if (collisions.is_nearer_than(pose, world_->rules.margin_m)) {
+                return FlightFault::collision;
+            }
+        }
+        if (world_->rules.measures_clearance) {
+            SegmentFlight& flight = job_->legs[leg_].flight;
+            flight.clearance_integral +=
+                world_->model.tick().tick_s * simulation::clearance_density(collisions.clearance_m(pose));
+        }
+        return FlightFault::none;
+    }
+
+    bool find_free_motion(const PlanarPose& pose) {
+        for (int level = std::max(0, level_ - 1); level < no_free_motion; ++level) {
+            if (!world_->model.collisions().is_nearer_than(pose, world_->rules.margin_m + free_motions_m[level])) {
+                level_ = level;
+                const double at[] = {pose.x_m, pose.z_m, pose.pitch_rad, pose.arm_rad};
+                for (int i = 0; i < 4; ++i) {
+                    lanes_->anchor[i][number_] = at[i];
+                }
+                lanes_->free_motion_m[number_] = free_motions_m[level] - clearance_error_m;
+                return true;
+            }
+        }
+        level_ = no_free_motion;
+        return false;
+    }
+
+    void end_with(FlightFault fault) {
+        FlightLeg& leg = job_->legs[leg_];
+        leg.flight.fault = fault;
+        leg.end = state();
+        if (fault == FlightFault::none && ++leg_ < job_->legs.size()) {
+            begin_leg();
+            return;
+        }
+        job_ = nullptr;
+        lanes_->is_active[number_] = 0;
+    }
+
+    [[nodiscard]] FlightState state() const noexcept {
+        FlightState s{};
+        for (int i = 0; i < 4; ++i) {
+            s.plant.q[i] = lanes_->q[i][number_];
+            s.plant.u[i] = lanes_->u[i][number_];
+        }
+        for (int i = 0; i < max_rotors; ++i) {
+            s.plant.thrust_n[i] = lanes_->thrust_n[i][number_];
+        }
+        s.plant.energy_j = lanes_->energy_j[number_];
+        s.controller = {{lanes_->position_integral[0][number_], lanes_->position_integral[1][number_]},
+                        lanes_->pitch_rate_integral[number_],
+                        lanes_->arm_integral[number_],
+                        lanes_->pitch_reference_rad[number_],
+                        lanes_->pitch_reference_rate[number_],
+                        lanes_->rate_reference[number_]};
+        return s;
+    }
+
+    void put_state(const FlightState& s) noexcept {
+        for (int i = 0; i < 4; ++i) {
+            lanes_->q[i][number_] = s.plant.q[i];
+            lanes_->u[i][number_] = s.plant.u[i];
+        }
+        for (int i = 0; i < max_rotors; ++i) {
+            lanes_->thrust_n[i][number_] = s.plant.thrust_n[i];
+        }
+        lanes_->energy_j[number_] = s.plant.energy_j;
+        lanes_->position_integral[0][number_] = s.controller.position_integral[0];
+        lanes_->position_integral[1][number_] = s.controller.position_integral[1];
+        lanes_->pitch_rate_integral[number_] = s.controller.pitch_rate_integral;
+        lanes_->arm_integral[number_] = s.controller.arm_integral;
+        lanes_->pitch_reference_rad[number_] = s.controller.pitch_reference_rad;
+        lanes_->pitch_reference_rate[number_] = s.controller.pitch_reference_rate;
+        lanes_->rate_reference[number_] = s.controller.rate_reference;
+    }
+
+    const World* world_;
+    FlightLanes* lanes_;
+    int number_;
+    FlightJob* job_ = nullptr;
+    std::size_t leg_ = 0;
+    int level_ = 0;  ///< of the free motion found last
+};
+
+}  // namespace
+
+FlightFault FlightJob::fault() const noexcept {
+    for (const FlightLeg& leg : legs) {
+        if (leg.flight.fault != FlightFault::none) {
+            return leg.flight.fault;
+        }
+    }
+    return FlightFault::none;
+}
+
+Instructions best_instructions() noexcept {
+#ifdef DOWNWASH_HAS_AVX2_KERNEL
+    if (__builtin_cpu_supports("avx2") != 0) {
+        return Instructions::avx2;
+    }
+#endif
+    return Instructions::baseline;
+}
+
+void fly_batch(const FlightModel& model, const AeroMap* map, const FlightRules& rules, const Goal* goal,
+               std::span<FlightJob> jobs, Instructions instructions) {
+    const World world{model, map, rules, goal};
+    const FlightKernelModel kernel_model_of_world = kernel_model(world);
+    const simulation::FlightKernel kernel = kernel_for(instructions);
+    FlightLanes lanes{};
+    std::vector<Lane> flights;
+    for (int i = 0; i < lane_count; ++i) {
+        flights.emplace_back(world, lanes, i);
+    }
+    std::size_t next_job = 0;
+    for (;;) {
+        const Lane* busy = nullptr;
+        for (Lane& lane : flights) {
+            while (lane.is_free() && next_job < jobs.size()) {
+                lane.begin(jobs[next_job++]);
+            }
+            busy = lane.is_free() ? busy : &lane;
+        }
+        if (busy == nullptr) {
+            return;
+        }
+        for (Lane& lane : flights) {
+            if (lane.is_free()) {
+                lane.idle_like(*busy);
+            }
+        }
+        kernel(kernel_model_of_world, lanes, most_ticks_per_call);
+        const bool is_interrupted = rules.is_over && rules.is_over();
+        for (Lane& lane : flights) {
+            if (!lane.is_free()) {
+                lane.look(is_interrupted);
+            }
+        }
+    }
+}
+
+}  // namespace downwash

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "downwash/simulation/closed_loop.hpp"
+#include "downwash/simulation/flight.hpp"
+
+// The rules of a planned flight that need nothing but the numbers of one tick, one template over the lane type.
+
+namespace downwash::simulation {
+
+/// FlightRules as plain numbers.
+struct RuleLimits {
+    double x_low_m, x_high_m, z_low_m, z_high_m;
+    double arm_low_rad, arm_high_rad;  ///< infinite without limits
+    double max_tracking_error_m, max_arm_error_rad;
+};
+
+inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {rules.bounds.x_low_m,
+            rules.bounds.x_high_m,
+            rules.bounds.z_low_m,
+            rules.bounds.z_high_m,
+            arm.is_limited ? arm.lower_limit_rad : -infinity,
+            arm.is_limited ? arm.upper_limit_rad : infinity,
+            rules.max_tracking_error_m,
+            rules.max_arm_error_rad};
+}
+
+/// Distance of the vehicle from its reference in (x, z) [m].
+template <class T>
+T tracking_error(const State<T>& state, const controllers::Setpoint<T>& reference) {
+    const T dx = reference.position[0] - state.plant.q[0];
+    const T dz = reference.position[1] - state.plant.q[1];
+    return lane::sqrt(dx * dx + dz * dz);
+}
+
+/// How far beyond stability: positive where a number is not finite, or the vehicle tumbles or runs away.
+template <class T>
+T instability(const State<T>& state, T tracking_error_m) {
+    T sum(0);  // not finite as soon as one number is not
+    for (int i = 0; i < 4; ++i) {
+        sum = sum + lane::abs(state.plant.q[i]) + lane::abs(state.plant.u[i]);
+    }
+    const T excess = lane::max(lane::abs(state.plant.q[2]) - T(unstable_pitch_rad), tracking_error_m - T(unstable_error_m));
+    return lane::select(sum < T(1e4), excess, T(1));
+}
+
+/// The first of the rules unstable, saturation, tracking and bounds that the end of a tick breaks, as the number of its
+/// FlightFault; 0 for none.
+/// @param saturation of the tick   @param state,reference at its end
+template <class T>
+T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
+              const controllers::Setpoint<T>& reference) {
+    const auto number_of = [](FlightFault fault) { return T(static_cast<double>(fault)); };
+    const T* q = state.plant.q;
+    const T error_m = tracking_error(state, reference);
+    const T beyond_bounds =
+        lane::max(lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
+                            lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m))),
+                  lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad)));
+    const T beyond_tracking = lane::max(error_m - T(limits.max_tracking_error_m),
+                                        lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
+    T fault = lane::select(beyond_bounds > T(0), number_of(FlightFault::bounds), T(0));
+    fault = lane::select(beyond_tracking > T(0), number_of(FlightFault::tracking), fault);
+    fault = lane::select(saturation > T(1), number_of(FlightFault::saturation), fault);
+    return lane::select(instability(state, error_m) > T(0), number_of(FlightFault::unstable), fault);
+}
+
+/// Squared path length of one step in the metric of the objective `length` [m2].
+template <class T>
+T squared_step_m2(const PlantModel& plant, const State<T>& from, const State<T>& to) {
+    const T dx = to.plant.q[0] - from.plant.q[0];
+    const T dz = to.plant.q[1] - from.plant.q[1];
+    const T da = T(0.5 * plant.arm_length_m) * (to.plant.q[3] - from.plant.q[3]);
+    return dx * dx + dz * dz + da * da;
+}
+
+}  // namespace downwash::simulation
