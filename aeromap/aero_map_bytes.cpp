@@ -5,7 +5,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
+#include "downwash/grids/factor_grid.hpp"
 
 // A map as bytes: the counts of layers, columns and rows; then of every layer the count of its nodes, the cells, their
 // flyability, the nodes.

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "downwash/aeromap/disc_average.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/aeromap/footprint.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {

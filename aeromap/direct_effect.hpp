@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
-#include "downwash/aeromap/effect_curve.hpp"
 #include "downwash/base/export.hpp"
+#include "downwash/effects/effect_curve.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "downwash/aeromap/effect_curve.hpp"
+#include "downwash/effects/effect_curve.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {

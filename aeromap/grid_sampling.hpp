@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "downwash/aeromap/aero_map.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
+#include "downwash/grids/factor_grid.hpp"
 
 namespace downwash {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "downwash/aeromap/change_bound.hpp"
-#include "downwash/aeromap/effect_table.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {

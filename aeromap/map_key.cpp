@@ -2,12 +2,12 @@
 #include <type_traits>
 #include <variant>
 
-#include "downwash/aeromap/effect_table.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/aeromap/map_cache.hpp"
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/shape_digest.hpp"
 
 // The members are bound by name: who adds one to a shape or a setting has to decide here whether it makes the map.

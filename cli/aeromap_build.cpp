@@ -8,12 +8,12 @@
 #include <thread>
 #include <vector>
 
-#include "downwash/aeromap/factor_grid_file.hpp"
 #include "downwash/aeromap/grid_sampling.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "downwash/aeromap/effect_comparison.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/effect_comparison.hpp"
 
 namespace downwash::cli {
 namespace {

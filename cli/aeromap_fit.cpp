@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/aeromap/effect_fit.hpp"
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
@@ -21,6 +20,7 @@
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/effect_fit.hpp"
 #include "downwash/report/curve_figure.hpp"
 
 namespace downwash::cli {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "downwash/aeromap/factor_grid_file.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
 
 namespace downwash::cli {
 namespace {

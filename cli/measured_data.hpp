@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "downwash/aeromap/measurements.hpp"
-#include "downwash/aeromap/rotor_layout.hpp"
+#include "downwash/effects/measurements.hpp"
+#include "downwash/effects/rotor_layout.hpp"
 
 namespace downwash::cli {
 

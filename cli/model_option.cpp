@@ -8,10 +8,11 @@
 #include <system_error>
 #include <vector>
 
-#include "downwash/aeromap/effect_table.hpp"
+#include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/effect_table.hpp"
 
 namespace downwash::cli {
 namespace {

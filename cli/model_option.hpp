@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/aeromap/effect_curve.hpp"
+#include "downwash/effects/effect_curve.hpp"
 
 namespace downwash::cli {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <memory>
 
-#include "downwash/aeromap/effect_models.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/effect_models.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::cli {

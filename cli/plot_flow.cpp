@@ -3,11 +3,11 @@
 #include <cmath>
 #include <vector>
 
-#include "downwash/aeromap/potential_flow.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/potential_flow.hpp"
 #include "downwash/report/flow_figure.hpp"
 
 namespace downwash::cli {

@@ -6,12 +6,12 @@
 #include <string_view>
 #include <utility>
 
-#include "downwash/aeromap/effect_curve.hpp"
-#include "downwash/aeromap/measurements.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/effect_curve.hpp"
+#include "downwash/effects/measurements.hpp"
 
 namespace downwash::cli {
 namespace {

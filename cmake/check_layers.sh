@@ -11,12 +11,14 @@ layers='
 base:
 scene:       base
 dynamics:    base
-aeromap:     base scene
+effects:     base
+grids:       base scene
+aeromap:     base scene effects grids
 controllers: base dynamics
-simulation:  base scene dynamics aeromap controllers
-planner:     base scene dynamics aeromap controllers simulation
-problems:    base scene dynamics aeromap controllers simulation planner
-report:      base scene dynamics aeromap controllers simulation planner problems
+simulation:  base scene dynamics effects grids aeromap controllers
+planner:     base scene dynamics effects grids aeromap controllers simulation
+problems:    base scene dynamics effects grids aeromap controllers simulation planner
+report:      base scene dynamics effects grids aeromap controllers simulation planner problems
 cli:         *
 bench:       *
 docs:        *

@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "downwash/aeromap/effect_models.hpp"
-#include "downwash/aeromap/effect_table.hpp"
-#include "downwash/aeromap/factor_grid_file.hpp"
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/base/sha256.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
 
 namespace downwash {
 namespace {

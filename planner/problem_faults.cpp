@@ -6,8 +6,8 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/grids/factor_grid.hpp"
 #include "downwash/planner/goal_reach.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/problem_parameters.hpp"

@@ -6,7 +6,7 @@ set -euo pipefail
 downwash=$(realpath "${1:-build/downwash}")
 cd -P "$(dirname "${BASH_SOURCE[0]}")"
 bridge=../../problems/bridge_inspection.yaml
-data=../../aeromap/measurements/surface_effect_measurements.csv
+data=../../effects/measurements/surface_effect_measurements.csv
 
 plot() { # FILE arguments...
     local file=$1

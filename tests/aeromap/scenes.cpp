@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "downwash/aeromap/effect_models.hpp"
+#include "downwash/effects/effect_models.hpp"
 
 namespace downwash::test {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "downwash/aeromap/aero_map.hpp"
-#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;

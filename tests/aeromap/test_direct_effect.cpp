@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/aeromap/effect_models.hpp"
-#include "downwash/aeromap/effect_table.hpp"
-#include "downwash/aeromap/factor_grid.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "scenes.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/aeromap/effect_models.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_models.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;

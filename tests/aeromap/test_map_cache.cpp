@@ -4,11 +4,11 @@
 #include <fstream>
 #include <map>
 
+#include "../grids/grids.hpp"
 #include "../support/scratch_folder.hpp"
-#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/aeromap/map_cache.hpp"
 #include "downwash/base/files.hpp"
-#include "grids.hpp"
+#include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;

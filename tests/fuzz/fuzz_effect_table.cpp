@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "downwash/aeromap/effect_table.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_table.hpp"
 
 /// Whatever is read as a table gives factors within its range at every distance.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

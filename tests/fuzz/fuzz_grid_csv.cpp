@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <optional>
 
-#include "../aeromap/grids.hpp"
-#include "downwash/aeromap/factor_grid_file.hpp"
+#include "../grids/grids.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
 
 /// Whatever is read as a grid can be written and read again, the same to the bit.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

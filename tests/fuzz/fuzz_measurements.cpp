@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "downwash/aeromap/effect_comparison.hpp"
-#include "downwash/aeromap/measurements.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_comparison.hpp"
+#include "downwash/effects/measurements.hpp"
 
 /// Whatever is read as measurements can be compared and fitted, or is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "downwash/aeromap/effect_table.hpp"
-#include "downwash/aeromap/factor_grid_file.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"

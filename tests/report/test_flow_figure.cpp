@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/aeromap/potential_flow.hpp"
+#include "downwash/effects/potential_flow.hpp"
 #include "downwash/report/flow_figure.hpp"
 #include "pictures.hpp"
 

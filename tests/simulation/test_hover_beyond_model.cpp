@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "../support/random.hpp"
-#include "downwash/aeromap/effect_table.hpp"
+#include "downwash/effects/effect_table.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;

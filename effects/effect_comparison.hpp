@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/effects/measurements.hpp"
+
+namespace downwash {
+
+/// How a model errs over a band of distances.
+struct ErrorBand {
+    double z_low = 0, z_high = 0;  ///< z/R in [z_low, z_high); the last band is open, z_high infinite
+    std::size_t points = 0;
+    /// Mean of K minus thrust ratio; 0 without points. Above zero the model overstates the effect: a plan that believes
+    /// it is careful. Below zero it understates the effect: such a plan is optimistic.
+    double mean_error = 0;
+};
+
+/// A model beside measurements, as it is flown: clamped to [1, max_factor].
+struct ModelScore {
+    SurfaceEffect effect;
+    bool is_refitted = false;  ///< false: with the parameters of its source
+    bool is_at_bound = false;  ///< refitted, and the data want a parameter outside the range that makes sense
+    double rmse = 0;
+    std::vector<ErrorBand> bands;
+};
+
+/// All models of one surface beside the measurements of one source.
+struct DataSetComparison {
+    std::string source, surface;  ///< empty where the file has no such column
+    std::size_t points = 0;
+    double z_low = 0, z_high = 0;  ///< nearest and farthest z/R
+    std::vector<ModelScore> scores;
+};
+
+/// Compares every model made for a surface with the measurements of each source and surface: with the parameters of the
+/// model's source and, where the measurements suffice, refitted to them (fit_effect; the formula is fitted unclamped).
+/// @param neighbours of the vehicle measured; for one rotor alone the multirotor models are left out
+/// @param max_factor >= 1
+/// @throws InputError when there are more than 100 pairs of source and surface
+[[nodiscard]] DOWNWASH_EXPORT std::vector<DataSetComparison> compare_effects(const Measurements& measurements,
+                                                                             const RotorNeighbours& neighbours = {},
+                                                                             double max_factor = 2);
+
+}  // namespace downwash

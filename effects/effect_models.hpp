@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+#include "downwash/effects/rotor_layout.hpp"
+#include "downwash/effects/surface_effect.hpp"
+
+namespace downwash {
+
+/// A number of a model that may be changed or fitted.
+struct ModelParameter {
+    std::string_view name;  ///< as in a problem file
+    double source_value;    ///< as the model's source gives it
+    double low, high;       ///< range in which it makes sense, both ends excluded when `is_open`
+    bool is_open;           ///< `low` itself makes no sense
+    std::string_view description;
+};
+
+/// What a person should know of a model before using it.
+struct EffectModelInfo {
+    EffectModel model;
+    std::string_view name;      ///< as in a problem file, for example "cheeseman-bennett"
+    std::string_view surface;   ///< what it was made for: "ground", "ceiling" or "any"
+    std::string_view source;    ///< where the formula comes from
+    std::string_view formula;   ///< for people, in plain text; K over zeta = z/R
+    std::string_view validity;  ///< range of z/R in which it was shown to hold
+    std::span<const ModelParameter> parameters;
+};
+
+/// Every model there is, in the order of EffectModel.
+[[nodiscard]] DOWNWASH_EXPORT std::span<const EffectModelInfo> effect_models();
+
+[[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo& info(EffectModel model);
+
+/// The model of that name; nullptr when there is none.
+[[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo* find_effect_model(std::string_view name);
+
+/// K of a wide flat surface at distance `z_over_r` >= 0 as the formula or table says, not clamped; infinite from a
+/// formula's pole downwards. The multirotor models see the other rotors in `neighbours`; `multirotor_body` gives the
+/// whole vehicle's K (thesis (2.17)). @pre the effect's table is there if the model is `table`
+[[nodiscard]] DOWNWASH_EXPORT double formula_factor(const SurfaceEffect& effect, double z_over_r,
+                                                    const RotorNeighbours& neighbours = {});
+
+}  // namespace downwash

@@ -1,0 +1,80 @@
+#include "downwash/effects/measurements.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "downwash/effects/csv_table.hpp"
+
+namespace downwash {
+namespace {
+
+std::size_t required(const CsvTable& csv, const std::string& column, LineFaults& faults) {
+    const auto found = csv.find(column);
+    if (!found) {
+        faults.add(csv.header_line, "has no column " + column + "; expected z_over_r and thrust_ratio");
+    }
+    return found.value_or(0);
+}
+
+}  // namespace
+
+std::optional<std::size_t> Measurements::index(std::string_view column) const {
+    const auto found = std::find(columns.begin(), columns.end(), column);
+    return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
+}
+
+std::vector<std::string> Measurements::entries(std::string_view column) const {
+    std::vector<std::string> found;
+    if (const auto cell = index(column)) {
+        std::set<std::string_view> seen;
+        for (const Measurement& point : points) {
+            if (seen.insert(point.cells[*cell]).second) {
+                found.push_back(point.cells[*cell]);
+            }
+        }
+    }
+    return found;
+}
+
+Measurements Measurements::with(std::string_view column, std::string_view entry) const {
+    Measurements chosen{columns, {}};
+    if (const auto cell = index(column)) {
+        for (const Measurement& point : points) {
+            if (point.cells[*cell] == entry) {
+                chosen.points.push_back(point);
+            }
+        }
+    }
+    return chosen;
+}
+
+Measurements parse_measurements(std::string_view text, std::string_view name) {
+    LineFaults faults{std::string(name)};
+    const CsvTable csv = parse_csv(text, faults);
+    const std::size_t z = required(csv, "z_over_r", faults);
+    const std::size_t ratio = required(csv, "thrust_ratio", faults);
+    faults.throw_any();
+    const auto sigma = csv.find("sigma");
+    Measurements measurements{csv.columns, {}};
+    for (const CsvTable::Row& row : csv.rows) {
+        Measurement point{0, 0, std::nullopt, row.line, row.cells};
+        point.z_over_r = number_in(csv, row, z, 1e-6, 1000, faults).value_or(0);
+        point.thrust_ratio = number_in(csv, row, ratio, 0, 100, faults).value_or(0);
+        if (sigma && !row.cells[*sigma].empty()) {
+            point.sigma = number_in(csv, row, *sigma, 1e-9, 100, faults);
+        }
+        measurements.points.push_back(std::move(point));
+    }
+    if (csv.rows.empty()) {
+        faults.add(csv.header_line, "no rows follow; expected measurements");
+    }
+    faults.throw_any();
+    return measurements;
+}
+
+Measurements read_measurements(const std::filesystem::path& file) {
+    return parse_measurements(read_csv_text(file), file.string());
+}
+
+}  // namespace downwash

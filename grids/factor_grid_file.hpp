@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+#include "downwash/grids/factor_grid.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+
+namespace downwash {
+
+/// What a file of a grid does not say itself.
+struct GridReading {
+    PlaneOfMotion plane;           ///< of the plane coordinates x_m, z_m in a CSV file without a frame of its own
+    std::string array = "factor";  ///< the array or column that holds K
+};
+
+/// Reads a grid of thrust factors: VTK ImageData (what begins with '<') or CSV; docs/grids.md describes both.
+/// @throws InputError that names the file and the line and column or byte, what was found and what was expected
+[[nodiscard]] DOWNWASH_EXPORT FactorGrid read_factor_grid(const std::filesystem::path& file,
+                                                          const GridReading& reading = {});
+
+/// The same from the bytes of a file. @param name of the file in messages
+[[nodiscard]] DOWNWASH_EXPORT FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name,
+                                                           const GridReading& reading = {});
+
+/// Writes a grid as VTK ImageData (.vti) or CSV (.csv), whole or not at all. Reading it gives the same grid to the bit.
+/// @throws InputError when the file ends otherwise or cannot be written
+DOWNWASH_EXPORT void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid);
+
+/// Whether write_factor_grid would get as far as its first byte. @throws InputError when it would not
+DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
+
+/// What write_factor_grid writes.
+[[nodiscard]] DOWNWASH_EXPORT std::string vti_text(const FactorGrid& grid);
+[[nodiscard]] DOWNWASH_EXPORT std::string grid_csv_text(const FactorGrid& grid);
+
+/// Larger files are refused unread [bytes].
+inline constexpr std::size_t largest_grid_file = std::size_t{1} << 31U;
+
+}  // namespace downwash

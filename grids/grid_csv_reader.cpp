@@ -1,0 +1,367 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/grids/grid_formats.hpp"
+
+// Comment lines carry the frame and the provenance; then a line of column names and a row a node, in any order.
+
+namespace downwash {
+namespace {
+
+/// Larger grids belong into .vti files.
+constexpr std::size_t most_rows = std::size_t{1} << 24U;
+constexpr std::size_t most_faults = 20;
+constexpr std::size_t most_columns = 256;
+/// How far a coordinate may be off its node, in steps.
+constexpr double spacing_slack = 1e-6;
+
+enum Column : std::size_t { x, lateral, y, z, first_field };
+constexpr std::array<std::string_view, 8> column_names{"x_m",    "lateral_m", "y_m",     "z_m",
+                                                       "factor", "ground",    "ceiling", "flyable"};
+
+struct GridCsv {
+    std::array<std::vector<double>, column_names.size()> columns;  ///< empty where the file has none
+    std::vector<std::uint32_t> lines;                              ///< of each row
+    std::optional<Vector3> frame_origin_m;
+    std::optional<double> frame_heading_rad;
+    Provenance provenance;
+
+    [[nodiscard]] bool has(std::size_t column) const { return !columns[column].empty(); }
+};
+
+/// Collects what is wrong, by line.
+class Faults {
+ public:
+    explicit Faults(std::string name) : name_(std::move(name)) {}
+
+    void add(std::size_t line, std::size_t column, const std::string& message) {
+        found_.push_back({"", name_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message});
+        if (found_.size() == most_faults) {
+            throw InputError(found_);
+        }
+    }
+    void add(const std::string& message) { found_.push_back({"", name_ + ": " + message}); }
+
+    void throw_if_any() const {
+        if (!found_.empty()) {
+            throw InputError(found_);
+        }
+    }
+
+ private:
+    std::string name_;
+    std::vector<Fault> found_;
+};
+
+std::string text_number(std::string_view cell) {
+    return "'" + excerpt(cell) + "'";
+}
+
+/// Reads lines into columns.
+class CsvReader {
+ public:
+    CsvReader(std::string_view text, Faults& faults, std::string_view factor_column) : rest_(text), faults_(faults) {
+        names_ = column_names;
+        names_[first_field] = factor_column;
+    }
+
+    GridCsv read() {
+        while (!rest_.empty()) {
+            ++line_;
+            const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+            const std::string_view line = rest_.substr(0, end);
+            rest_.remove_prefix(std::min(end + 1, rest_.size()));
+            const std::string_view content = trimmed(line);
+            if (content.empty()) {
+                continue;
+            }
+            if (content.starts_with('#')) {
+                read_comment(content.substr(1));
+            } else if (roles_.empty()) {
+                read_header(line);
+                faults_.throw_if_any();
+            } else {
+                read_row(line);
+            }
+        }
+        if (roles_.empty()) {
+            faults_.add("holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
+        } else if (csv_.lines.empty()) {
+            faults_.add("holds no row");
+        }
+        faults_.throw_if_any();
+        return std::move(csv_);
+    }
+
+ private:
+    void read_comment(std::string_view text) {
+        auto [key, value] = provenance_entry(text);
+        if (key == "frame_origin_m") {
+            const auto numbers = numbers_in(value, 3);
+            if (numbers.size() == 3) {
+                csv_.frame_origin_m = {numbers[0], numbers[1], numbers[2]};
+            }
+        } else if (key == "frame_heading_rad") {
+            const auto numbers = numbers_in(value, 1);
+            if (numbers.size() == 1) {
+                csv_.frame_heading_rad = numbers[0];
+            }
+        } else if (!value.empty() || key != "comment") {
+            csv_.provenance.emplace_back(std::move(key), std::move(value));
+        }
+    }
+
+    /// Exactly so many finite numbers, or a fault and none.
+    std::vector<double> numbers_in(std::string_view text, std::size_t count) {
+        std::vector<double> numbers;
+        std::string_view rest = trimmed(text);
+        while (!rest.empty() && numbers.size() <= count) {
+            const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+            const auto number = number_of(rest.substr(0, end));
+            if (!number || !std::isfinite(*number)) {
+                break;
+            }
+            numbers.push_back(*number);
+            rest = trimmed(rest.substr(end));
+        }
+        if (!rest.empty() || numbers.size() != count) {
+            faults_.add(
+                line_, 1,
+                text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
+            return {};
+        }
+        return numbers;
+    }
+
+    /// Calls take(cell, column in the line) for every cell.
+    template <class Take>
+    static void for_each_cell(std::string_view line, const Take& take) {
+        for (std::size_t begin = 0; begin <= line.size();) {
+            const std::size_t end = std::min(line.find(',', begin), line.size());
+            take(trimmed(line.substr(begin, end - begin)), begin + 1);
+            begin = end + 1;
+        }
+    }
+
+    void read_header(std::string_view line) {
+        for_each_cell(line, [&](std::string_view cell, std::size_t column) {
+            const auto* name = std::find(names_.begin(), names_.end(), cell);
+            const auto role = static_cast<std::size_t>(name - names_.begin());
+            if (role < names_.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
+                faults_.add(line_, column, "column " + text_number(cell) + " is there twice");
+            }
+            roles_.push_back(role);
+        });
+        const auto has = [&](std::size_t role) {
+            return std::find(roles_.begin(), roles_.end(), role) != roles_.end();
+        };
+        for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{Column::z}, std::size_t{first_field}}) {
+            if (!has(needed)) {
+                faults_.add(line_, 1,
+                            "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line) +
+                                "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart by commas");
+            }
+        }
+        if (has(lateral) && has(y)) {
+            faults_.add(line_, 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
+        }
+        if (roles_.size() > most_columns) {
+            faults_.add(line_, 1, "has more than 256 columns");
+        }
+    }
+
+    void read_row(std::string_view line) {
+        std::size_t index = 0;
+        for_each_cell(line, [&](std::string_view cell, std::size_t column) {
+            if (index < roles_.size() && roles_[index] < names_.size()) {
+                read_cell(cell, column, roles_[index]);
+            }
+            ++index;
+        });
+        if (index != roles_.size()) {
+            faults_.add(line_, 1,
+                        "has " + std::to_string(index) + " cells: expected " + std::to_string(roles_.size()) +
+                            " as in the line of column names");
+        }
+        csv_.lines.push_back(line_);
+        if (csv_.lines.size() > most_rows) {
+            faults_.add(line_, 1, "more than 2^24 rows: expected a larger grid as .vti");
+            faults_.throw_if_any();
+        }
+    }
+
+    void read_cell(std::string_view cell, std::size_t column, std::size_t role) {
+        const auto number = number_of(cell);
+        const bool is_coordinate = role < first_field;
+        const double least = is_coordinate ? -1e6 : 0;
+        const double most = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
+        if (!number) {
+            faults_.add(line_, column, std::string(names_[role]) + " is " + text_number(cell) + ": expected a number");
+        } else if (!(*number >= least && *number <= most)) {
+            faults_.add(line_, column,
+                        std::string(names_[role]) + " is " + text_number(cell) + ": expected a number from " +
+                            to_text(least) + " to " + to_text(most));
+        }
+        csv_.columns[role].push_back(number.value_or(0));
+    }
+
+    std::string_view rest_;
+    Faults& faults_;
+    std::array<std::string_view, column_names.size()> names_;
+    std::vector<std::size_t> roles_;  ///< of each column; past the names for columns that are not ours
+    std::uint32_t line_ = 0;
+    GridCsv csv_;
+};
+
+/// The distinct values of a column in rising order; what differs by rounding only counts once.
+std::vector<double> distinct_values(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const double slack = 1e-9 * (values.back() - values.front());
+    std::vector<double> distinct;
+    for (const double value : values) {
+        if (distinct.empty() || value - distinct.back() > slack) {
+            distinct.push_back(value);
+        }
+    }
+    return distinct;
+}
+
+/// Puts rows to their nodes.
+class NodeFinder {
+ public:
+    NodeFinder(const GridCsv& csv, Faults& faults) : csv_(csv), faults_(faults) {}
+
+    void fill(FactorGridParts& parts) {
+        parts.x = axis(Column::x);
+        parts.z = axis(Column::z);
+        if (csv_.has(y)) {
+            parts.y = axis(y);
+        }
+        if (csv_.has(lateral)) {
+            parts.lateral_offsets_m = distinct_values(csv_.columns[lateral]);
+        }
+        faults_.throw_if_any();
+        const std::size_t layers = std::max<std::size_t>(1, parts.lateral_offsets_m.size());
+        const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
+                             static_cast<double>(parts.z.count) * static_cast<double>(layers);
+        if (nodes > static_cast<double>(most_rows)) {
+            faults_.add("has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
+                        " combinations of its coordinates: expected one each");
+            faults_.throw_if_any();
+        }
+        std::vector<std::uint32_t> row_of(static_cast<std::size_t>(nodes), no_row);
+        for (std::size_t row = 0; row < csv_.lines.size(); ++row) {
+            std::uint32_t& place = row_of[node_of(parts, row)];
+            if (place != no_row) {
+                faults_.add(csv_.lines[row], 1, "repeats the position of line " + std::to_string(csv_.lines[place]));
+            }
+            place = static_cast<std::uint32_t>(row);
+        }
+        faults_.throw_if_any();
+        require_whole(parts, row_of);
+        for (std::size_t column = first_field; column < column_names.size(); ++column) {
+            if (csv_.has(column)) {
+                GridField field{std::string(column_names[column]), {}};
+                field.values.reserve(row_of.size());
+                for (const std::uint32_t row : row_of) {
+                    field.values.push_back(csv_.columns[column][row]);
+                }
+                parts.fields.push_back(std::move(field));
+            }
+        }
+    }
+
+ private:
+    static constexpr std::uint32_t no_row = UINT32_MAX;
+
+    GridAxis axis(std::size_t column) {
+        const std::vector<double> values = distinct_values(csv_.columns[column]);
+        if (values.size() < 2) {
+            faults_.add("column " + std::string(column_names[column]) + " holds " + to_text(values[0]) +
+                        " only: expected two or more coordinates" +
+                        (column == y ? ", or no such column for a planar grid" : ""));
+        }
+        return {values.front(), values.back(), values.size()};
+    }
+
+    /// Index along an axis.
+    std::size_t index_of(const GridAxis& axis, std::size_t column, std::size_t row) {
+        const double value = csv_.columns[column][row];
+        const double steps = std::round((value - axis.low_m) / axis.step_m());
+        const auto index = std::min(static_cast<std::size_t>(std::max(0.0, steps)), axis.count - 1);
+        if (!(std::abs(value - axis.at(index)) <= spacing_slack * axis.step_m())) {
+            faults_.add(csv_.lines[row], 1,
+                        std::string(column_names[column]) + " is " + to_text(value) + ": expected " +
+                            to_text(axis.at(index), 9) + ", as the " + std::to_string(axis.count) +
+                            " coordinates from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) + " stand " +
+                            to_text(axis.step_m(), 9) + " apart if they stand equally");
+        }
+        return index;
+    }
+
+    std::size_t node_of(const FactorGridParts& parts, std::size_t row) {
+        std::size_t layer = 0;
+        if (csv_.has(lateral)) {
+            const std::vector<double>& offsets_m = parts.lateral_offsets_m;
+            const auto above = std::upper_bound(offsets_m.begin(), offsets_m.end(), csv_.columns[lateral][row]);
+            layer = static_cast<std::size_t>(above - offsets_m.begin()) - 1;
+        }
+        const std::size_t i = index_of(parts.x, Column::x, row);
+        const std::size_t j = csv_.has(y) ? index_of(parts.y, y, row) : 0;
+        const std::size_t k = index_of(parts.z, Column::z, row);
+        return ((layer * parts.z.count + k) * parts.y.count + j) * parts.x.count + i;
+    }
+
+    void require_whole(const FactorGridParts& parts, const std::vector<std::uint32_t>& row_of) {
+        const auto hole = std::find(row_of.begin(), row_of.end(), no_row);
+        if (hole == row_of.end()) {
+            return;
+        }
+        auto rest = static_cast<std::size_t>(hole - row_of.begin());
+        const auto take = [&rest](std::size_t count) {
+            const std::size_t index = rest % count;
+            rest /= count;
+            return index;
+        };
+        std::string place = "x_m " + to_text(parts.x.at(take(parts.x.count)));
+        const std::size_t j = take(parts.y.count);
+        place += csv_.has(y) ? ", y_m " + to_text(parts.y.at(j)) : "";
+        place += ", z_m " + to_text(parts.z.at(take(parts.z.count)));
+        place += csv_.has(lateral) ? ", lateral_m " + to_text(parts.lateral_offsets_m[rest]) : "";
+        faults_.add("no row stands at " + place + ", the first of " +
+                    std::to_string(std::count(row_of.begin(), row_of.end(), no_row)) +
+                    " holes: expected every combination of the coordinates");
+        faults_.throw_if_any();
+    }
+
+    const GridCsv& csv_;
+    Faults& faults_;
+};
+
+}  // namespace
+
+FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const GridReading& reading) {
+    Faults faults(name);
+    GridCsv csv = CsvReader(bytes, faults, reading.array).read();
+    FactorGridParts parts;
+    NodeFinder(csv, faults).fill(parts);
+    parts.provenance = std::move(csv.provenance);
+    const PlaneOfMotion otherwise = csv.has(y) ? PlaneOfMotion() : reading.plane;
+    parts.frame = PlaneOfMotion(csv.frame_origin_m.value_or(otherwise.origin_m()),
+                                csv.frame_heading_rad.value_or(otherwise.heading_rad()));
+    try {
+        return FactorGrid(std::move(parts));
+    } catch (const InputError& error) {
+        for (const Fault& fault : error.faults()) {
+            faults.add(fault.key + (fault.key.empty() ? "" : " ") + fault.message);
+        }
+    }
+    faults.throw_if_any();
+    throw std::logic_error("a refused grid has a fault");
+}
+
+}  // namespace downwash

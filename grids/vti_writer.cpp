@@ -1,0 +1,118 @@
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "downwash/base/text.hpp"
+#include "downwash/grids/base64.hpp"
+#include "downwash/grids/grid_formats.hpp"
+
+// VTK's XML format for ImageData: a head in XML that names the arrays, and their numbers behind it in base64.
+
+namespace downwash {
+namespace {
+
+void append_little_endian(std::string& bytes, std::uint64_t word) {
+    for (int i = 0; i < 8; ++i) {
+        bytes += static_cast<char>(word >> 8 * i & 255U);
+    }
+}
+
+/// The count of bytes, then the numbers.
+std::string array_data(const double* values, std::size_t count) {
+    std::string bytes;
+    bytes.reserve((count + 1) * sizeof(double));
+    append_little_endian(bytes, count * sizeof(double));
+    for (std::size_t i = 0; i < count; ++i) {
+        append_little_endian(bytes, std::bit_cast<std::uint64_t>(values[i]));
+    }
+    return base64_text(bytes);
+}
+
+std::string joined(std::initializer_list<double> numbers) {
+    std::string text;
+    for (const double number : numbers) {
+        text += (text.empty() ? "" : " ") + to_text(number);
+    }
+    return text;
+}
+
+std::string extent_of(const FactorGrid& grid) {
+    return "0 " + std::to_string(grid.x().count - 1) + " 0 " + std::to_string(grid.y().count - 1) + " 0 " +
+           std::to_string(grid.z().count - 1);
+}
+
+std::string field_data(std::string_view name, std::initializer_list<double> numbers) {
+    return "      <DataArray type=\"Float64\" Name=\"" + std::string(name) + "\" NumberOfTuples=\"" +
+           std::to_string(numbers.size()) + "\" format=\"ascii\">" + joined(numbers) + "</DataArray>\n";
+}
+
+std::string lateral_offsets(const FactorGrid& grid) {
+    if (grid.lateral_offsets_m().empty()) {
+        return {};
+    }
+    std::string numbers;
+    for (const double offset_m : grid.lateral_offsets_m()) {
+        numbers += (numbers.empty() ? "" : " ") + to_text(offset_m);
+    }
+    return "      <DataArray type=\"Float64\" Name=\"lateral_offsets_m\" NumberOfTuples=\"" +
+           std::to_string(grid.lateral_offsets_m().size()) + "\" format=\"ascii\">" + numbers + "</DataArray>\n";
+}
+
+/// VTK writes the letters of texts as numbers, each text closed by a 0.
+std::string provenance(const FactorGrid& grid) {
+    if (grid.provenance().empty()) {
+        return {};
+    }
+    std::string codes;
+    for (const auto& [key, value] : grid.provenance()) {
+        for (const char letter : provenance_line(key, value)) {
+            codes += std::to_string(static_cast<unsigned char>(letter));
+            codes += ' ';
+        }
+        codes += "0\n";
+    }
+    return "      <Array type=\"String\" Name=\"provenance\" NumberOfTuples=\"" +
+           std::to_string(grid.provenance().size()) + "\" format=\"ascii\">\n" + codes + "      </Array>\n";
+}
+
+}  // namespace
+
+std::string vti_text(const FactorGrid& grid) {
+    const PlaneOfMotion& frame = grid.frame();
+    const Vector3 first_m = frame.to_world(grid.x().low_m, grid.y().low_m, grid.z().low_m);
+    // A flat image still has a thickness.
+    const double y_step_m = grid.is_planar() ? grid.x().step_m() : grid.y().step_m();
+    const double c = frame.cos_heading();
+    const double s = frame.sin_heading();
+
+    std::string head =
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "  <ImageData WholeExtent=\"" +
+        extent_of(grid) + "\" Origin=\"" + joined({first_m[0], first_m[1], first_m[2]}) + "\" Spacing=\"" +
+        joined({grid.x().step_m(), y_step_m, grid.z().step_m()}) + "\" Direction=\"" +
+        joined({c, -s, 0, s, c, 0, 0, 0, 1}) + "\">\n    <FieldData>\n";
+    const Vector3& origin_m = frame.origin_m();
+    head += field_data("frame_origin_m", {origin_m[0], origin_m[1], origin_m[2]});
+    head += field_data("frame_heading_rad", {frame.heading_rad()});
+    head += field_data("frame_low_m", {grid.x().low_m, grid.y().low_m, grid.z().low_m});
+    head += field_data("frame_high_m", {grid.x().high_m, grid.y().high_m, grid.z().high_m});
+    head += lateral_offsets(grid) + provenance(grid) + "    </FieldData>\n";
+    head += "    <Piece Extent=\"" + extent_of(grid) + "\">\n      <PointData Scalars=\"" +
+            (grid.lateral_offsets_m().empty() ? "factor" : "factor_1") + "\">\n";
+
+    std::string data;
+    const std::size_t layer_nodes = grid.nodes() / grid.layers();
+    for (const GridField& field : grid.fields()) {
+        for (std::size_t layer = 0; layer < grid.layers(); ++layer) {
+            const std::string number = grid.lateral_offsets_m().empty() ? "" : "_" + std::to_string(layer + 1);
+            head += "        <DataArray type=\"Float64\" Name=\"" + field.name + number +
+                    "\" format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
+            data += array_data(field.values.data() + layer * layer_nodes, layer_nodes);
+        }
+    }
+    head += "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"base64\">\n_";
+    return head + data + "\n  </AppendedData>\n</VTKFile>\n";
+}
+
+}  // namespace downwash

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "../support/scratch_folder.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/base/files.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
+#include "grids.hpp"
+
+using namespace downwash;
+
+namespace {
+
+std::string fault_of(const std::string& text) {
+    try {
+        static_cast<void>(parse_factor_grid(text, "g.csv"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+}  // namespace
+
+TEST_CASE("a measured grid is read whatever the order of its rows and columns") {
+    const FactorGrid grid = parse_factor_grid(
+        "# measured: in the hangar\n"
+        "#\n"
+        "# a remark\n"
+        "factor, z_m, rpm, x_m\r\n"
+        "1.4, 1.5, 900, 0.5\r\n"
+        "1.1, 1, 900, 0\r\n"
+        "\r\n"
+        "1.2, 1, 900, 0.5\r\n"
+        "1.3, 1.5, , 0\r\n",
+        "g.csv");
+    CHECK(grid.is_planar());
+    CHECK(grid.x() == GridAxis{0, 0.5, 2});
+    CHECK(grid.z() == GridAxis{1, 1.5, 2});
+    CHECK(*grid.field("factor") == std::vector<double>{1.1, 1.2, 1.3, 1.4});
+    CHECK(grid.provenance() == Provenance{{"measured", "in the hangar"}, {"comment", "a remark"}});
+    CHECK(grid.factor({0.25, 7, 1}) == Approx(1.15));
+}
+
+TEST_CASE("plane coordinates belong to the plane of the reader unless the file names its own") {
+    const std::string rows = "x_m,z_m,factor\n0,0,1\n1,0,2\n0,1,1\n1,1,2\n";
+    GridReading reading;
+    reading.plane = PlaneOfMotion({100, 0, 0}, 0);
+    CHECK(parse_factor_grid(rows, "g.csv", reading).contains({100.5, 0, 0.5}));
+    const FactorGrid own =
+        parse_factor_grid("# frame_origin_m: 0 50 0\n# frame_heading_rad: 0\n" + rows, "g.csv", reading);
+    CHECK(own.contains({0.5, 50, 0.5}));
+    CHECK(own.provenance().empty());
+    // World coordinates need no plane.
+    const FactorGrid volume = parse_factor_grid(
+        "x_m,y_m,z_m,factor\n0,0,0,1\n1,0,0,2\n0,1,0,1\n1,1,0,2\n0,0,1,1\n1,0,1,2\n0,1,1,1\n1,1,1,2\n", "g.csv",
+        reading);
+    CHECK(volume.factor({0.5, 0.5, 0.5}) == 1.5);
+}
+
+TEST_CASE("another column can be asked for") {
+    GridReading reading;
+    reading.array = "thrust_ratio";
+    const FactorGrid grid =
+        parse_factor_grid("x_m,z_m,factor,thrust_ratio\n0,0,9,1\n1,0,9,2\n0,1,9,1\n1,1,9,2\n", "g.csv", reading);
+    CHECK(*grid.field("factor") == std::vector<double>{1, 2, 1, 2});
+}
+
+TEST_CASE("a grid survives CSV to the bit, and its text to the byte") {
+    test::Random random(11);
+    for (int i = 0; i < 200; ++i) {
+        const FactorGrid grid = test::any_grid(random);
+        const std::string text = grid_csv_text(grid);
+        const FactorGrid read = parse_factor_grid(text, "g.csv");
+        REQUIRE(test::is_same(read, grid));
+        REQUIRE(grid_csv_text(read) == text);
+    }
+}
+
+TEST_CASE("every fault of a CSV grid is told with its line") {
+    const std::string head = "x_m,z_m,factor\n";
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"", "g.csv: holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor"},
+        {"# only this\n", "g.csv: holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor"},
+        {head, "g.csv: holds no row"},
+        {"x_m;z_m;factor\n0;0;1\n",
+         "g.csv:1:1: column x_m is missing in 'x_m;z_m;factor': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart "
+         "by commas\n"
+         "g.csv:1:1: column z_m is missing in 'x_m;z_m;factor': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart "
+         "by commas\n"
+         "g.csv:1:1: column factor is missing in 'x_m;z_m;factor': expected x_m,z_m,factor or x_m,y_m,z_m,factor, "
+         "apart by commas"},
+        {"x_m,z_m,factor,x_m\n", "g.csv:1:16: column 'x_m' is there twice"},
+        {"x_m,y_m,lateral_m,z_m,factor\n",
+         "g.csv:1:1: expected lateral_m (layers beside the plane) or y_m (a volume), not both"},
+        {head + "0,0,1\n1,0,nan\n0,one,1\n1,1e7,-1\n",
+         "g.csv:3:5: factor is 'nan': expected a number from 0 to 100\n"
+         "g.csv:4:3: z_m is 'one': expected a number\n"
+         "g.csv:5:3: z_m is '1e7': expected a number from -1000000 to 1000000\n"
+         "g.csv:5:7: factor is '-1': expected a number from 0 to 100"},
+        {head + "0,0\n", "g.csv:2:1: has 2 cells: expected 3 as in the line of column names"},
+        {head + "0,0,1,\n", "g.csv:2:1: has 4 cells: expected 3 as in the line of column names"},
+        {head + "0,0,1\n1,0,1\n0,1,1\n1,1,1\n1,0,2\n", "g.csv:6:1: repeats the position of line 3"},
+        {head + "0,0,1\n1,0,1\n0,1,1\n",
+         "g.csv: no row stands at x_m 1, z_m 1, the first of 1 holes: expected every combination of the coordinates"},
+        {head + "0,0,1\n0,1,1\n", "g.csv: column x_m holds 0 only: expected two or more coordinates"},
+        {"x_m,y_m,z_m,factor\n0,3,0,1\n1,3,0,1\n0,3,1,1\n1,3,1,1\n",
+         "g.csv: column y_m holds 3 only: expected two or more coordinates, or no such column for a planar grid"},
+        {head + "0,0,1\n0.1,0,1\n0.21,0,1\n0.3,0,1\n0,1,1\n0.1,1,1\n0.2,1,1\n0.3,1,1\n",
+         "g.csv:3:1: x_m is 0.1: expected 0.075, as the 5 coordinates from 0 to 0.3 stand 0.075 apart if they stand "
+         "equally\n"
+         "g.csv:4:1: x_m is 0.21: expected 0.225, as the 5 coordinates from 0 to 0.3 stand 0.075 apart if they stand "
+         "equally\n"
+         "g.csv:7:1: x_m is 0.1: expected 0.075, as the 5 coordinates from 0 to 0.3 stand 0.075 apart if they stand "
+         "equally\n"
+         "g.csv:8:1: x_m is 0.2: expected 0.225, as the 5 coordinates from 0 to 0.3 stand 0.075 apart if they stand "
+         "equally"},
+        {"# frame_origin_m: 1 2\n" + head, "g.csv:1:1: '1 2': expected 3 finite numbers"},
+        {"# frame_heading_rad: inf\n" + head, "g.csv:1:1: 'inf': expected 1 finite number"},
+    };
+    for (const auto& [text, message] : cases) {
+        CHECK(fault_of(text).substr(0, message.size()) == message);
+    }
+    CHECK(fault_of(head + "0,0,1\n1,0,1\n0,1,1\n1,1,1\n") == "none");
+}
+
+TEST_CASE("coordinates may be off their nodes by a millionth of a step, not more") {
+    const auto with_middle = [](const std::string& x) {
+        return "x_m,z_m,factor\n0,0,1\n" + x + ",0,1\n2,0,1\n0,1,1\n" + x + ",1,1\n2,1,1\n";
+    };
+    CHECK(fault_of(with_middle("1.0000009")) == "none");
+    CHECK(fault_of(with_middle("1.0000011")).starts_with("g.csv:3:1: x_m is 1.0000011"));
+}
+
+TEST_CASE("many faults do not make an endless message, many coordinates no large grid") {
+    std::string text = "x_m,z_m,factor\n";
+    for (int i = 0; i < 1000; ++i) {
+        text += "a,b,c\n";
+    }
+    const std::string message = fault_of(text);
+    CHECK(std::count(message.begin(), message.end(), '\n') == 19);
+
+    text = "x_m,z_m,factor\n";
+    for (int i = 0; i < 10000; ++i) {
+        text += std::to_string(i) + "," + std::to_string(i) + ",1\n";
+    }
+    CHECK(fault_of(text) == "g.csv: has 10000 rows for 100000000 combinations of its coordinates: expected one each");
+}
+
+TEST_CASE("files of grids are told apart by their first letter and written by their name") {
+    const test::ScratchFolder folder;
+    test::Random random(4);
+    const FactorGrid grid = test::any_grid(random);
+    for (const char* name : {"grid.csv", "grid.vti"}) {
+        write_factor_grid(folder / name, grid);
+        CHECK(test::is_same(read_factor_grid(folder / name), grid));
+    }
+    CHECK(read_file(folder / "grid.vti", 5) == "<?xml");
+    CHECK_THROWS_WITH(write_factor_grid(folder / "grid.txt", grid),
+                      Catch::EndsWith("grid.txt ends in '.txt': expected .vti (VTK ImageData) or .csv"));
+    CHECK_THROWS_WITH(write_factor_grid(folder / "missing/grid.csv", grid),
+                      Catch::EndsWith("grid.csv cannot be written: No such file or directory"));
+    CHECK_THROWS_WITH(read_factor_grid(folder / "missing.csv"),
+                      Catch::EndsWith("missing.csv cannot be read: there is no such file"));
+}
