@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "../wilson.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -137,15 +138,6 @@ Run attempt(Problem problem, Variant variant, unsigned seed, const Options& opti
     return run;
 }
 
-/// Wilson score interval of a proportion at 95 %.
-std::pair<double, double> wilson(double hits, double n) {
-    constexpr double z = 1.959963984540054;
-    const double p = hits / n;
-    const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
-    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-    return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
-}
-
 double quantile(std::vector<double> values, double q) {
     if (values.empty()) {
         return std::nan("");
@@ -158,7 +150,7 @@ double quantile(std::vector<double> values, double q) {
 }
 
 std::string share(std::size_t hits, std::size_t n) {
-    const auto [low, high] = wilson(static_cast<double>(hits), static_cast<double>(n));
+    const auto [low, high] = bench::wilson(hits, n);
     return fmt::format("{}/{} [{:.0f}, {:.0f} %]", hits, n, 100 * low, 100 * high);
 }
 

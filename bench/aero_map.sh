@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Measures what the aero map costs and writes bench/results/aero_map.md. A few minutes; close everything else.
+set -euo pipefail
+cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
+
+./dev build --target bench_aero_map >&2
+commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+mkdir -p bench/results
+build/bench/bench_aero_map bench/aero_map/girder_deck.yaml problems/*.yaml --commit "$commit" "$@" \
+    >bench/results/aero_map.md.new
+mv bench/results/aero_map.md.new bench/results/aero_map.md
+cat bench/results/aero_map.md

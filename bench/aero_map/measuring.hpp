@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+
+namespace downwash::bench {
+
+/// The least processor time of the calling thread over so many repetitions [s]. What else runs on the machine can only
+/// add to it, by emptying caches.
+double best_of(int repetitions, const std::function<void()>& work);
+
+/// How much the memory of this process grows while it works, at most [bytes]; negative where the system does not say.
+double peak_growth_bytes(const std::function<void()>& work);
+
+/// Empties the processor's caches, by walking through more memory than they hold.
+void empty_caches();
+
+}  // namespace downwash::bench

@@ -1,0 +1,253 @@
+// Whether hovers that the analysis calls unstable grow in flight, and those it calls stable decay: random places and
+// arm angles in shipped problems and among random obstacles. Prints Markdown; every flight counts, disagreements are
+// listed.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../aero_map/scenes.hpp"
+#include "../wilson.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/hover_analysis.hpp"
+
+using namespace downwash;
+using namespace downwash::bench;
+
+namespace {
+
+constexpr double flight_s = 40;
+/// Growth rates in this band around zero are preferred [1/s]: there a verdict is hardest.
+constexpr double critical_rate_1_s = 0.3;
+/// Of the hovers that are stable by more, one in so many is flown.
+constexpr int clear_ones = 8;
+
+struct Options {
+    std::vector<std::string> problems;
+    std::string commit = "unknown";
+    std::size_t flights = 150;
+    std::uint64_t seed = 1;
+};
+
+/// How far off a flight begins, and what it must not leave [m, rad].
+struct Disturbance {
+    double size = 1e-3;
+    double leaving = 0.05;
+};
+
+class Random {
+ public:
+    explicit Random(std::uint64_t seed) : engine_(seed) {}
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
+    }
+    bool one_in(int n) { return engine_() % static_cast<std::uint64_t>(n) == 0; }
+
+ private:
+    std::mt19937_64 engine_;
+};
+
+double distance(const FlightState& a, const FlightState& b) {
+    double most = 0;
+    for (int i = 0; i < 4; ++i) {
+        most = std::max(most, std::abs(a.plant.q[i] - b.plant.q[i]));
+    }
+    return most;
+}
+
+/// Flies with direct aerodynamics from beside the hover. Whether the vehicle leaves it, or is farther away in the last
+/// quarter than in the one before.
+bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& disturbance, Random& random) {
+    FlightState state = trim.state;
+    for (int i = 0; i < 4; ++i) {
+        state.plant.q[i] += random.uniform(-disturbance.size, disturbance.size);
+        state.plant.u[i] += random.uniform(-disturbance.size, disturbance.size);
+    }
+    const int ticks = static_cast<int>(flight_s * model.robot().controller.rate_hz);
+    double before = 0;
+    double in_the_end = 0;
+    for (int i = 0; i < ticks; ++i) {
+        simulation::TickRecord<double> record{};
+        state = simulation::tick(model.tick(), state, simulation::setpoint(trim.reference),
+                                 simulation::DirectFactor{model}, record);
+        const double d = distance(state, trim.state);
+        if (!(d < disturbance.leaving)) {
+            return true;
+        }
+        if (4 * i >= 3 * ticks) {
+            in_the_end = std::max(in_the_end, d);
+        } else if (4 * i >= 2 * ticks) {
+            before = std::max(before, d);
+        }
+    }
+    return in_the_end > before && in_the_end > 1e-9;
+}
+
+/// One row of the table.
+struct Count {
+    std::string problem, robot;
+    Disturbance disturbance;
+    std::size_t unstable = 0, grew = 0, stable = 0, decayed = 0, unknown = 0;
+};
+
+class Campaign {
+ public:
+    explicit Campaign(const Options& options) : options_(options), random_(options.seed) {}
+
+    /// Adds flights at random places of one problem to a row until it has so many.
+    void fly(const Problem& problem, std::size_t until, Count& count) {
+        const auto model = make_flight_model(problem);
+        const Bounds& bounds = problem.bounds;
+        constexpr int most_tries = 100000;
+        for (int tried = 0; tried < most_tries && count.unstable + count.stable < until; ++tried) {
+            const double x_m = random_.uniform(bounds.x_low_m, bounds.x_high_m);
+            const double z_m = random_.uniform(bounds.z_low_m, bounds.z_high_m);
+            const double arm_rad = random_.uniform(-3.14, 3.14);
+            const HoverAnalysis hover = analyse_hover(*model, x_m, z_m, arm_rad);
+            count.unknown += hover.verdict == HoldVerdict::unknown ? 1 : 0;
+            const bool is_unstable = hover.verdict == HoldVerdict::unstable;
+            if (!is_unstable && hover.verdict != HoldVerdict::stable) {
+                continue;
+            }
+            const double rate_1_s = hover.stability.growth_rate_1_s;
+            const bool is_critical = std::abs(rate_1_s) < critical_rate_1_s && has_surface(*model, hover);
+            if (!is_unstable && !is_critical && !random_.one_in(clear_ones)) {
+                continue;
+            }
+            const bool grew = grows(*model, hover.trim, count.disturbance, random_);
+            (is_unstable ? count.unstable : count.stable) += 1;
+            count.grew += is_unstable && grew ? 1 : 0;
+            count.decayed += !is_unstable && !grew ? 1 : 0;
+            if (grew != is_unstable) {
+                disagreements_.push_back(fmt::format(
+                    "{}, {}, up to {:g}: called {}, {}; growth rate {:.5f} 1/s at x {:.17g}, z {:.17g}, arm "
+                    "{:.17g}",
+                    problem.name, count.robot, count.disturbance.size, name_of(hover.verdict),
+                    grew ? "grew" : "decayed", rate_1_s, x_m, z_m, arm_rad));
+            }
+        }
+    }
+
+    void run() {
+        const auto lagging = [](Problem problem) {
+            problem.robot.rotors.time_constant_s = 0.02;
+            return problem;
+        };
+        std::vector<Problem> problems;
+        for (const std::string& file : options_.problems) {
+            problems.push_back(read_problem(file));
+        }
+        for (const Problem& problem : problems) {
+            add_row({problem.name, "shipped", {}}, {problem});
+            add_row({problem.name, "20 ms rotor lag", {}}, {lagging(problem)});
+        }
+        add_row({problems.front().name, "shipped", {1e-2, 0.25}}, {problems.front()});
+        std::vector<Problem> random_scenes;
+        for (unsigned seed = 1; seed <= 15; ++seed) {
+            random_scenes.push_back(with_random_primitives(problems.front(), seed));
+            random_scenes.back().name = "random scene " + std::to_string(seed);
+        }
+        add_row({"15 random scenes", "shipped", {}}, random_scenes);
+        std::transform(random_scenes.begin(), random_scenes.end(), random_scenes.begin(), lagging);
+        add_row({"15 random scenes", "20 ms rotor lag", {}}, random_scenes);
+    }
+
+    void print() const {
+        fmt::print(
+            "# Hover verdicts against flights\n\nCommit {}, g++ {}, {}, seed {}. `bench/hover_flights.sh` writes this "
+            "page.\n\n"
+            "Random flyable places and arm angles with verdict `unstable` or `stable`; of the stable ones with a "
+            "growth "
+            "rate below -{} 1/s or no\nsurface near, one in {} is taken. Each is disturbed by up to the given size in "
+            "every "
+            "coordinate (m, rad) and rate (per s), and flown for {} s with\ndirect aerodynamics. It grew when it left "
+            "the given distance, or was farther away in the last quarter than in the one before. Shares with 95 %\n"
+            "Wilson intervals; every flight counts. `unknown`: places passed over because the model ends there.\n\n"
+            "| problem | robot | disturbance, leaving | called unstable: grew | called stable: decayed | unknown |\n"
+            "|---|---|---|---|---|---|\n",
+            options_.commit, __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, critical_rate_1_s, clear_ones, flight_s);
+        Count all{"all", "", {}};
+        for (const Count& c : rows_) {
+            print_row(c, fmt::format("{:g}, {:g}", c.disturbance.size, c.disturbance.leaving));
+            all.unstable += c.unstable;
+            all.grew += c.grew;
+            all.stable += c.stable;
+            all.decayed += c.decayed;
+            all.unknown += c.unknown;
+        }
+        print_row(all, "");
+        fmt::print("\n{} of {} flights disagree with their verdict{}\n", disagreements_.size(),
+                   all.unstable + all.stable, disagreements_.empty() ? "." : ":\n");
+        for (const std::string& disagreement : disagreements_) {
+            fmt::print("- {}\n", disagreement);
+        }
+    }
+
+ private:
+    /// Whether surfaces act there at all: far from them every hover is stable at the rate of the controller alone.
+    static bool has_surface(const FlightModel& model, const HoverAnalysis& hover) {
+        const auto& q = hover.trim.state.plant.q;
+        for (int i = 0; i < 4; ++i) {
+            const Vector3& hub = model.robot().rotors.positions_m[static_cast<std::size_t>(i)];
+            if (std::abs(model.direct_factor(i, q[0] + hub[0], q[1] + hub[2]) - 1) > 0.01) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    void add_row(Count row, const std::vector<Problem>& problems) {
+        for (std::size_t i = 0; i < problems.size(); ++i) {
+            fly(problems[i], options_.flights * (i + 1) / problems.size(), row);
+        }
+        fmt::print(stderr, "{}, {}: {} flights\n", row.problem, row.robot, row.unstable + row.stable);
+        rows_.push_back(row);
+    }
+
+    static std::string share(std::size_t hits, std::size_t n) {
+        if (n == 0) {
+            return "none";
+        }
+        const auto [low, high] = wilson(hits, n);
+        return fmt::format("{}/{} [{:.1f}, {:.1f} %]", hits, n, 100 * low, 100 * high);
+    }
+    static void print_row(const Count& c, const std::string& disturbance) {
+        fmt::print("| {} | {} | {} | {} | {} | {} |\n", c.problem, c.robot, disturbance, share(c.grew, c.unstable),
+                   share(c.decayed, c.stable), c.unknown);
+    }
+
+    const Options& options_;
+    Random random_;
+    std::vector<Count> rows_;
+    std::vector<std::string> disagreements_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("Verdicts of the hover analysis against flights, as Markdown");
+    app.add_option("problems", options.problems, "problem files; random scenes have the bounds of the first")
+        ->required();
+    app.add_option("--commit", options.commit, "commit that the flights are made from");
+    app.add_option("--flights", options.flights, "flights per row")->check(CLI::PositiveNumber);
+    app.add_option("--seed", options.seed, "of places and disturbances");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        Campaign campaign(options);
+        campaign.run();
+        campaign.print();
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
