@@ -20,19 +20,6 @@ constexpr double clearance_slack_m = 1e-6;
 
 constexpr double unknown = -1;  // no K
 
-/// Formulas that fall with distance turn only from one obstacle to the next, which the ordinary probes see.
-double shortest_turn_m(const DirectEffect& effect) {
-    constexpr double turn_radii = 0.08;  // of tables and fountains
-    if (const auto& map = effect.settings().map) {
-        const double x_m = map->x().step_m();
-        const double y_m = map->is_planar() ? x_m : map->y().step_m();
-        return 0.5 * std::min({x_m, y_m, map->z().step_m()});
-    }
-    return effect.ground().falls_with_distance() && effect.ceiling().falls_with_distance()
-               ? std::numeric_limits<double>::infinity()
-               : turn_radii * effect.rotor_radius_m();
-}
-
 class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
@@ -225,6 +212,18 @@ double longest_cell_side_m(const DirectEffect& effect) {
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
     const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);
     return effect.rotor_radius_m() * std::clamp(resolved_radii, 0.02, 0.45);
+}
+
+double shortest_turn_m(const DirectEffect& effect) {
+    constexpr double turn_radii = 0.08;  // of tables and fountains
+    if (const auto& map = effect.settings().map) {
+        const double x_m = map->x().step_m();
+        const double y_m = map->is_planar() ? x_m : map->y().step_m();
+        return 0.5 * std::min({x_m, y_m, map->z().step_m()});
+    }
+    return effect.ground().falls_with_distance() && effect.ceiling().falls_with_distance()
+               ? std::numeric_limits<double>::infinity()
+               : turn_radii * effect.rotor_radius_m();
 }
 
 }  // namespace downwash

@@ -34,4 +34,8 @@ struct CellRows {
 /// R, so that the probes of a cell miss nothing of the disc's size.
 [[nodiscard]] double longest_cell_side_m(const DirectEffect& effect);
 
+/// Between positions that are this far apart K may rise and fall again unseen. Infinite for formulas that fall with
+/// distance: they turn only from one obstacle to the next.
+[[nodiscard]] double shortest_turn_m(const DirectEffect& effect);
+
 }  // namespace downwash

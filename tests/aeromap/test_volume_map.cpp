@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "../support/hard_places.hpp"
+#include "downwash/aeromap/triquadratic.hpp"
+#include "downwash/aeromap/volume_map.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "scenes.hpp"
+
+using namespace downwash;
+using test::scene_of;
+
+namespace {
+
+/// A block in a frame.
+struct Block {
+    MapExtent extent;
+    double lateral_low_m, lateral_high_m;
+    PlaneOfMotion frame;
+
+    [[nodiscard]] bool contains(const Vector3& hub_m) const {
+        const Vector3 at = frame.from_world(hub_m);
+        return at[0] >= extent.x_low_m && at[0] <= extent.x_high_m && at[1] >= lateral_low_m &&
+               at[1] <= lateral_high_m && at[2] >= extent.z_low_m && at[2] <= extent.z_high_m;
+    }
+    [[nodiscard]] Vector3 any(test::Random& random) const {
+        const double x_m = random.uniform(extent.x_low_m, extent.x_high_m);
+        const double lateral_m = random.uniform(lateral_low_m, lateral_high_m);
+        return frame.to_world(x_m, lateral_m, random.uniform(extent.z_low_m, extent.z_high_m));
+    }
+};
+
+VolumeMap map_of(const std::shared_ptr<const DirectEffect>& effect, const Block& block, int threads = 2) {
+    return VolumeMap(effect, block.frame, block.extent, block.lateral_low_m, block.lateral_high_m, threads);
+}
+
+std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius_m,
+                                              const AeroSettings& settings = {}) {
+    return std::make_shared<const DirectEffect>(scene_of(std::move(obstacles)), settings, radius_m);
+}
+
+std::vector<Obstacle> random_obstacles(test::Random& random, int count) {
+    std::vector<Obstacle> obstacles;
+    for (int i = 0; i < count; ++i) {
+        obstacles.push_back(test::any_obstacle(
+            random, {random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)}));
+    }
+    return obstacles;
+}
+
+struct Comparison {
+    double worst = 0;
+    int anywhere = 0, felt = 0, near_edges = 0, at_rims = 0;
+};
+
+/// Volume against direct evaluation at flyable hubs: random ones, near edges of shadows, at the least clearance.
+Comparison compare(const VolumeMap& map, const Block& block, int tries, unsigned seed) {
+    const DirectEffect& effect = map.effect();
+    test::Random random(seed);
+    Comparison found;
+    const auto look = [&](const Vector3& hub_m, int& count) {
+        if (block.contains(hub_m) && effect.is_flyable(hub_m)) {
+            const double direct = effect.factor(hub_m);
+            found.worst = std::max(found.worst, std::abs(map.factor(hub_m) - direct));
+            found.felt += std::abs(direct - 1) > 0.05 ? 1 : 0;
+            ++count;
+        }
+    };
+    for (int i = 0; i < tries; ++i) {
+        look(block.any(random), found.anywhere);
+        look(test::near_shadow_edge(random, effect), found.near_edges);
+        if (i % 8 == 0) {
+            if (const auto hub_m = test::at_rim(effect, block.any(random), block.any(random))) {
+                look(*hub_m, found.at_rims);
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("A product of parabolas is exact for quadratic functions") {
+    const auto f = [](double x, double y, double z) {
+        return 1 + x * (2 - x) + 3 * y * z * z - x * x * y * y + x * y * z - 0.5 * x * x * y * y * z * z;
+    };
+    std::array<double, 27> values{};
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        const auto at = [](std::size_t i) { return 0.5 * static_cast<double>(i); };
+        values[n] = f(at(n % 3), at(n / 3 % 3), at(n / 9));
+    }
+    test::Random random(70);
+    for (int i = 0; i < 1000; ++i) {
+        const double x = random.uniform(0, 1);
+        const double y = random.uniform(0, 1);
+        const double z = random.uniform(0, 1);
+        CHECK(triquadratic(values, {x, y, z}) == Approx(f(x, y, z)).margin(1e-12));
+    }
+}
+
+TEST_CASE("A volume of random scenes is within 0.01 of the direct effect wherever one may fly, in any frame") {
+    test::Random random(71);
+    Comparison all;
+    for (int scene = 0; scene < 6; ++scene) {
+        const double radius_m = random.uniform(0.2, 0.35);
+        const auto effect = effect_in(random_obstacles(random, 2), radius_m);
+        const double heading_rad = scene == 0 ? 1.5707963267948966 : random.uniform(-3.1, 3.1);
+        const Block block{{-0.5, 0.7, -0.6, 0.5}, -0.4, 0.5, PlaneOfMotion({0.1, 0.2, 0.1}, heading_rad)};
+        const VolumeMap map = map_of(effect, block);
+        const Comparison found = compare(map, block, 10000, 200U + static_cast<unsigned>(scene));
+        CAPTURE(scene, found.worst, map.boxes(), map.memory_bytes());
+        CHECK(found.worst <= 0.01);
+        all.felt += found.felt;
+        all.near_edges += found.near_edges;
+        all.at_rims += found.at_rims;
+    }
+    CHECK(all.felt > 5000);
+    CHECK(all.near_edges > 5000);
+    CHECK(all.at_rims > 500);
+}
+
+TEST_CASE("A volume is the same effect whichever way its frame is turned") {
+    const auto effect = effect_in({{"", Box{{0.6, 0.4, 0.2}}, {0.1, 0, 0}, {}}}, 0.2);
+    test::Random random(73);
+    for (const double heading_rad : {0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966}) {
+        const Block block{{-0.6, 0.6, -0.5, 0.5}, -0.6, 0.6, PlaneOfMotion({0, 0, 0}, heading_rad)};
+        const VolumeMap map = map_of(effect, block);
+        for (int i = 0; i < 5000; ++i) {
+            const Vector3 hub_m = block.any(random);
+            if (effect->is_flyable(hub_m)) {
+                REQUIRE(map.factor(hub_m) == Approx(effect->factor(hub_m)).margin(0.01));
+            }
+        }
+    }
+}
+
+TEST_CASE("A volume of a table that rises and falls, and of wall distances, is within 0.01 as well") {
+    AeroSettings settings;
+    settings.ground = EffectModel::table;
+    settings.ground.table = std::make_shared<const EffectTable>(
+        std::vector<double>{0.4, 0.8, 1.5, 2.5, 4}, std::vector<double>{1, 1.5, 3},
+        std::vector<double>{1.4, 1.35, 1.3, 1.1, 1.12, 1.15, 0.9, 0.93, 1.02, 0.97, 0.98, 1, 1, 1, 1});
+    const auto effect = effect_in(
+        {{"floor", Box{{6, 6, 1}}, {0, 0, -0.5}, {}}, {"wall", Box{{0.5, 4, 3}}, {0.8, 0, 1.5}, {}}}, 0.3, settings);
+    const Block block{{-0.3, 0.3, 0, 0.6}, -0.2, 0.2, {}};
+    const Comparison found = compare(map_of(effect, block), block, 10000, 51);
+    CAPTURE(found.worst);
+    CHECK(found.worst <= 0.01);
+    CHECK(found.felt > 2000);
+}
+
+TEST_CASE("A volume is the same to the bit for any number of threads") {
+    test::Random random(72);
+    const auto effect = effect_in(random_obstacles(random, 2), 0.25);
+    const Block block{{-1, 1, -0.5, 0.5}, -0.5, 0.5, {}};
+    const VolumeMap one = map_of(effect, block, 1);
+    const VolumeMap two = map_of(effect, block, 2);
+    CHECK(one.memory_bytes() == two.memory_bytes());
+    CHECK(one.boxes() > 100);
+    for (int i = 0; i < 50000; ++i) {
+        const Vector3 hub_m = block.any(random);
+        const double a = one.factor(hub_m);
+        const double b = two.factor(hub_m);
+        REQUIRE(std::memcmp(&a, &b, sizeof a) == 0);
+    }
+}
+
+TEST_CASE("Outside its block a volume evaluates directly, and its borders belong to it") {
+    const auto effect = effect_in({{"floor", Box{{8, 8, 1}}, {0, 0, -0.5}, {}}}, 0.2);
+    const VolumeMap map(effect, {}, {-1, 1, 0.1, 1}, -0.5, 0.5);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Vector3& hub_m :
+         {Vector3{-1, -0.5, 0.1}, Vector3{1, 0.5, 1}, Vector3{1, -0.5, 0.1}, Vector3{0, 0.5, 1}}) {
+        CHECK(map.factor(hub_m) == Approx(effect->factor(hub_m)).margin(0.01));
+    }
+    for (const Vector3& hub_m :
+         {Vector3{-1.01, 0, 0.2}, Vector3{0, 0.6, 0.2}, Vector3{0, 0, 0.09}, Vector3{0, 0, 1.01}}) {
+        CHECK(map.factor(hub_m) == effect->factor(hub_m));
+    }
+    CHECK(map.factor({nan, 0, 0.2}) == 1);
+    CHECK(map.factor({0, std::numeric_limits<double>::infinity(), 0.2}) == 1);
+}
+
+TEST_CASE("A volume without obstacles, or with the effects disabled, holds no values") {
+    AeroSettings disabled;
+    disabled.enabled = false;
+    for (const auto& effect : {effect_in({}, 0.2), effect_in(test::bridge(), 0.2, disabled)}) {
+        const VolumeMap map(effect, {}, {-2, 2, 8, 10}, -1, 1);
+        CHECK(map.boxes() == 0);
+        CHECK(map.factor({0.3, 0.2, 9.1}) == 1);
+    }
+}
+
+TEST_CASE("Volumes that make no sense are refused") {
+    const auto effect = effect_in({}, 0.2);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double most = std::numeric_limits<double>::max();
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {1, 1, 0, 1}, 0, 1), InputError);
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {0, 1, 0, nan}, 0, 1), InputError);
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {0, 1, 0, 1}, 1, 0), InputError);
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {0, 1, 0, 1}, 0, std::numeric_limits<double>::infinity()), InputError);
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {-1e6, 1e6, -1e6, 1e6}, -1e6, 1e6), InputError);
+    CHECK_THROWS_AS(VolumeMap(effect, {}, {-most, most, -most, most}, -most, most), InputError);
+}
