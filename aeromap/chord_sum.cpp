@@ -34,7 +34,7 @@ struct LocalFace {
 };
 
 /// A straight piece of a surface along a chord.
-struct Stretch {
+struct SurfaceStretch {
     double low, high;
     double gap_low, gap_high;
 
@@ -192,7 +192,7 @@ class ChordSum {
     }
 
     /// What of the stretch lies on this side of the rotor plane and over the disc.
-    void add_clipped(const Stretch& whole, double half) {
+    void add_clipped(const SurfaceStretch& whole, double half) {
         double low = std::max(whole.low, -half);
         double high = std::min(whole.high, half);
         if (!(low < high)) {
@@ -253,9 +253,9 @@ class ChordSum {
     /// Walks along the chord from cut to cut with the stretches that lie there.
     double swept() {
         std::sort(stretches_.begin(), stretches_.end(),
-                  [](const Stretch& a, const Stretch& b) { return a.low < b.low; });
+                  [](const SurfaceStretch& a, const SurfaceStretch& b) { return a.low < b.low; });
         cuts_.clear();
-        for (const Stretch& stretch : stretches_) {
+        for (const SurfaceStretch& stretch : stretches_) {
             cuts_.push_back(stretch.low);
             cuts_.push_back(stretch.high);
         }
@@ -269,9 +269,9 @@ class ChordSum {
             for (; next < stretches_.size() && stretches_[next].low <= low; ++next) {
                 open_.push_back(stretches_[next]);
             }
-            open_.erase(
-                std::remove_if(open_.begin(), open_.end(), [&](const Stretch& stretch) { return stretch.high <= low; }),
-                open_.end());
+            open_.erase(std::remove_if(open_.begin(), open_.end(),
+                                       [&](const SurfaceStretch& stretch) { return stretch.high <= low; }),
+                        open_.end());
             if (low < high && !open_.empty()) {
                 sum += piece(low, high);
             }
@@ -282,7 +282,7 @@ class ChordSum {
     double piece(double low, double high) const {
         const auto excess = [this](double u) {
             double gap = background_m_;
-            for (const Stretch& stretch : open_) {
+            for (const SurfaceStretch& stretch : open_) {
                 gap = std::min(gap, stretch.gap_at(u));
             }
             return query_.factor(gap) - background_;
@@ -302,9 +302,9 @@ class ChordSum {
     std::pmr::vector<Scene::Face> faces_;
     std::pmr::vector<LocalFace> local_faces_;
     std::pmr::vector<Solid> solids_;
-    std::pmr::vector<Stretch> stretches_;
+    std::pmr::vector<SurfaceStretch> stretches_;
     std::pmr::vector<double> cuts_;
-    std::pmr::vector<Stretch> open_;  ///< over the present piece
+    std::pmr::vector<SurfaceStretch> open_;  ///< over the present piece
 };
 
 }  // namespace

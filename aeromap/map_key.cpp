@@ -1,4 +1,5 @@
 #include <initializer_list>
+#include <span>
 #include <type_traits>
 #include <variant>
 
@@ -75,7 +76,7 @@ void add_effect(Description& description, const SurfaceEffect& effect) {
     const auto& [model, parameters, file, table, d_over_r] = effect;
     description.add(info(model).name).add_all(parameters);
     if (table) {
-        description.add_all(table->z_over_r()).add_all(table->d_over_r()).add_all(table->factors());
+        description.add(digest_of(*table));
     }
     description.add(d_over_r ? to_text(*d_over_r) : "measured");
 }
@@ -92,7 +93,7 @@ void add_axis(Description& description, const GridAxis& axis) {
 }
 
 void add_field(Description& description, const std::vector<double>& values) {
-    description.add(sha256_hex({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}));
+    description.add(sha256_hex_of(std::span(values)));
 }
 
 /// What a grid says of K and the flyable area, not how it came about.

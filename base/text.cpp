@@ -51,6 +51,14 @@ std::string to_text(double value, int significant_digits) {
     return {text.data(), end};
 }
 
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+}
+
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
     if (word.size() > longest_word) {
         return {};

@@ -39,6 +39,9 @@ template <class Number>
     return number;
 }
 
+/// Without the blanks, tabs and ends of lines at both ends.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view trimmed(std::string_view text);
+
 /// The candidate that a misspelt word most likely stands for; empty when none is near (more than a third of its
 /// letters would have to change).
 [[nodiscard]] DOWNWASH_EXPORT std::string_view nearest_name(std::string_view word,

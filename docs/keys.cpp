@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/angles.hpp"
 #include "downwash/planner/problem_parameters.hpp"
 
 using namespace downwash;
@@ -39,7 +40,7 @@ std::size_t element_of(const std::string& path) {
 }
 
 std::string in_file_units(const std::string& path, double value) {
-    return fmt::format("{:.6g}", is_in_degrees(path) ? value * 57.29577951308232 : value);
+    return fmt::format("{:.6g}", is_in_degrees(path) ? value * degrees_per_radian : value);
 }
 
 std::string default_text(const Parameter<Problem>& parameter) {

@@ -50,7 +50,7 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
 
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
 /// centre between them (model 4.3).
-/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane; rotor_count stands for the body
+/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body()
 template <class T, class Factor>
 RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
                             const Factor& factor) {
@@ -68,10 +68,10 @@ RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
     }
     if (model.has_fountain) {
-        const int body = model.rotor_count;
+        const int body = model.body();
         const PlanePoint<T> center = rotor_position(model, a, x_m, z_m, body);
         T free_air_n(0);
-        for (int i = 0; i < body; ++i) {
+        for (int i = 0; i < model.rotor_count; ++i) {
             free_air_n = free_air_n + thrust_n[i];
         }
         const T push_n = (factor(body, center.x, center.z) - T(1)) * free_air_n;

@@ -1,10 +1,9 @@
 #include "downwash/effects/csv_table.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 #include <utility>
 
+#include "downwash/base/csv_lines.hpp"
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 
@@ -14,24 +13,6 @@ namespace {
 constexpr std::size_t most_bytes = 16'000'000;
 constexpr std::size_t most_rows = 100'000;
 constexpr std::size_t most_columns = 32;
-constexpr std::size_t most_faults = 20;
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    return first == std::string_view::npos ? std::string_view()
-                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::vector<std::string> cells_of(std::string_view line) {
-    std::vector<std::string> cells;
-    for (std::size_t start = 0; start <= line.size() && cells.size() <= most_columns;) {
-        const std::size_t comma = std::min(line.find(',', start), line.size());
-        cells.emplace_back(trimmed(line.substr(start, comma - start)));
-        start = comma + 1;
-    }
-    return cells;
-}
 
 /// What keeps a line from being the header; empty when nothing does.
 std::string header_fault(const std::vector<std::string>& columns) {
@@ -50,41 +31,34 @@ std::string header_fault(const std::vector<std::string>& columns) {
     return {};
 }
 
-void add_line(CsvTable& table, std::size_t number, std::string_view line, LineFaults& faults) {
-    if (line.find('"') != std::string_view::npos) {
-        faults.add(number, "holds a quotation mark; expected plain cells, separated by commas");
+void add_line(CsvTable& table, const CsvLines& line, LineFaults& faults) {
+    if (line.text().find('"') != std::string_view::npos) {
+        faults.add(line.number(), "holds a quotation mark; expected plain cells, separated by commas");
         return;
     }
-    std::vector<std::string> cells = cells_of(line);
+    std::vector<std::string> cells;
+    line.for_each_cell([&cells](std::string_view cell, std::size_t) {
+        if (cells.size() <= most_columns) {
+            cells.emplace_back(cell);
+        }
+    });
     if (table.columns.empty()) {
         if (const std::string fault = header_fault(cells); !fault.empty()) {
-            faults.add(number, fault + "; expected the names of the columns, separated by commas");
+            faults.add(line.number(), fault + "; expected the names of the columns, separated by commas");
             faults.throw_any();
         }
         table.columns = std::move(cells);
-        table.header_line = number;
+        table.header_line = line.number();
     } else if (cells.size() != table.columns.size()) {
-        faults.add(number, "holds " + std::to_string(cells.size()) + (cells.size() == 1 ? " cell" : " cells") +
-                               "; expected " + std::to_string(table.columns.size()) + ", one for each column of line " +
-                               std::to_string(table.header_line));
+        faults.add(line.number(), "holds " + std::to_string(cells.size()) + (cells.size() == 1 ? " cell" : " cells") +
+                                      "; expected " + std::to_string(table.columns.size()) +
+                                      ", one for each column of line " + std::to_string(table.header_line));
     } else {
-        table.rows.push_back({number, std::move(cells)});
+        table.rows.push_back({line.number(), std::move(cells)});
     }
 }
 
 }  // namespace
-
-void LineFaults::add(std::size_t line, const std::string& message) {
-    if (faults_.size() < most_faults) {
-        faults_.push_back({"", file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message});
-    }
-}
-
-void LineFaults::throw_any() const {
-    if (!faults_.empty()) {
-        throw InputError(faults_);
-    }
-}
 
 std::optional<std::size_t> CsvTable::find(std::string_view column) const {
     const auto found = std::find(columns.begin(), columns.end(), column);
@@ -107,26 +81,18 @@ std::string read_csv_text(const std::filesystem::path& file) {
 }
 
 CsvTable parse_csv(std::string_view text, LineFaults& faults) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) {
-        text.remove_prefix(byte_order_mark.size());
-    }
     CsvTable table;
-    std::size_t number = 0;
-    for (std::size_t start = 0; start < text.size();) {
-        const std::size_t end = std::min(text.find('\n', start), text.size());
-        const std::string_view line = trimmed(text.substr(start, end - start));
-        start = end + 1;
-        ++number;
-        if (line.empty() || line.front() == '#') {
+    CsvLines line(text);
+    while (line.next()) {
+        if (line.is_comment()) {
             continue;
         }
         if (table.rows.size() == most_rows) {
-            faults.add(number,
+            faults.add(line.number(),
                        "is row " + std::to_string(most_rows + 1) + "; expected at most " + std::to_string(most_rows));
             break;
         }
-        add_line(table, number, line, faults);
+        add_line(table, line, faults);
     }
     if (table.columns.empty()) {
         faults.add(0, "holds no table; expected a line with the names of the columns, then rows");
@@ -138,9 +104,8 @@ CsvTable parse_csv(std::string_view text, LineFaults& faults) {
 std::optional<double> number_in(const CsvTable& table, const CsvTable::Row& row, std::size_t column, double low,
                                 double high, LineFaults& faults) {
     const std::string& cell = row.cells[column];
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error == std::errc() && end == cell.data() + cell.size() && value >= low && value <= high) {
+    const std::optional<double> value = parse_number<double>(cell);
+    if (value && *value >= low && *value <= high) {
         return value;
     }
     faults.add(row.line, table.columns[column] + " is '" + excerpt(cell) + "'; expected a number from " + to_text(low) +

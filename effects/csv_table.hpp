@@ -7,24 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/line_faults.hpp"
 
 namespace downwash {
-
-/// Faults of one text file, each with its line. Those after the twentieth are not kept.
-class LineFaults {
- public:
-    explicit LineFaults(std::string file) : file_(std::move(file)) {}
-
-    /// @param line counted from 1; 0 for the file as a whole
-    void add(std::size_t line, const std::string& message);
-    /// @throws InputError when there are any
-    void throw_any() const;
-
- private:
-    std::string file_;
-    std::vector<Fault> faults_;
-};
 
 /// Comma separated text: empty lines and lines that begin with `#` are left out, the first line left names the columns,
 /// the others hold as many cells each. No quotes; spaces around cells do not count.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "downwash/base/fault.hpp"
+#include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/effects/csv_table.hpp"
 #include "downwash/effects/monotone_cubic.hpp"
@@ -92,6 +93,11 @@ EffectTable::EffectTable(std::vector<double> z_over_r, std::vector<double> d_ove
         }
         changes_[row] = largest;
     }
+}
+
+std::string digest_of(const EffectTable& table) {
+    return sha256_hex(sha256_hex_of(table.z_over_r()) + sha256_hex_of(table.d_over_r()) +
+                      sha256_hex_of(table.factors()));
 }
 
 double EffectTable::largest_change_beyond(double z_over_r) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -67,6 +68,9 @@ class DOWNWASH_EXPORT EffectTable {
     std::vector<double> slopes_d_;  ///< dK/d(d/R) at the nodes; of a table over both
     std::vector<double> changes_;   ///< largest |K - 1| from a zeta on
 };
+
+/// SHA-256 of a table's distances and factors, down to the last bit, as 64 hexadecimal digits.
+[[nodiscard]] DOWNWASH_EXPORT std::string digest_of(const EffectTable& table);
 
 /// Reads a table from a CSV file: lines that begin with `#` are comments, then a header `z_over_r,factor` or
 /// `z_over_r,d_over_r,factor` (`thrust_ratio` is understood for `factor`), then a row for every combination of

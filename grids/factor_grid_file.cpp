@@ -25,14 +25,6 @@ std::string checked_kind(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    if (begin == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
-}
-
 std::optional<double> number_of(std::string_view text) {
     double value = 0;
     const char* const end = text.data() + text.size();

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "downwash/base/csv_lines.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/base/line_faults.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
@@ -14,7 +16,6 @@ namespace {
 
 /// Larger grids belong into .vti files.
 constexpr std::size_t most_rows = std::size_t{1} << 24U;
-constexpr std::size_t most_faults = 20;
 constexpr std::size_t most_columns = 256;
 /// How far a coordinate may be off its node, in steps.
 constexpr double spacing_slack = 1e-6;
@@ -33,30 +34,6 @@ struct GridCsv {
     [[nodiscard]] bool has(std::size_t column) const { return !columns[column].empty(); }
 };
 
-/// Collects what is wrong, by line.
-class Faults {
- public:
-    explicit Faults(std::string name) : name_(std::move(name)) {}
-
-    void add(std::size_t line, std::size_t column, const std::string& message) {
-        found_.push_back({"", name_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message});
-        if (found_.size() == most_faults) {
-            throw InputError(found_);
-        }
-    }
-    void add(const std::string& message) { found_.push_back({"", name_ + ": " + message}); }
-
-    void throw_if_any() const {
-        if (!found_.empty()) {
-            throw InputError(found_);
-        }
-    }
-
- private:
-    std::string name_;
-    std::vector<Fault> found_;
-};
-
 std::string text_number(std::string_view cell) {
     return "'" + excerpt(cell) + "'";
 }
@@ -64,36 +41,29 @@ std::string text_number(std::string_view cell) {
 /// Reads lines into columns.
 class CsvReader {
  public:
-    CsvReader(std::string_view text, Faults& faults, std::string_view factor_column) : rest_(text), faults_(faults) {
+    CsvReader(std::string_view text, LineFaults& faults, std::string_view factor_column)
+        : line_(text), faults_(faults) {
         names_ = column_names;
         names_[first_field] = factor_column;
     }
 
     GridCsv read() {
-        while (!rest_.empty()) {
-            ++line_;
-            const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-            const std::string_view line = rest_.substr(0, end);
-            rest_.remove_prefix(std::min(end + 1, rest_.size()));
-            const std::string_view content = trimmed(line);
-            if (content.empty()) {
-                continue;
-            }
-            if (content.starts_with('#')) {
-                read_comment(content.substr(1));
+        while (line_.next()) {
+            if (line_.is_comment()) {
+                read_comment(line_.comment());
             } else if (roles_.empty()) {
-                read_header(line);
-                faults_.throw_if_any();
+                read_header();
+                faults_.throw_any();
             } else {
-                read_row(line);
+                read_row();
             }
         }
         if (roles_.empty()) {
-            faults_.add("holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
+            faults_.add(0, "holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
         } else if (csv_.lines.empty()) {
-            faults_.add("holds no row");
+            faults_.add(0, "holds no row");
         }
-        faults_.throw_if_any();
+        faults_.throw_any();
         return std::move(csv_);
     }
 
@@ -130,29 +100,19 @@ class CsvReader {
         }
         if (!rest.empty() || numbers.size() != count) {
             faults_.add(
-                line_, 1,
+                line_.number(), 1,
                 text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
             return {};
         }
         return numbers;
     }
 
-    /// Calls take(cell, column in the line) for every cell.
-    template <class Take>
-    static void for_each_cell(std::string_view line, const Take& take) {
-        for (std::size_t begin = 0; begin <= line.size();) {
-            const std::size_t end = std::min(line.find(',', begin), line.size());
-            take(trimmed(line.substr(begin, end - begin)), begin + 1);
-            begin = end + 1;
-        }
-    }
-
-    void read_header(std::string_view line) {
-        for_each_cell(line, [&](std::string_view cell, std::size_t column) {
+    void read_header() {
+        line_.for_each_cell([&](std::string_view cell, std::size_t column) {
             const auto* name = std::find(names_.begin(), names_.end(), cell);
             const auto role = static_cast<std::size_t>(name - names_.begin());
             if (role < names_.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
-                faults_.add(line_, column, "column " + text_number(cell) + " is there twice");
+                faults_.add(line_.number(), column, "column " + text_number(cell) + " is there twice");
             }
             roles_.push_back(role);
         });
@@ -161,36 +121,36 @@ class CsvReader {
         };
         for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{Column::z}, std::size_t{first_field}}) {
             if (!has(needed)) {
-                faults_.add(line_, 1,
-                            "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line) +
+                faults_.add(line_.number(), 1,
+                            "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line_.text()) +
                                 "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart by commas");
             }
         }
         if (has(lateral) && has(y)) {
-            faults_.add(line_, 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
+            faults_.add(line_.number(), 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
         }
         if (roles_.size() > most_columns) {
-            faults_.add(line_, 1, "has more than 256 columns");
+            faults_.add(line_.number(), 1, "has more than 256 columns");
         }
     }
 
-    void read_row(std::string_view line) {
+    void read_row() {
         std::size_t index = 0;
-        for_each_cell(line, [&](std::string_view cell, std::size_t column) {
+        line_.for_each_cell([&](std::string_view cell, std::size_t column) {
             if (index < roles_.size() && roles_[index] < names_.size()) {
                 read_cell(cell, column, roles_[index]);
             }
             ++index;
         });
         if (index != roles_.size()) {
-            faults_.add(line_, 1,
+            faults_.add(line_.number(), 1,
                         "has " + std::to_string(index) + " cells: expected " + std::to_string(roles_.size()) +
                             " as in the line of column names");
         }
-        csv_.lines.push_back(line_);
+        csv_.lines.push_back(static_cast<std::uint32_t>(line_.number()));
         if (csv_.lines.size() > most_rows) {
-            faults_.add(line_, 1, "more than 2^24 rows: expected a larger grid as .vti");
-            faults_.throw_if_any();
+            faults_.add(line_.number(), 1, "more than 2^24 rows: expected a larger grid as .vti");
+            faults_.throw_any();
         }
     }
 
@@ -200,20 +160,20 @@ class CsvReader {
         const double least = is_coordinate ? -1e6 : 0;
         const double most = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
         if (!number) {
-            faults_.add(line_, column, std::string(names_[role]) + " is " + text_number(cell) + ": expected a number");
+            faults_.add(line_.number(), column,
+                        std::string(names_[role]) + " is " + text_number(cell) + ": expected a number");
         } else if (!(*number >= least && *number <= most)) {
-            faults_.add(line_, column,
+            faults_.add(line_.number(), column,
                         std::string(names_[role]) + " is " + text_number(cell) + ": expected a number from " +
                             to_text(least) + " to " + to_text(most));
         }
         csv_.columns[role].push_back(number.value_or(0));
     }
 
-    std::string_view rest_;
-    Faults& faults_;
+    CsvLines line_;
+    LineFaults& faults_;
     std::array<std::string_view, column_names.size()> names_;
     std::vector<std::size_t> roles_;  ///< of each column; past the names for columns that are not ours
-    std::uint32_t line_ = 0;
     GridCsv csv_;
 };
 
@@ -233,7 +193,7 @@ std::vector<double> distinct_values(std::vector<double> values) {
 /// Puts rows to their nodes.
 class NodeFinder {
  public:
-    NodeFinder(const GridCsv& csv, Faults& faults) : csv_(csv), faults_(faults) {}
+    NodeFinder(const GridCsv& csv, LineFaults& faults) : csv_(csv), faults_(faults) {}
 
     void fill(FactorGridParts& parts) {
         parts.x = axis(Column::x);
@@ -244,14 +204,14 @@ class NodeFinder {
         if (csv_.has(lateral)) {
             parts.lateral_offsets_m = distinct_values(csv_.columns[lateral]);
         }
-        faults_.throw_if_any();
+        faults_.throw_any();
         const std::size_t layers = std::max<std::size_t>(1, parts.lateral_offsets_m.size());
         const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                              static_cast<double>(parts.z.count) * static_cast<double>(layers);
         if (nodes > static_cast<double>(most_rows)) {
-            faults_.add("has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
-                        " combinations of its coordinates: expected one each");
-            faults_.throw_if_any();
+            faults_.add(0, "has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
+                               " combinations of its coordinates: expected one each");
+            faults_.throw_any();
         }
         std::vector<std::uint32_t> row_of(static_cast<std::size_t>(nodes), no_row);
         for (std::size_t row = 0; row < csv_.lines.size(); ++row) {
@@ -261,7 +221,7 @@ class NodeFinder {
             }
             place = static_cast<std::uint32_t>(row);
         }
-        faults_.throw_if_any();
+        faults_.throw_any();
         require_whole(parts, row_of);
         for (std::size_t column = first_field; column < column_names.size(); ++column) {
             if (csv_.has(column)) {
@@ -281,9 +241,9 @@ class NodeFinder {
     GridAxis axis(std::size_t column) {
         const std::vector<double> values = distinct_values(csv_.columns[column]);
         if (values.size() < 2) {
-            faults_.add("column " + std::string(column_names[column]) + " holds " + to_text(values[0]) +
-                        " only: expected two or more coordinates" +
-                        (column == y ? ", or no such column for a planar grid" : ""));
+            faults_.add(0, "column " + std::string(column_names[column]) + " holds " + to_text(values[0]) +
+                               " only: expected two or more coordinates" +
+                               (column == y ? ", or no such column for a planar grid" : ""));
         }
         return {values.front(), values.back(), values.size()};
     }
@@ -332,20 +292,20 @@ class NodeFinder {
         place += csv_.has(y) ? ", y_m " + to_text(parts.y.at(j)) : "";
         place += ", z_m " + to_text(parts.z.at(take(parts.z.count)));
         place += csv_.has(lateral) ? ", lateral_m " + to_text(parts.lateral_offsets_m[rest]) : "";
-        faults_.add("no row stands at " + place + ", the first of " +
-                    std::to_string(std::count(row_of.begin(), row_of.end(), no_row)) +
-                    " holes: expected every combination of the coordinates");
-        faults_.throw_if_any();
+        faults_.add(0, "no row stands at " + place + ", the first of " +
+                           std::to_string(std::count(row_of.begin(), row_of.end(), no_row)) +
+                           " holes: expected every combination of the coordinates");
+        faults_.throw_any();
     }
 
     const GridCsv& csv_;
-    Faults& faults_;
+    LineFaults& faults_;
 };
 
 }  // namespace
 
 FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const GridReading& reading) {
-    Faults faults(name);
+    LineFaults faults(name);
     GridCsv csv = CsvReader(bytes, faults, reading.array).read();
     FactorGridParts parts;
     NodeFinder(csv, faults).fill(parts);
@@ -357,10 +317,10 @@ FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const
         return FactorGrid(std::move(parts));
     } catch (const InputError& error) {
         for (const Fault& fault : error.faults()) {
-            faults.add(fault.key + (fault.key.empty() ? "" : " ") + fault.message);
+            faults.add(0, fault.key + (fault.key.empty() ? "" : " ") + fault.message);
         }
     }
-    faults.throw_if_any();
+    faults.throw_any();
     throw std::logic_error("a refused grid has a fault");
 }
 

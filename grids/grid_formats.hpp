@@ -21,9 +21,6 @@ namespace downwash {
 /// The entry of such a line; what has no key is a "comment".
 [[nodiscard]] std::pair<std::string, std::string> provenance_entry(std::string_view line);
 
-/// Without blanks at both ends.
-[[nodiscard]] std::string_view trimmed(std::string_view text);
-
 /// The number that a text consists of, finite or not; empty when it is none.
 [[nodiscard]] std::optional<double> number_of(std::string_view text);
 

@@ -24,14 +24,6 @@ bool has_no_map(const Problem& p, std::size_t) {
     return !p.aero.map;
 }
 
-std::string digest_of(const EffectTable& table) {
-    std::string numbers;
-    for (const auto& values : {table.z_over_r(), table.d_over_r(), table.factors()}) {
-        numbers += sha256_hex({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
-    }
-    return sha256_hex(numbers);
-}
-
 /// The model's name, and as many rows as all models together have parameters.
 template <class Effect>
 void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Effect effect) {

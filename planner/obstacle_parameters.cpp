@@ -17,9 +17,6 @@ namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
 
-/// Triangles and cubes of all obstacles together; a scene holds no more, so they need not be kept either.
-constexpr std::size_t most_pieces = 2'000'000;
-
 std::size_t pieces_of(const Shape& shape) {
     if (const auto* mesh = std::get_if<Mesh>(&shape); mesh && mesh->surface) {
         return mesh->surface->triangles.size();

@@ -6,6 +6,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/planner/goal_reach.hpp"
@@ -17,8 +18,6 @@
 
 namespace downwash {
 namespace {
-
-constexpr double degrees_per_radian = 57.29577951308232;
 
 std::string rounded(double value) {
     return to_text(value, 4);

@@ -1,10 +1,6 @@
 #include "downwash/report/region_boundary.hpp"
 
-#include <array>
-#include <map>
-#include <utility>
-
-#include "downwash/report/chains.hpp"
+#include "downwash/base/grid_contour.hpp"
 
 namespace downwash {
 namespace {
@@ -47,45 +43,23 @@ class Grid {
     std::vector<bool> inside_;
 };
 
-/// The side of a cell by the node inside and the node outside.
-using Side = std::pair<std::size_t, std::size_t>;
-
-/// From the side where the boundary enters a cell to the one where it leaves. A side has one cell on its left and one
-/// on its right, so that no two begin at the same one.
-using Steps = std::map<Side, Side>;
-
-/// Adds what crosses one cell. Walking around it counter-clockwise, the boundary leaves where one goes into the region
-/// and enters where one comes out of it. Two corners across, inside, are taken as apart.
-void add_cell(const Grid& grid, const std::array<std::size_t, 4>& corners, Steps& steps) {
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t before = corners[(i + 3) % 4];
-        if (!grid.is_inside(corners[i]) || grid.is_inside(before)) {
-            continue;
-        }
-        std::size_t last = i;  // the last corner inside of this stretch
-        while (grid.is_inside(corners[(last + 1) % 4])) {
-            last = (last + 1) % 4;
-        }
-        steps.emplace(Side{corners[last], corners[(last + 1) % 4]}, Side{corners[i], before});
-    }
-}
-
 }  // namespace
 
 std::vector<std::vector<PlanePoint>> region_boundary(const std::function<bool(double, double)>& contains,
                                                      const MapExtent& extent, std::size_t columns, std::size_t rows) {
     const Grid grid(contains, extent, columns, rows);
-    Steps steps;
-    for (std::size_t k = 0; k < rows; ++k) {
-        for (std::size_t i = 0; i < columns; ++i) {
-            add_cell(grid, {grid.node(i, k), grid.node(i + 1, k), grid.node(i + 1, k + 1), grid.node(i, k + 1)}, steps);
-        }
-    }
+    // Inside counts as the low side: two fields of a region that meet at a corner only are taken as apart.
+    const auto side = [&grid](std::size_t column, std::size_t row) {
+        return grid.is_inside(grid.node(column, row)) ? -1 : 1;
+    };
     std::vector<std::vector<PlanePoint>> lines;
-    for (const auto& sides : take_chains(steps)) {
+    for (const auto& edges : grid_contour(columns + 1, rows + 1, side)) {
         auto& line = lines.emplace_back();
-        for (const auto& [inside, outside] : sides) {
-            line.push_back(grid.crossing(inside, outside));
+        for (const GridEdge& edge : edges) {
+            const std::size_t from = grid.node(edge.column, edge.row);
+            const std::size_t to =
+                edge.is_upright ? grid.node(edge.column, edge.row + 1) : grid.node(edge.column + 1, edge.row);
+            line.push_back(grid.is_inside(from) ? grid.crossing(from, to) : grid.crossing(to, from));
         }
     }
     return lines;

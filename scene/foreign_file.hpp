@@ -12,8 +12,6 @@ namespace downwash::foreign {
 
 /// Larger files are refused unread [bytes].
 inline constexpr std::size_t largest_file = 512UL * 1024 * 1024;
-/// Triangles of a mesh, cubes of an octree.
-inline constexpr std::size_t most_pieces = 2'000'000;
 /// Largest size of a coordinate, in the file's unit; farther out, positions lose their tenths of a millimetre.
 inline constexpr double greatest_coordinate = 1e6;
 

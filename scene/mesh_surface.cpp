@@ -58,8 +58,9 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& fault
         return has_area(corners_of(mesh, triangle));
     };
     const auto& triangles = surface.triangles;
-    if (require(triangles.size() < too_many_parts, ".mesh.file",
-                "has " + std::to_string(triangles.size()) + " triangles: at most 2000000 are allowed") &&
+    if (require(triangles.size() <= most_pieces, ".mesh.file",
+                "has " + std::to_string(triangles.size()) + " triangles: at most " + std::to_string(most_pieces) +
+                    " are allowed") &&
         require(std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_near), ".mesh.file",
                 "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin") &&
         require(std::all_of(triangles.begin(), triangles.end(), is_known), ".mesh.file",

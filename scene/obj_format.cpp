@@ -84,7 +84,7 @@ class Obj {
             lines_.refuse("a face of " + std::to_string(words.size() - 1) + " corners: expected at least 3");
         }
         if (mesh_.triangles.size() + words.size() - 3 > most_pieces) {
-            lines_.refuse("more triangles than expected, which is at most 2000000");
+            lines_.refuse("more triangles than expected, which is at most " + std::to_string(most_pieces));
         }
         const std::uint32_t first = vertex_of(words[1]);
         std::uint32_t before = vertex_of(words[2]);

@@ -217,8 +217,8 @@ class NodeReader {
     }
 
     void add_cube(const Place& place) {
-        if (tree_.cubes.size() >= foreign::most_pieces) {
-            refuse("one occupied leaf more: expected at most 2000000");
+        if (tree_.cubes.size() >= most_pieces) {
+            refuse("one occupied leaf more: expected at most " + std::to_string(most_pieces));
         }
         OccupiedCube cube;
         cube.side_m = place.cells() * header_.resolution_m;

@@ -117,10 +117,9 @@ struct PartsMaker {
         return {obstacle.center_m[0] + p[0], obstacle.center_m[1] + p[1], obstacle.center_m[2] + p[2]};
     }
     void require_room(std::size_t more, const char* name) const {
-        if (solids.parts.count() + more >= too_many_parts) {
-            throw InputError(
-                {{key + name,
-                  "brings the scene above 2000000 triangles and boxes: leave out what the robot cannot reach"}});
+        if (solids.parts.count() + more > most_pieces) {
+            throw InputError({{key + name, "brings the scene above " + std::to_string(most_pieces) +
+                                               " triangles and boxes: leave out what the robot cannot reach"}});
         }
     }
     Scene::Bounds operator()(const Primitive& primitive) const {

@@ -36,8 +36,4 @@ struct Scene::Solids {
 /// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
 void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults);
 
-/// The smallest number of parts that a scene refuses, over all its obstacles. It bounds the memory that a file can ask
-/// for: some 150 bytes a part.
-inline constexpr std::size_t too_many_parts = 2'000'001;
-
 }  // namespace downwash

@@ -85,7 +85,8 @@ Vector3 read_vector(std::string_view bytes, std::size_t at, const std::string& n
 TriangleMesh parse_binary(std::string_view bytes, const std::string& name) {
     const std::size_t count = little_endian(bytes, count_at);
     if (count > most_pieces) {
-        refuse_at(name, count_at, "has " + std::to_string(count) + " triangles: expected at most 2000000");
+        refuse_at(name, count_at,
+                  "has " + std::to_string(count) + " triangles: expected at most " + std::to_string(most_pieces));
     }
     TriangleMesh mesh;
     mesh.vertices_m.reserve(3 * count);
@@ -117,7 +118,7 @@ class AsciiStl {
  private:
     void read_facet() {
         if (mesh_.triangles.size() >= most_pieces) {
-            lines_.refuse("one triangle more: expected at most 2000000");
+            lines_.refuse("one triangle more: expected at most " + std::to_string(most_pieces));
         }
         expect_words({"facet", "normal"}, 3);
         static_cast<void>(numbers(2));  // the normal: only checked

@@ -28,11 +28,11 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const simulation::TickModel& tick() const noexcept { return tick_; }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
-    /// The surface effect on rotor i, or on the body when i is the number of rotors (see rotor_wrench).
+    /// The surface effect on rotor i, or on tick().plant.body() (see rotor_wrench).
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
     /// The effect with its place beside the plane, as a map stores it.
     [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers_[rotor_layer_[rotor]]; }
-    /// Distance of rotor i to the left of the plane [m], and its layer in the aero map.
+    /// Distance of rotor i, or of the body, to the left of the plane [m], and its layer in the aero map.
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
     /// Whether surfaces act on the rotors at all.

@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "downwash/base/grid_contour.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/simulation/grid_contour.hpp"
 
 namespace downwash {
 namespace {
@@ -61,7 +61,7 @@ void fill_row(const FlightModel& model, std::size_t row, HoldMap& map) {
 }
 
 /// Where hover turns from stable to unstable between two nodes, by bisection.
-HoldPoint crossing_of(const FlightModel& model, const HoldMap& map, const simulation::GridEdge& edge) {
+HoldPoint crossing_of(const FlightModel& model, const HoldMap& map, const GridEdge& edge) {
     constexpr double tolerance_m = 1e-4;
     const auto is_stable_at = [&](const HoldPoint& at) {
         return analyse_hover(model, at.x_m, at.z_m, map.arm_rad).verdict == HoldVerdict::stable;
@@ -92,9 +92,9 @@ std::vector<std::vector<HoldPoint>> stability_boundary(const FlightModel& model,
         return verdict == HoldVerdict::stable ? -1 : verdict == HoldVerdict::unstable ? 1 : 0;
     };
     std::vector<std::vector<HoldPoint>> lines;
-    for (const auto& edges : simulation::grid_contour(map.columns, map.rows, side)) {
+    for (const auto& edges : grid_contour(map.columns, map.rows, side)) {
         std::vector<HoldPoint>& line = lines.emplace_back();
-        for (const simulation::GridEdge& edge : edges) {
+        for (const GridEdge& edge : edges) {
             line.push_back(crossing_of(model, map, edge));
         }
     }

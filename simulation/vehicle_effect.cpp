@@ -10,35 +10,20 @@ double weight_n(const FlightModel& model) {
     return model.tick().plant.total_mass_kg * standard_gravity_m_s2;
 }
 
-/// In effect at a pose, with the weight commanded and no torque.
-dynamics::RotorWrench<double> wrench_at(const FlightModel& model, const PlanarPose& pose) {
-    const PlantModel& plant = model.tick().plant;
-    double command_n[max_rotors];
-    dynamics::allocate(plant, weight_n(model), 0.0, command_n);
-    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
-    return dynamics::rotor_wrench(plant, attitude, pose.x_m, pose.z_m, command_n, simulation::DirectFactor{model});
-}
-
 }  // namespace
 
 VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose) {
-    const auto wrench = wrench_at(model, pose);
+    const PlantModel& plant = model.tick().plant;
+    double command_n[max_rotors];
+    dynamics::allocate(plant, weight_n(model), 0.0, command_n);  // no torque
+    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
+    const auto wrench =
+        dynamics::rotor_wrench(plant, attitude, pose.x_m, pose.z_m, command_n, simulation::DirectFactor{model});
     VehicleEffect effect;
     effect.force_factor = wrench.thrust_n / weight_n(model);
     effect.pitch_torque_nm = wrench.pitch_torque_nm;
     effect.pitch_torque_factor = wrench.pitch_torque_nm / (weight_n(model) * model.robot().rotors.radius_m);
     return effect;
-}
-
-VehicleEffectSlopes vehicle_effect_slopes(const FlightModel& model, const PlanarPose& pose) {
-    constexpr double step = 1e-3;  // [m] and [rad]
-    const auto wrench = [&](double rise_m, double turn_rad) {
-        return wrench_at(model, {pose.x_m, pose.z_m + rise_m, pose.pitch_rad + turn_rad, pose.arm_rad});
-    };
-    VehicleEffectSlopes slopes;
-    slopes.force_n_m = (wrench(step, 0).thrust_n - wrench(-step, 0).thrust_n) / (2 * step);
-    slopes.torque_nm_rad = (wrench(0, step).pitch_torque_nm - wrench(0, -step).pitch_torque_nm) / (2 * step);
-    return slopes;
 }
 
 bool is_flyable(const FlightModel& model, const PlanarPose& pose) {

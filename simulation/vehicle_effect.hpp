@@ -13,19 +13,9 @@ struct VehicleEffect {
     double pitch_torque_factor = 0;  ///< the same over weight * R
 };
 
-/// How it changes with the pose: a spring, or the opposite of one.
-struct VehicleEffectSlopes {
-    double force_n_m = 0;      ///< dF/dz; positive pulls away from the height that is held
-    double torque_nm_rad = 0;  ///< dT2/dpitch; positive tips over
-};
-
 /// The effect at a pose (the arm does not matter), evaluated directly. Defined everywhere; where the vehicle is not
 /// flyable it is of no use.
 [[nodiscard]] DOWNWASH_EXPORT VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose);
-
-/// Its slopes, by central differences over 1 mm and 1 mrad.
-[[nodiscard]] DOWNWASH_EXPORT VehicleEffectSlopes vehicle_effect_slopes(const FlightModel& model,
-                                                                        const PlanarPose& pose);
 
 /// Whether every rotor of a vehicle at this pose is inside the flyable area (model 4.4), decided exactly.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const PlanarPose& pose);

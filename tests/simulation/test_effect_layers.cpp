@@ -46,7 +46,7 @@ TEST_CASE("Over wide ground a hovering vehicle with the fountain model lifts as 
     const RotorNeighbours neighbours =
         neighbours_of(problem.robot.rotors.positions_m, 0, problem.robot.rotors.radius_m);
     const EffectCurve whole(EffectModel::multirotor_body, 2, neighbours);
-    const int body = model->tick().plant.rotor_count;
+    const int body = model->tick().plant.body();
     for (const double zeta : {0.8, 1.0, 1.5, 3.0}) {
         const double hub_z = zeta * problem.robot.rotors.radius_m;
         const double on_rotors = model->direct_factor(0, 0.5, hub_z);
@@ -64,7 +64,7 @@ TEST_CASE("The map of the fountain is within 0.01 of the direct effect, inside o
     problem.bounds = {-1, 3, 0.1, 2};
     const auto model = make_flight_model(problem);
     const auto map = model->make_map(problem.bounds);
-    const int body = model->tick().plant.rotor_count;
+    const int body = model->tick().plant.body();
     const std::size_t layer = model->rotor_layer(body);
     double worst = 0;
     for (int i = 0; i < 150; ++i) {

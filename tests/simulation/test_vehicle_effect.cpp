@@ -45,11 +45,27 @@ double ceiling_slope_1_m(double gap_m) {
     return 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * radius_m);
 }
 
+/// How the effect changes with the pose: a spring, or the opposite of one.
+struct Slopes {
+    double force_n_m;      ///< dF/dz
+    double torque_nm_rad;  ///< dT2/dpitch
+};
+
+/// By central differences over 1 mm and 1 mrad.
+Slopes slopes_of(const FlightModel& model, const PlanarPose& pose) {
+    constexpr double step = 1e-3;
+    const auto effect = [&](double rise_m, double turn_rad) {
+        return vehicle_effect(model, {pose.x_m, pose.z_m + rise_m, pose.pitch_rad + turn_rad, pose.arm_rad});
+    };
+    return {weight_n * (effect(step, 0).force_factor - effect(-step, 0).force_factor) / (2 * step),
+            (effect(0, step).pitch_torque_nm - effect(0, -step).pitch_torque_nm) / (2 * step)};
+}
+
 }  // namespace
 
 TEST_CASE("far from everything a vehicle feels no surface") {
     const VehicleEffect effect = vehicle_effect(*model_among({}), {1, 2, 0.2, 0});
-    const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model_among({}), {1, 2, 0.2, 0});
+    const Slopes slopes = slopes_of(*model_among({}), {1, 2, 0.2, 0});
     CHECK(effect.force_factor == Approx(1).epsilon(1e-14));
     CHECK(std::abs(effect.pitch_torque_nm) < 1e-13);
     CHECK(std::abs(slopes.force_n_m) < 1e-9);
@@ -80,7 +96,7 @@ TEST_CASE("wide ground carries like a spring and rights the vehicle") {
     const auto model = model_among({test::box("ground", {30, 20, 1}, {0, 0, -0.5})});
     for (const double height_m : {0.15, 0.3, 0.6}) {
         const VehicleEffect effect = vehicle_effect(*model, {0.4, height_m - hub_height_m, 0, 0});
-        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, height_m - hub_height_m, 0, 0});
+        const Slopes slopes = slopes_of(*model, {0.4, height_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(ground_factor(height_m)).epsilon(1e-9));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
         const double slope_n_m = weight_n * ground_slope_1_m(height_m);
@@ -106,7 +122,7 @@ TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula 
             radius_m * radius_m * (1 / (16 * z_m * z_m) + image(d_m) + 0.5 * image(std::sqrt(2.0) * d_m));
         const double body = 2 * radius_m * radius_m * 2 * image(b_m);  // thesis (2.17) with K_b = 2
         const VehicleEffect effect = vehicle_effect(*model, {0.4, z_m - hub_height_m, 0, 0});
-        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, z_m - hub_height_m, 0, 0});
+        const Slopes slopes = slopes_of(*model, {0.4, z_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(1 / (1 - rotors - body)).epsilon(1e-6));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
         CHECK(slopes.force_n_m < 0);
@@ -117,7 +133,7 @@ TEST_CASE("a wide ceiling pulls away from the height that is held and tips the v
     const auto model = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
     for (const double gap_m : {0.1, 0.2, 0.5}) {
         const VehicleEffect effect = vehicle_effect(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
-        const VehicleEffectSlopes slopes = vehicle_effect_slopes(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
+        const Slopes slopes = slopes_of(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(ceiling_factor(gap_m)).epsilon(1e-9));
         const double slope_n_m = weight_n * ceiling_slope_1_m(gap_m);
         CHECK(slopes.force_n_m == Approx(slope_n_m).epsilon(1e-3));
@@ -140,9 +156,8 @@ TEST_CASE("mirroring scene and vehicle mirrors the parasitic torque and nothing 
         const PlanarPose pose{random.uniform(-2, 2), random.uniform(0, 4), random.uniform(-0.5, 0.5), 0};
         const VehicleEffect a = vehicle_effect(*model_among(here), pose);
         const VehicleEffect b = vehicle_effect(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
-        const VehicleEffectSlopes c = vehicle_effect_slopes(*model_among(here), pose);
-        const VehicleEffectSlopes d =
-            vehicle_effect_slopes(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
+        const Slopes c = slopes_of(*model_among(here), pose);
+        const Slopes d = slopes_of(*model_among(mirrored), {-pose.x_m, pose.z_m, -pose.pitch_rad, 0});
         CHECK(a.force_factor == Approx(b.force_factor).epsilon(1e-9));
         CHECK(a.pitch_torque_nm == Approx(-b.pitch_torque_nm).margin(1e-7));
         CHECK(c.force_n_m == Approx(d.force_n_m).epsilon(1e-6).margin(1e-4));

@@ -1,10 +1,10 @@
-#include "downwash/simulation/grid_contour.hpp"
+#include "downwash/base/grid_contour.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-namespace downwash::simulation {
+namespace downwash {
 namespace {
 
 using Side = std::function<int(std::size_t, std::size_t)>;
@@ -104,4 +104,4 @@ std::vector<std::vector<GridEdge>> grid_contour(std::size_t columns, std::size_t
     return chains.lines();
 }
 
-}  // namespace downwash::simulation
+}  // namespace downwash

@@ -6,7 +6,7 @@
 
 #include "downwash/base/export.hpp"
 
-namespace downwash::simulation {
+namespace downwash {
 
 /// An edge of a grid between the nodes (column, row) and (column + 1, row), or (column, row + 1) when it is upright.
 struct GridEdge {
@@ -21,4 +21,4 @@ struct GridEdge {
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::vector<GridEdge>> grid_contour(
     std::size_t columns, std::size_t rows, const std::function<int(std::size_t, std::size_t)>& side);
 
-}  // namespace downwash::simulation
+}  // namespace downwash
