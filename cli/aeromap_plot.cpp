@@ -9,10 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/angles.hpp"
 #include "downwash/base/files.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -42,21 +44,20 @@ FieldFigure torque_kind(const PlotRequest& /*request*/, const Problem& problem, 
 }
 
 FieldFigure hold_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
-    constexpr double radians_per_degree = 0.017453292519943295;
     const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     return vehicle_figure(problem, [&](const FlightModel& model) {
-        return hold_figure(problem, model, extent, request.arm_deg * radians_per_degree, threads);
+        return hold_figure(problem, model, extent, request.arm_deg / degrees_per_radian, threads);
     });
 }
 
 /// Every picture of a problem there is.
 constexpr std::array<FieldKind, 6> field_kinds{{
-    {"factor", "factor on a rotor's thrust", &factor_figure},
-    {"ground", "the same from surfaces below alone", &factor_figure},
-    {"ceiling", "the same from surfaces above alone", &factor_figure},
-    {"force", "factor on the level vehicle's thrust", &force_kind},
-    {"torque", "pitch torque on it", &torque_kind},
-    {"hold", "where it can hover, with --arm-deg", &hold_kind},
+    {"factor", "factor on a rotor's thrust", one_rotor, &factor_figure},
+    {"ground", "the same from surfaces below alone", one_rotor, &factor_figure},
+    {"ceiling", "the same from surfaces above alone", one_rotor, &factor_figure},
+    {"force", "factor on the level vehicle's thrust", whole_vehicle, &force_kind},
+    {"torque", "pitch torque on it", whole_vehicle, &torque_kind},
+    {"hold", "where it can hover, with --arm-deg", where_to_hover, &hold_kind},
 }};
 
 std::string kinds_text() {
@@ -77,6 +78,58 @@ const FieldKind& kind_named(const std::string& name) {
     }
     throw UsageError("--what '" + excerpt(name) + "' is not known: expected " + joined_names(names) +
                      did_you_mean(name, names));
+}
+
+/// Options that only some pictures care for.
+struct OptionUse {
+    std::string_view option;
+    unsigned subjects;
+    const char* use;  ///< for people
+};
+
+constexpr unsigned any_of_a_problem = one_rotor | whole_vehicle | where_to_hover;
+constexpr std::array<OptionUse, 11> option_uses{{
+    {"--what", any_of_a_problem, "it goes with PROBLEM"},
+    {"--rotor", one_rotor, "it goes with PROBLEM and --what factor, ground or ceiling"},
+    {"--lateral", one_rotor, "it goes with PROBLEM and --what factor, ground or ceiling"},
+    {"--arm-deg", where_to_hover, "it goes with PROBLEM and --what hold"},
+    {"--x", any_of_a_problem, "it goes with PROBLEM"},
+    {"--z", any_of_a_problem, "it goes with PROBLEM"},
+    {"--surface", curves, "it goes with --data"},
+    {"--source", curves, "it goes with --data"},
+    {"--max-factor", curves, "it goes with --model"},
+    {"--rotor-spacing", curves, "it goes with --model multirotor-images or multirotor-body"},
+    {"--z-over-r", curves | flow, "it goes with --model, --data or --flow"},
+}};
+
+PictureSubject subject_of(const PlotRequest& request) {
+    if (request.is_flow) {
+        return flow;
+    }
+    return request.problem.empty() ? curves : kind_named(request.what).subject;
+}
+
+/// Whether an option that goes with curves has something to act on.
+bool has_use(std::string_view option, const PlotRequest& request) {
+    if (option == "--surface" || option == "--source") {
+        return !request.data.empty();
+    }
+    if (option == "--rotor-spacing") {
+        return std::any_of(request.models.begin(), request.models.end(),
+                           [](const std::string& name) { return is_multirotor(model_named(name).model); });
+    }
+    return option != "--max-factor" || !request.models.empty();
+}
+
+void refuse_useless_options(const PlotRequest& request) {
+    const PictureSubject subject = subject_of(request);
+    for (const OptionUse& use : option_uses) {
+        const auto& given = request.given_options;
+        if (std::find(given.begin(), given.end(), use.option) != given.end() &&
+            !((use.subjects & subject) != 0 && (subject != curves || has_use(use.option, request)))) {
+            throw UsageError(fmt::format("{} changes nothing in this picture: {}", use.option, use.use));
+        }
+    }
 }
 
 /// What of one axis is shown. @param usual where nothing is given
@@ -110,6 +163,7 @@ void require_sound_options(const PlotRequest& request) {
             "aeromap plot wants one of PROBLEM, --model NAME... (with or without --data CSV), and --flow with "
             "--z-over-r H");
     }
+    refuse_useless_options(request);
     if (request.width_px < least_picture_width_px || request.width_px > most_picture_width_px) {
         throw UsageError(fmt::format("--width {}: expected {} to {} pixels", request.width_px, least_picture_width_px,
                                      most_picture_width_px));
@@ -197,7 +251,12 @@ void add_aeromap_plot(CLI::App& aeromap, Action& action) {
     CLI::App* plot = aeromap.add_subcommand(
         "plot", "Pictures: a problem's aero map, curves of models with measurements, a rotor's potential flow");
     add_options(*plot, *request);
-    plot->callback([request, &action] { action = [request] { return run(*request); }; });
+    plot->callback([request, plot, &action] {
+        for (const CLI::Option* option : plot->get_options([](const CLI::Option* one) { return one->count() > 0; })) {
+            request->given_options.push_back(option->get_name());
+        }
+        action = [request] { return run(*request); };
+    });
 }
 
 }  // namespace downwash::cli

@@ -97,6 +97,10 @@ AxisRange range_of(const std::function<double(double, double)>& field, const Map
 
 }  // namespace
 
+std::string undefined_name(const Problem& problem) {
+    return problem.aero.map ? "not flyable, or outside the given map" : "not flyable";
+}
+
 FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
     const auto scene = std::make_shared<const Scene>(problem.obstacles);
     const MapLayer layer = shown_layer(request, problem, scene);
@@ -105,6 +109,7 @@ FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, co
     figure.title = fmt::format("{}: factor K on the thrust of rotor {}{}", problem.name, request.rotor, side);
     figure.subtitle = fmt::format("rotor hub {}; {}", place_text(layer.lateral_m), model_text(request, problem.aero));
     figure.extent = extent;
+    figure.undefined_name = undefined_name(problem);
     figure.value = field_of(layer, problem.plane, extent);
     const AxisRange range = range_of(figure.value, extent);
     figure.scale = factor_scale("K, thrust over that in free air at the same command [1]", range.low, range.high);

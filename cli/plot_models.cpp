@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
@@ -44,7 +45,7 @@ Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRa
         choice.rotor_spacing = request.rotor_spacing;
     }
     const EffectCurve effect = curve_option(choice);
-    Curve curve{std::string(model.name), {}};
+    Curve curve{std::string(model.name), {}, AxisRange{model.valid_from, model.valid_to}};
     for (int i = 0; i <= intervals; ++i) {
         const double z_over_r = range.low + (range.high - range.low) * i / intervals;
         curve.points.push_back({z_over_r, effect(z_over_r)});
@@ -92,9 +93,10 @@ std::vector<std::string> groups(const Measurements& measurements, const char* co
         const std::vector<std::string> entries = measurements.entries(column);
         if (std::find(entries.begin(), entries.end(), wanted) == entries.end()) {
             const std::vector<std::string_view> names(entries.begin(), entries.end());
-            throw UsageError(fmt::format("--{} '{}' leaves no measurement: {}", column, excerpt(wanted),
-                                         names.empty() ? fmt::format("there is no column {}", column)
-                                                       : "expected " + excerpt(joined_names(names))));
+            throw UsageError(
+                fmt::format("--{} '{}' leaves no measurement: {}", column, excerpt(wanted),
+                            names.empty() ? fmt::format("there is no column {}", column)
+                                          : "expected " + excerpt(joined_names(names)) + did_you_mean(wanted, names)));
         }
         return {wanted};
     }
@@ -135,6 +137,7 @@ CurveFigure model_figure(const PlotRequest& request) {
     figure.y_label = "K, thrust over that in free air [1]";
     figure.x_range = range;
     figure.level = 1;
+    figure.dotted_name = "where the model was not shown to hold";
     for (const std::string& name : request.models) {
         figure.curves.push_back(curve_of(name, request, range));
     }

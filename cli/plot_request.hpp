@@ -23,17 +23,31 @@ struct PlotRequest {
     std::vector<double> z_over_r;
     std::optional<double> max_factor, rotor_spacing;
     bool is_flow = false;
+    std::vector<std::string> given_options;
     std::string output;
     int width_px = 1200;
     bool is_quiet = false;
+};
+
+/// What a picture is about; options go with some of these.
+enum PictureSubject : unsigned {
+    one_rotor = 1,       ///< of a problem
+    whole_vehicle = 2,   ///< of a problem
+    where_to_hover = 4,  ///< of a problem
+    curves = 8,
+    flow = 16,
 };
 
 /// One kind of picture of a problem, by the name that --what gives it.
 struct FieldKind {
     const char* name;
     const char* description;
+    PictureSubject subject;
     FieldFigure (*make)(const PlotRequest& request, const Problem& problem, const MapExtent& extent);
 };
+
+/// What it means in pictures of a problem that nothing is known at a place.
+[[nodiscard]] std::string undefined_name(const Problem& problem);
 
 /// The factor on the thrust of a rotor, or one of its sides: "factor", "ground" and "ceiling". @throws UsageError
 [[nodiscard]] FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const MapExtent& extent);

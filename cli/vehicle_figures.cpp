@@ -8,6 +8,8 @@
 #include <memory>
 #include <utility>
 
+#include "downwash/base/angles.hpp"
+#include "downwash/cli/plot_request.hpp"
 #include "downwash/simulation/hold_map.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -15,7 +17,6 @@ namespace downwash::cli {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double degrees_per_radian = 57.295779513082320877;
 
 FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent,
                            std::string title) {
@@ -25,6 +26,7 @@ FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, con
     figure.x_label = "x of the centre of mass [m]";
     figure.z_label = "z of the centre of mass [m]";
     figure.extent = extent;
+    figure.undefined_name = undefined_name(problem);
     figure.obstacles = obstacle_outlines(model.effect(0).scene(), model.plane(), 0);
     return figure;
 }

@@ -26,6 +26,8 @@ struct EffectModelInfo {
     std::string_view source;    ///< where the formula comes from
     std::string_view formula;   ///< for people, in plain text; K over zeta = z/R
     std::string_view validity;  ///< range of z/R in which it was shown to hold
+    double valid_from;          ///< where that begins; 0 when no end is known
+    double valid_to;            ///< where it ends; infinite when no end is known
     std::span<const ModelParameter> parameters;
 };
 

@@ -26,6 +26,7 @@ constexpr std::array<Color, 8> colors{{{0, 114, 178},
                                        {86, 180, 233},
                                        {150, 150, 150}}};
 constexpr std::array<std::string_view, 4> dashes{"", " dashtype (24,8)", " dashtype (8,6)", " dashtype (24,8,6,8)"};
+constexpr char dotted[] = "linewidth 1.6 dashtype (2,5)";
 constexpr std::array<int, 6> point_types{7, 5, 9, 13, 6, 4};
 
 bool is_finite(const DiagramPoint& p) {
@@ -103,6 +104,9 @@ class Panel {
         for (std::size_t i = 0; i < figure.measurements.size(); ++i) {
             add_measurements(figure.measurements[i], i);
         }
+        if (has_dotted_) {
+            legend_.add(figure.dotted_name, {fmt::format("{} linecolor rgb '#606060'", dotted), {}, {}});
+        }
         legend_height_px_ = legend_.height_px(width_px);
     }
 
@@ -150,15 +154,31 @@ class Panel {
     }
 
     void add_curve(const Curve& curve, std::size_t i) {
-        std::string rows;
-        for (const DiagramPoint& p : curve.points) {
-            rows += is_finite(p) ? fmt::format("{:.9g} {:.9g}\n", p.x, p.y) : "\n";
+        const auto is_known = [&curve](const DiagramPoint& p) {
+            return !curve.known_range || (p.x >= curve.known_range->low && p.x <= curve.known_range->high);
+        };
+        const auto& points = curve.points;
+        // The interval across an end of the range is dotted.
+        std::string known_rows, other_rows;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const std::string row =
+                is_finite(points[k]) ? fmt::format("{:.9g} {:.9g}\n", points[k].x, points[k].y) : "\n";
+            const bool is_beside_other =
+                (k > 0 && !is_known(points[k - 1])) || (k + 1 < points.size() && !is_known(points[k + 1]));
+            known_rows += is_known(points[k]) ? row : "\n";
+            other_rows += !is_known(points[k]) || is_beside_other ? row : "\n";
         }
+        const std::string color = in_quotes(colors[i % colors.size()]);
         const std::string style =
-            fmt::format("linewidth 2{} linecolor rgb {}", dashes[i / colors.size() % dashes.size()],
-                        in_quotes(colors[i % colors.size()]));
-        add(rows, "using 1:2 with lines " + style);
+            fmt::format("linewidth 2{} linecolor rgb {}", dashes[i / colors.size() % dashes.size()], color);
+        if (std::any_of(points.begin(), points.end(), is_known)) {
+            add(known_rows, "using 1:2 with lines " + style);
+        }
         legend_.add(curve.name, {style, {}, {}});
+        if (!std::all_of(points.begin(), points.end(), is_known)) {
+            add(other_rows, fmt::format("using 1:2 with lines {} linecolor rgb {}", dotted, color));
+            has_dotted_ = true;
+        }
     }
 
     void add_measurements(const MeasuredPoints& measured, std::size_t i) {
@@ -182,6 +202,7 @@ class Panel {
     Legend legend_;
     double legend_height_px_ = 0;
     int count_ = 0;
+    bool has_dotted_ = false;
     std::string data_, elements_;
 };
 

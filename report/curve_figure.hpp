@@ -15,10 +15,16 @@ struct DiagramPoint {
     double x = 0, y = 0;
 };
 
+/// A range of an axis.
+struct AxisRange {
+    double low = 0, high = 1;
+};
+
 /// A line through points; one that is not finite interrupts it.
 struct Curve {
     std::string name;
     std::vector<DiagramPoint> points;
+    std::optional<AxisRange> known_range = {};  ///< of x, both ends may be infinite: outside, the line is dotted
 };
 
 /// Points with or without error bars.
@@ -26,11 +32,6 @@ struct MeasuredPoints {
     std::string name;
     std::vector<DiagramPoint> points;
     std::vector<double> errors;  ///< half the length of each bar, in y; empty for none, else one for each point
-};
-
-/// A range of an axis.
-struct AxisRange {
-    double low = 0, high = 1;
 };
 
 /// A diagram of curves and measured points over one quantity. Colours go round after eight (Okabe and Ito 2008, legible
@@ -43,6 +44,7 @@ struct CurveFigure {
     std::optional<double> level;                ///< a thin level line, for example at K = 1
     std::vector<Curve> curves;
     std::vector<MeasuredPoints> measurements;
+    std::string dotted_name = "outside the known range";  ///< what the legend says of dotted lines
 };
 
 /// The picture as the bytes of a file: the figures one below the other, with axes of equal width, for example a fit

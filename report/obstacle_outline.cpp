@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/report/joined_rings.hpp"
 #include "downwash/report/mesh_section.hpp"
 #include "downwash/report/planar_hull.hpp"
 
@@ -140,8 +141,8 @@ class OutlineOf {
  public:
     OutlineOf(const Frame& frame, ObstacleOutline& outline) : frame_(frame), outline_(outline) {}
 
-    void operator()(const Box& box) const { add({box_at({0, 0, 0}, box.size_m, frame_)}); }
-    void operator()(const Cylinder& cylinder) const { add({prism_of(cylinder, frame_)}); }
+    void operator()(const Box& box) const { add(box_at({0, 0, 0}, box.size_m, frame_)); }
+    void operator()(const Cylinder& cylinder) const { add(prism_of(cylinder, frame_)); }
 
     void operator()(const Sphere& sphere) const {
         const Vector3 center_m = frame_({0, 0, 0});
@@ -166,28 +167,45 @@ class OutlineOf {
     }
 
     void operator()(const Octomap& octomap) const {
-        std::vector<Polyhedron> cubes;
-        cubes.reserve(octomap.tree->cubes.size());
+        constexpr double half_diagonal = 0.8661;  // of a cube, in its sides
+        const auto cube_at = [this](const OccupiedCube& cube) {
+            return box_at(cube.center_m, {cube.side_m, cube.side_m, cube.side_m}, frame_);
+        };
+        std::vector<std::vector<PlanePoint>> sections;
         for (const OccupiedCube& cube : octomap.tree->cubes) {
-            cubes.push_back(box_at(cube.center_m, {cube.side_m, cube.side_m, cube.side_m}, frame_));
+            if (std::abs(frame_(cube.center_m)[1]) <= half_diagonal * cube.side_m) {
+                add_section(cube_at(cube), sections);
+            }
         }
-        add(cubes);
+        outline_.rings = joined_rings(sections);
+        outline_.is_cut = !outline_.rings.empty();
+        if (!outline_.is_cut) {
+            std::vector<PlanePoint> corners;
+            for (const OccupiedCube& cube : octomap.tree->cubes) {
+                constexpr std::size_t many = 100'000;
+                for (const Vector3& corner_m : cube_at(cube).corners_m) {
+                    corners.push_back(projected(corner_m));
+                }
+                if (corners.size() > many) {
+                    corners = convex_hull(std::move(corners));
+                }
+            }
+            outline_.rings = {convex_hull(std::move(corners))};
+        }
     }
 
  private:
-    void add(const std::vector<Polyhedron>& solids) const {
-        for (const Polyhedron& solid : solids) {
-            if (auto ring = section(solid); ring.size() > 2) {
-                outline_.rings.push_back(std::move(ring));
-            }
+    static void add_section(const Polyhedron& solid, std::vector<std::vector<PlanePoint>>& rings) {
+        if (auto ring = section(solid); ring.size() > 2) {
+            rings.push_back(std::move(ring));
         }
+    }
+
+    void add(const Polyhedron& solid) const {
+        add_section(solid, outline_.rings);
         outline_.is_cut = !outline_.rings.empty();
         if (!outline_.is_cut) {
-            std::vector<Vector3> corners_m;
-            for (const Polyhedron& solid : solids) {
-                corners_m.insert(corners_m.end(), solid.corners_m.begin(), solid.corners_m.end());
-            }
-            outline_.rings = {projection(corners_m)};
+            outline_.rings = {projection(solid.corners_m)};
         }
     }
 

@@ -126,6 +126,19 @@ TEST_CASE("What cannot be plotted is refused with a remedy, and leaves no file")
         {plot("a.svg", {problem, "--z", "1", "1e9"}), "--z 1"},
         {plot("a.svg", {problem, "--x", "0", "1000", "--z", "0", "1"}), "40 times"},
         {plot("a.svg", {problem, "--width", "20"}), "--width 20"},
+        {plot("a.svg", {problem, "--arm-deg", "90"}),
+         "--arm-deg changes nothing in this picture: it goes with PROBLEM"},
+        {plot("a.svg", {problem, "--what", "hold", "--rotor", "2"}), "--rotor changes nothing"},
+        {plot("a.svg", {problem, "--what", "force", "--lateral", "0"}), "--lateral changes nothing"},
+        {plot("a.svg", {problem, "--max-factor", "3"}), "it goes with --model"},
+        {plot("a.svg", {problem, "--z-over-r", "1", "2"}), "--model, --data or --flow"},
+        {plot("a.svg", {"--model", "he", "--what", "factor"}), "--what changes nothing"},
+        {plot("a.svg", {"--model", "he", "--x", "0", "1"}), "--x changes nothing"},
+        {plot("a.svg", {"--model", "he", "--surface", "ground"}), "it goes with --data"},
+        {plot("a.svg", {"--model", "he", "--rotor-spacing", "3"}), "multirotor-images or multirotor-body"},
+        {plot("a.svg", {"--data", "data.csv", "--max-factor", "3"}), "it goes with --model"},
+        {plot("a.svg", {"--flow", "--z-over-r", "1", "--source", "me"}), "--source changes nothing"},
+        {plot("a.svg", {"--data", "data.csv", "--surface", "grund"}), "did you mean 'ground'?"},
         {plot("a.svg", {"--model", "no-such-model"}), "no-such-model"},
         {plot("a.svg", {"--model", "table"}), "no curve of its own"},
         {plot("a.svg", {"--model", "he", "--z-over-r", "3", "1"}), "--z-over-r 3 1"},
@@ -164,4 +177,30 @@ TEST_CASE("A file's name that would be a command is a name") {
     const auto files = files_in(folder.path() / "run");
     REQUIRE(files.size() == 1);
     CHECK(files.begin()->first == name);
+}
+
+TEST_CASE("Curves are dotted where their models were not shown to hold") {
+    const ScratchFolder folder;
+    CHECK(run(folder, plot("k.svg", {"--model", "he", "--z-over-r", "0.1", "3"})).code == 0);
+    CHECK_THAT(picture_in(folder, "k.svg"), Contains("where the model was not shown to hold"));
+    CHECK(run(folder, plot("k.svg", {"--model", "he", "--z-over-r", "0.3", "3"})).code == 0);
+    CHECK_THAT(picture_in(folder, "k.svg"), !Contains("not shown to hold"));
+}
+
+TEST_CASE("Outside a given map a picture is hatched, and says what that means") {
+    const ScratchFolder folder;
+    std::string text = read_file(problem_file("open_air"));
+    const std::string robot = "robots/ars_lrm.yaml";
+    const std::string shipped = problem_file("open_air");
+    text.replace(text.find(robot), robot.size(), shipped.substr(0, shipped.rfind('/') + 1) + robot);
+    write_file(folder / "map.csv", "x_m,z_m,factor\n-20,-20,1.1\n20,-20,1.1\n-20,20,1\n20,20,1\n");
+    write_file(folder / "problem.yaml", text + "aero: {map: map.csv}\n");
+    for (const char* what : {"factor", "force"}) {
+        const Result result = run(folder, plot("a.svg", {folder / "problem.yaml", "--what", what, "--x", "-30", "30",
+                                                         "--z", "-15", "25", "--width", "500"}));
+        CAPTURE(result.err);
+        REQUIRE(result.code == 0);
+        CHECK_THAT(picture_in(folder, "a.svg"),
+                   Contains("not flyable, or outside the given map") && Contains("<pattern"));
+    }
 }

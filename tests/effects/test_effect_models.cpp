@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "../support/random.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/effects/effect_table.hpp"
 
@@ -202,6 +203,16 @@ TEST_CASE("Models are found by the name that a problem file uses") {
         CHECK(&info(found->model) == found);
         CHECK(!found->source.empty());
         CHECK(!found->validity.empty());
+        CHECK(found->valid_from < found->valid_to);
+        // What the text says in words.
+        const std::string validity(found->validity);
+        for (const double end : {found->valid_from, found->valid_to}) {
+            if (end > 0 && std::isfinite(end)) {
+                CHECK(validity.find(to_text(end)) != std::string::npos);
+            }
+        }
+        const bool has_end = found->valid_from > 0 || std::isfinite(found->valid_to);
+        CHECK(has_end == validity.starts_with("z/R"));
     }
     CHECK(find_effect_model("cheeseman") == nullptr);
     CHECK(find_effect_model("") == nullptr);

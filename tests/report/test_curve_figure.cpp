@@ -83,3 +83,26 @@ TEST_CASE("diagrams without anything to draw are refused") {
     CHECK_THROWS_WITH(draw(figure, settings), Contains("2 to 2 is empty"));
     CHECK_THROWS_AS(draw(sample_figure(), {PictureFormat::svg, 10}), InputError);
 }
+
+TEST_CASE("a curve is dotted outside the range in which it is known, and the legend says so") {
+    CurveFigure figure;
+    figure.curves = {{"known in the middle", {{0, 1}, {1, 1.1}, {2, 1.2}, {3, 1.3}}, AxisRange{1, 2}},
+                     {"known everywhere", {{0, 1}, {3, 1.2}}}};
+    figure.dotted_name = "nobody has measured";
+    const std::string picture = draw(figure, {PictureFormat::svg, 800});
+    CHECK(holds(test::svg_texts(picture), "nobody has measured"));
+    const auto dotted_lines = [](const std::string& svg) {
+        std::size_t count = 0;
+        for (std::size_t at = svg.find("stroke-dasharray"); at != std::string::npos;
+             at = svg.find("stroke-dasharray", at + 1)) {
+            ++count;
+        }
+        return count;
+    };
+    figure.curves[0].known_range = AxisRange{0, std::numeric_limits<double>::infinity()};
+    const std::string whole = draw(figure, {PictureFormat::svg, 800});
+    CHECK(dotted_lines(picture) > dotted_lines(whole));  // gnuplot writes some of its own
+    CHECK_FALSE(holds(test::svg_texts(whole), "nobody has measured"));
+    figure.curves = {{"known nowhere here", {{0, 1}, {1, 1.1}}, AxisRange{5, 6}}};
+    CHECK_NOTHROW(draw(figure, {PictureFormat::svg, 800}));
+}

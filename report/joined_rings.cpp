@@ -1,0 +1,78 @@
+#include "downwash/report/joined_rings.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include "downwash/report/chains.hpp"
+#include "downwash/report/planar_hull.hpp"
+
+namespace downwash {
+namespace {
+
+using Ring = std::vector<PlanePoint>;
+/// A corner's place, in steps in which rounding does not show.
+using Corner = std::pair<long long, long long>;
+
+constexpr double step_m = 1e-7;
+
+Corner corner_at(const PlanePoint& p) {
+    return {std::llround(p.x_m / step_m), std::llround(p.z_m / step_m)};
+}
+
+/// Without the corners at which the outline does not turn.
+Ring straightened(const Ring& ring) {
+    Ring kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanePoint& before = ring[(i + ring.size() - 1) % ring.size()];
+        const PlanePoint& after = ring[(i + 1) % ring.size()];
+        const double length_m = std::hypot(after.x_m - before.x_m, after.z_m - before.z_m);
+        // Twice the area over the base is the corner's height.
+        if (std::abs(turn(before, ring[i], after)) > 2 * step_m * length_m) {
+            kept.push_back(ring[i]);
+        }
+    }
+    return kept;
+}
+
+}  // namespace
+
+std::vector<Ring> joined_rings(const std::vector<Ring>& rings) {
+    std::map<Corner, PlanePoint> points;
+    std::map<std::pair<Corner, Corner>, std::size_t> edges;  // how often each is there
+    for (const Ring& ring : rings) {
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Corner from = corner_at(ring[i]), to = corner_at(ring[(i + 1) % ring.size()]);
+            points.emplace(from, ring[i]);
+            if (from == to) {
+                continue;
+            }
+            if (const auto back = edges.find({to, from}); back == edges.end()) {
+                ++edges[{from, to}];
+            } else if (--back->second == 0) {
+                edges.erase(back);
+            }
+        }
+    }
+    std::multimap<Corner, Corner> steps;
+    for (const auto& [edge, count] : edges) {
+        for (std::size_t i = 0; i < count; ++i) {
+            steps.emplace(edge);
+        }
+    }
+    std::vector<Ring> joined;
+    for (auto& chain : take_chains(steps)) {
+        chain.pop_back();  // the first corner again
+        Ring ring;
+        for (const Corner& corner : chain) {
+            ring.push_back(points.at(corner));
+        }
+        if (ring = straightened(ring); ring.size() > 2) {
+            joined.push_back(std::move(ring));
+        }
+    }
+    return joined;
+}
+
+}  // namespace downwash

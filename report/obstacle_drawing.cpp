@@ -1,0 +1,181 @@
+#include "downwash/report/obstacle_drawing.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "downwash/report/label_placement.hpp"
+#include "downwash/report/picture_text.hpp"
+#include "downwash/report/plot_data.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double label_height_px = 18;
+constexpr char obstacle_color[] = "'#6e6e6e'";
+constexpr char outline_color[] = "'#303030'";
+
+/// All rings as one closed line. The ways between them are walked there and back and enclose nothing, so that holes,
+/// which run the other way round, stay open.
+std::string fill_text(const std::vector<Ring>& rings) {
+    std::string text;
+    std::string way_back;
+    for (const Ring& ring : rings) {
+        if (!ring.empty()) {
+            text += points_text(ring, true);
+            way_back.insert(0, points_text({ring[0]}, false));
+        }
+    }
+    return text + way_back;
+}
+
+/// A name as it is drawn.
+std::string shown_name(const std::string& name) {
+    constexpr std::size_t most_characters = 40;
+    return picture_text(name, most_characters);
+}
+
+}  // namespace
+
+std::vector<ObstacleOutline> merged_outlines(const std::vector<ObstacleOutline>& outlines) {
+    std::vector<ObstacleOutline> merged;
+    std::map<std::pair<bool, std::string>, std::size_t> seen;
+    for (const ObstacleOutline& outline : outlines) {
+        std::string corners;
+        for (const auto* rings : {&outline.rings, &outline.lines}) {
+            for (const Ring& ring : *rings) {
+                for (const PlanePoint& p : ring) {
+                    corners += fmt::format("{} {} ", std::lround(p.x_m * 1e4), std::lround(p.z_m * 1e4));
+                }
+            }
+        }
+        const auto [place, is_new] = seen.emplace(std::pair(outline.is_cut, corners), merged.size());
+        if (is_new) {
+            merged.push_back(outline);
+        } else {
+            merged[place->second].name += ", " + outline.name;
+        }
+    }
+    return merged;
+}
+
+std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outlines, double px_per_m) {
+    constexpr std::size_t most_corners = 20'000;
+    constexpr double least_px = 0.5;
+    std::size_t corners = 0;
+    for (const ObstacleOutline& outline : outlines) {
+        for (const auto* rings : {&outline.rings, &outline.lines}) {
+            for (const Ring& ring : *rings) {
+                corners += ring.size();
+            }
+        }
+    }
+    if (corners <= most_corners) {
+        return outlines;
+    }
+    const double least_m = least_px / px_per_m;
+    const auto thin = [least_m](std::vector<Ring>& rings, std::size_t least_corners) {
+        for (Ring& ring : rings) {
+            Ring kept;
+            for (const PlanePoint& p : ring) {
+                if (kept.empty() || std::hypot(p.x_m - kept.back().x_m, p.z_m - kept.back().z_m) >= least_m) {
+                    kept.push_back(p);
+                }
+            }
+            ring = std::move(kept);
+        }
+        std::erase_if(rings, [least_corners](const Ring& ring) { return ring.size() < least_corners; });
+    };
+    for (ObstacleOutline& outline : outlines) {
+        thin(outline.rings, 3);
+        thin(outline.lines, 2);
+    }
+    std::erase_if(outlines,
+                  [](const ObstacleOutline& outline) { return outline.rings.empty() && outline.lines.empty(); });
+    return outlines;
+}
+
+void add_obstacles(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
+    bool has_cut = false, has_projected = false;
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        const ObstacleOutline& outline = outlines[i];
+        const std::string edge = fmt::format("$edge{}", i);
+        if (!outline.is_cut) {
+            plot.add_lines(edge, "dashtype (14,9) linewidth 1.3 linecolor rgb '#505050'",
+                           std::exchange(has_projected, true) ? "" : "obstacle beside the plane, projected");
+            continue;
+        }
+        if (!outline.rings.empty()) {
+            plot.add_fill(fmt::format("$fill{}", i),
+                          fmt::format("fillstyle solid noborder fillcolor rgb {}", obstacle_color),
+                          std::exchange(has_cut, true) ? "" : "obstacle");
+        }
+        // The many cubes of an octree are shown as one.
+        constexpr std::size_t most_outlined = 30;
+        plot.add_lines(edge, outline.rings.size() <= most_outlined
+                                 ? fmt::format("linewidth 1 linecolor rgb {}", outline_color)
+                                 : fmt::format("linewidth 0.5 linecolor rgb {}", obstacle_color));
+    }
+}
+
+void add_obstacle_data(GnuplotScript& script, const std::vector<ObstacleOutline>& outlines) {
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        add_data(script, fmt::format("$fill{}", i), fill_text(outlines[i].rings));
+        add_data(script, fmt::format("$edge{}", i),
+                 lines_text(outlines[i].rings, true) + lines_text(outlines[i].lines, false));
+    }
+}
+
+void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<ObstacleOutline>& outlines,
+                        const FieldLayout& layout) {
+    const MapExtent& extent = figure.extent;
+    const double px_per_m = layout.width() / (extent.x_high_m - extent.x_low_m);
+    std::vector<NamedShape> shapes;
+    for (const ObstacleOutline& outline : outlines) {
+        NamedShape shape{outline.name, text_width_px(shown_name(outline.name), font_px) + 6, outline.is_cut, {}};
+        for (const auto* rings : {&outline.rings, &outline.lines}) {
+            for (const Ring& ring : *rings) {
+                auto& pixels = shape.rings.emplace_back();
+                for (const PlanePoint& p : ring) {
+                    pixels.push_back({layout.left + (p.x_m - extent.x_low_m) * px_per_m,
+                                      layout.bottom + (p.z_m - extent.z_low_m) * px_per_m});
+                }
+            }
+        }
+        shapes.push_back(std::move(shape));
+    }
+    const PixelBox area{layout.left + 2, layout.right - 2, layout.bottom + 2, layout.top - 2};
+    // A name hides nothing where the field is of one colour.
+    const auto color_at = [&](const PixelPoint& p) {
+        const double place = position_on(figure.scale, figure.value(extent.x_low_m + (p.x - layout.left) / px_per_m,
+                                                                    extent.z_low_m + (p.y - layout.bottom) / px_per_m));
+        return std::isnan(place) ? -1 : static_cast<int>(place);
+    };
+    for (const PlacedLabel& label : place_labels(shapes, area, label_height_px, color_at)) {
+        const PixelPoint middle = label.box.middle();
+        const auto screen = [&](double x, double y) {
+            return fmt::format("screen {:.6f},{:.6f}", script.screen_x(x), script.screen_y(y));
+        };
+        if (label.leader) {
+            script.add(fmt::format("set arrow from {} to {} nohead front linecolor rgb {} linewidth 0.8",
+                                   screen(std::clamp(label.leader->x, label.box.left, label.box.right),
+                                          std::clamp(label.leader->y, label.box.bottom, label.box.top)),
+                                   screen(label.leader->x, label.leader->y), outline_color));
+        }
+        if (label.needs_ground) {
+            script.add(
+                fmt::format("set object rectangle from {} to {} front fillcolor rgb '#ffffff' "
+                            "fillstyle solid 0.85 noborder",
+                            screen(label.box.left, label.box.bottom), screen(label.box.right, label.box.top)));
+        }
+        script.add(fmt::format("set label {} at {} center front textcolor rgb {}",
+                               in_quotes(shown_name(shapes[label.shape].name)), screen(middle.x, middle.y),
+                               label.is_inside ? "'#ffffff'" : outline_color));
+    }
+}
+
+}  // namespace downwash
