@@ -19,12 +19,26 @@ std::string last_reason() {
     return std::generic_category().message(errno);
 }
 
+/// Where a symbolic link leads, however often; the file itself when it is none.
+fs::path target_of(fs::path file) {
+    constexpr int most_links = 40;  // as Linux has it
+    std::error_code error;
+    for (int i = 0; fs::is_symlink(file, error); ++i) {
+        const fs::path target = fs::read_symlink(file, error);
+        if (i == most_links || error) {
+            throw FileError("cannot be written: too many symbolic links, or one that cannot be read");
+        }
+        file = file.parent_path() / target;  // an absolute target stands alone
+    }
+    return file;
+}
+
 /// A file that is removed unless it was moved to its place.
 class UnfinishedFile {
  public:
-    explicit UnfinishedFile(const fs::path& place) : place_(place) {
+    explicit UnfinishedFile(const fs::path& place) : place_(target_of(place)) {
         static std::atomic<unsigned> count{0};  // threads may write the same file
-        path_ = place.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part";
+        path_ = place_.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part";
         descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (descriptor_ < 0) {
             refuse();

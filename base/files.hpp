@@ -19,7 +19,8 @@ struct DOWNWASH_EXPORT FileError : std::runtime_error {
 /// large. @throws FileError when there is none or it cannot be read
 [[nodiscard]] DOWNWASH_EXPORT std::string read_file(const std::filesystem::path& file, std::size_t most_bytes);
 
-/// Writes a file beside its place and moves it there: whoever looks finds the old file, or the whole new one.
+/// Writes a file beside its place and moves it there: whoever looks finds the old file, or the whole new one. A
+/// symbolic link stays; what it leads to is written.
 /// @throws FileError when that fails; nothing is left behind then
 DOWNWASH_EXPORT void write_file(const std::filesystem::path& file, std::string_view content);
 

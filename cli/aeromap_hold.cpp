@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -18,8 +20,6 @@ namespace downwash::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double degrees_per_radian = 57.295779513082320877;
 
 struct HoldArguments {
     std::string problem;
@@ -87,7 +87,7 @@ void print_table(const std::vector<HoldAnswer>& answers) {
     fmt::print("{:>9} {:>9}  {:<14} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "x_m", "z_m", "verdict", "force_K",
                "torque_nm", "ref_dz_m", "rate_1_s", "dF/dz_n_m", "gain_n_m");
     for (const HoldAnswer& answer : answers) {
-        fmt::print("{:>9.3f} {:>9.3f}  {:<14}", answer.x_m, answer.z_m, name_of(answer.analysis.verdict));
+        fmt::print("{:>9} {:>9}  {:<14}", to_text(answer.x_m), to_text(answer.z_m), name_of(answer.analysis.verdict));
         if (answer.is_defined()) {
             fmt::print(" {:>8.4f} {:>9.4f}", answer.effect.force_factor, answer.effect.pitch_torque_nm);
         }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "downwash/base/angles.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
@@ -18,11 +22,35 @@ Json axis_json(const GridAxis& axis) {
     return {{"low_m", axis.low_m}, {"high_m", axis.high_m}, {"step_m", axis.step_m()}, {"nodes", axis.count}};
 }
 
+/// Where a rotor may fly; the nodes of a grid that does not say are all taken.
+std::size_t flyable_nodes(const FactorGrid& grid) {
+    const std::vector<double>* flyable = grid.field("flyable");
+    return flyable ? static_cast<std::size_t>(std::count(flyable->begin(), flyable->end(), 1)) : grid.nodes();
+}
+
+/// Least and greatest value of a field where a rotor may fly; empty when it may nowhere.
+std::optional<std::pair<double, double>> flyable_range(const FactorGrid& grid, const GridField& field) {
+    const std::vector<double>* flyable = grid.field("flyable");
+    std::optional<std::pair<double, double>> range;
+    for (std::size_t node = 0; node < field.values.size(); ++node) {
+        if (flyable == nullptr || (*flyable)[node] == 1) {
+            const double value = field.values[node];
+            range = range ? std::pair(std::min(range->first, value), std::max(range->second, value))
+                          : std::pair(value, value);
+        }
+    }
+    return range;
+}
+
 Json json_of(const std::string& file, const FactorGrid& grid) {
     auto fields = Json::array();
     for (const GridField& field : grid.fields()) {
-        const auto [least, greatest] = std::minmax_element(field.values.begin(), field.values.end());
-        fields.push_back({{"name", field.name}, {"least", *least}, {"greatest", *greatest}});
+        if (field.name != "flyable") {
+            const auto range = flyable_range(grid, field);
+            fields.push_back({{"name", field.name},
+                              {"least", range ? Json(range->first) : Json()},
+                              {"greatest", range ? Json(range->second) : Json()}});
+        }
     }
     auto provenance = Json::array();
     for (const auto& [key, value] : grid.provenance()) {
@@ -35,6 +63,8 @@ Json json_of(const std::string& file, const FactorGrid& grid) {
             {"y", axis_json(grid.y())},
             {"z", axis_json(grid.z())},
             {"lateral_offsets_m", grid.lateral_offsets_m()},
+            {"nodes", grid.nodes()},
+            {"flyable_nodes", grid.field("flyable") ? Json(flyable_nodes(grid)) : Json()},
             {"fields", std::move(fields)},
             {"provenance", std::move(provenance)}};
 }
@@ -47,7 +77,6 @@ void print_axis(const char* name, const GridAxis& axis) {
 }
 
 void print_text(const std::string& file, const FactorGrid& grid) {
-    constexpr double degrees_per_radian = 57.295779513082320877;
     fmt::print("{}: {} grid, {} nodes\n", file, grid.is_planar() ? "planar" : "volume", grid.nodes());
     const Vector3& origin_m = grid.frame().origin_m();
     fmt::print("{:<12} origin ({:.6g}, {:.6g}, {:.6g}) m, heading {:.6g} deg\n", "frame", origin_m[0], origin_m[1],
@@ -58,9 +87,20 @@ void print_text(const std::string& file, const FactorGrid& grid) {
     for (const double lateral_m : grid.lateral_offsets_m()) {
         fmt::print("{:<12} {:.6g} m beside the plane\n", "layer", lateral_m);
     }
+    const bool knows_flyable = grid.field("flyable") != nullptr;
+    if (knows_flyable) {
+        fmt::print("{:<12} {} of {} nodes\n", "flyable", flyable_nodes(grid), grid.nodes());
+    }
     for (const GridField& field : grid.fields()) {
-        const auto [least, greatest] = std::minmax_element(field.values.begin(), field.values.end());
-        fmt::print("{:<12} {:.6g} to {:.6g}\n", field.name, *least, *greatest);
+        if (field.name == "flyable") {
+            continue;
+        }
+        if (const auto range = flyable_range(grid, field)) {
+            fmt::print("{:<12} {:.6g} to {:.6g}{}\n", field.name, range->first, range->second,
+                       knows_flyable ? " where flyable" : "");
+        } else {
+            fmt::print("{:<12} flyable nowhere\n", field.name);
+        }
     }
     for (const auto& [key, value] : grid.provenance()) {
         fmt::print("{}: {}\n", key, value);

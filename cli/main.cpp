@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <new>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -45,17 +47,24 @@ std::string usage_fault(const CLI::App* program, const CLI::Error& error) {
 }
 
 /// CLI11 would only say that a command is missing.
-void refuse_unknown_command(const CLI::App& program, std::string_view word) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-        names.push_back(command->get_name());
-    }
-    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) {
+/// @param words what follows the command's name
+void refuse_unknown_command(const CLI::App& command, std::span<char* const> words) {
+    const std::vector<const CLI::App*> known = command.get_subcommands([](const CLI::App*) { return true; });
+    if (words.empty() || known.empty() || std::string_view(words[0]).starts_with("-")) {
         return;
     }
-    const std::vector<std::string_view> views(names.begin(), names.end());
-    throw UsageError(
-        fmt::format("there is no command '{}': expected {}{}", word, joined_names(views), did_you_mean(word, views)));
+    const std::string_view word = words[0];
+    std::vector<std::string_view> names;
+    for (const CLI::App* one : known) {
+        names.push_back(one->get_name());
+        if (names.back() == word) {
+            refuse_unknown_command(*one, words.subspan(1));
+            return;
+        }
+    }
+    throw UsageError(fmt::format("there is no command '{}{}': expected {}{}",
+                                 command.get_parent() != nullptr ? command.get_name() + " " : "", excerpt(word),
+                                 joined_names(names), did_you_mean(word, names)));
 }
 
 /// Results that did not reach standard output are no results.
@@ -78,13 +87,20 @@ ExitCode run(int argc, char** argv) {
     add_execute(program, action);
     add_aeromap(program, action);
     add_planners(program, action);
-    if (argc > 1) {
-        refuse_unknown_command(program, argv[1]);
-    }
+    refuse_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
     if (const auto code = parse(program, argc, argv)) {
         return *code;
     }
     return checked_output(action());
+}
+
+/// Says what is wrong, each line of it as this program's.
+void print_faults(std::string_view faults) {
+    while (!faults.empty()) {
+        const std::size_t end = std::min(faults.find('\n'), faults.size());
+        print_error(fmt::format("downwash: {}\n", faults.substr(0, end)));
+        faults.remove_prefix(std::min(end + 1, faults.size()));
+    }
 }
 
 }  // namespace
@@ -103,8 +119,12 @@ int main(int argc, char** argv) {
         downwash::cli::print_error(
             fmt::format("downwash: this is a bug in downwash, please report it: {}\n", error.what()));
         std::abort();
+    } catch (const std::bad_alloc&) {
+        downwash::cli::print_faults(
+            "memory ran out: ask for less, by a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer "
+            "obstacles or a search that ends sooner");
     } catch (const std::exception& error) {
-        downwash::cli::print_error(fmt::format("downwash: {}\n", error.what()));
+        downwash::cli::print_faults(error.what());
     }
     return static_cast<int>(code);
 }

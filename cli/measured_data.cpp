@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/usage_error.hpp"
 
@@ -22,9 +23,10 @@ Measurements chosen(const Measurements& measurements, const std::string& file, c
     if (found.points.empty()) {
         const std::vector<std::string> entries = measurements.entries(column);
         const std::vector<std::string_view> names(entries.begin(), entries.end());
-        throw UsageError(fmt::format(
-            "--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
-            names.empty() ? fmt::format("there is no column {}", column) : "expected " + excerpt(joined_names(names))));
+        throw UsageError(fmt::format("--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
+                                     names.empty()
+                                         ? fmt::format("there is no column {}", column)
+                                         : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names)));
     }
     return found;
 }
@@ -59,8 +61,16 @@ Measurements MeasuredData::read() const {
     measurements = chosen(measurements, file, "source", source);
     if (measurements.index("surface")) {
         measurements = chosen(measurements, file, "surface", surface);
-    } else if (!surface.empty() && surface != "ground" && surface != "ceiling") {
-        throw UsageError("--surface '" + excerpt(surface) + "': expected ground or ceiling");
+    } else if (!surface.empty()) {
+        const std::vector<std::string_view> surfaces{"ground", "ceiling"};
+        if (std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end()) {
+            throw UsageError("--surface '" + excerpt(surface) + "': expected ground or ceiling" +
+                             did_you_mean(surface, surfaces));
+        }
+        measurements.columns.emplace_back("surface");
+        for (Measurement& point : measurements.points) {
+            point.cells.push_back(surface);
+        }
     }
     std::vector<Measurement>& points = measurements.points;
     points.erase(std::remove_if(points.begin(), points.end(),

@@ -52,27 +52,36 @@ void ProgressDisplay::say(const std::string& text) {
 }
 
 void ProgressDisplay::show(const Progress& progress) {
-    if (!is_quiet_) {
-        show_line(text_of(progress));
+    if (is_quiet_) {
+        return;
+    }
+    if (is_live_) {
+        show_live(text_of(progress));
+    } else if (Clock::now() >= next_log_) {
+        logger().info(text_of(progress));
+        next_log_ = Clock::now() + search_period;
     }
 }
 
 void ProgressDisplay::show(const std::string& task, double share) {
     constexpr int width = 30;
-    if (!is_quiet_) {
+    constexpr double least_step = 0.1;
+    if (is_quiet_) {
+        return;
+    }
+    if (is_live_) {
         const int done = static_cast<int>(share * width);
-        show_line(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));
+        show_live(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));
+    } else if (share >= logged_share_ + least_step && Clock::now() >= next_task_log_) {
+        logger().info("{}: {:.0f} %", task, 100 * share);
+        logged_share_ = share;
+        next_task_log_ = Clock::now() + task_period;
     }
 }
 
-void ProgressDisplay::show_line(const std::string& text) {
-    if (is_live_) {
-        print_error(fmt::format("{}{}", erase_line, text));
-        has_line_ = true;
-    } else if (Clock::now() >= next_log_) {
-        logger().info(text);
-        next_log_ = Clock::now() + std::chrono::seconds(1);
-    }
+void ProgressDisplay::show_live(const std::string& text) {
+    print_error(fmt::format("{}{}", erase_line, text));
+    has_line_ = true;
 }
 
 void ProgressDisplay::clear_line() {

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/effects/effect_fit.hpp"
 
 namespace downwash {
@@ -79,6 +82,15 @@ DataSetComparison compare(const std::string& source, const std::string& surface,
 /// Measurements of one source at one surface, in the order of their first appearance.
 using DataSets = std::vector<std::pair<std::pair<std::string, std::string>, std::vector<Measurement>>>;
 
+/// @throws InputError for a surface that no model was made for
+void require_known_surface(const std::string& surface, std::size_t line) {
+    const std::vector<std::string_view> known{"ground", "ceiling"};
+    if (!surface.empty() && std::find(known.begin(), known.end(), surface) == known.end()) {
+        throw InputError({{"", "line " + std::to_string(line) + " of the measurements has the surface '" +
+                                   excerpt(surface) + "'; expected ground or ceiling" + did_you_mean(surface, known)}});
+    }
+}
+
 DataSets data_sets(const Measurements& measurements) {
     constexpr std::size_t most_sets = 100;
     DataSets sets;
@@ -92,6 +104,7 @@ DataSets data_sets(const Measurements& measurements) {
                 throw InputError({{"", "the measurements have more than " + std::to_string(most_sets) +
                                            " sources and surfaces; expected some of them"}});
             }
+            require_known_surface(key.second, point.line);
             set = sets.insert(set, {key, {}});
         }
         set->second.push_back(point);

@@ -40,7 +40,8 @@ struct DataSetComparison {
 /// model's source and, where the measurements suffice, refitted to them (fit_effect; the formula is fitted unclamped).
 /// @param neighbours of the vehicle measured; for one rotor alone the multirotor models are left out
 /// @param max_factor >= 1
-/// @throws InputError when there are more than 100 pairs of source and surface
+/// @throws InputError when there are more than 100 pairs of source and surface, or a surface is neither "ground" nor
+/// "ceiling" nor empty
 [[nodiscard]] DOWNWASH_EXPORT std::vector<DataSetComparison> compare_effects(const Measurements& measurements,
                                                                              const RotorNeighbours& neighbours = {},
                                                                              double max_factor = 2);

@@ -69,3 +69,22 @@ TEST_CASE("threads that write the same file at once leave one of their texts who
     CHECK(text == std::string(10000, text[0]));
     CHECK(files_in(folder.path()) == 1);
 }
+
+TEST_CASE("a file written onto a symbolic link goes where the link leads, and the link stays") {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "store");
+    write_file(folder / "store/file", "old");
+    std::filesystem::create_symlink("store/file", folder / "link");
+    std::filesystem::create_symlink(folder / "link", folder / "second");
+    std::filesystem::create_symlink("store/new", folder / "dangling");
+    write_file(folder / "second", "new");
+    CHECK(std::filesystem::is_symlink(folder / "link"));
+    CHECK(std::filesystem::is_symlink(folder / "second"));
+    CHECK(read_file(folder / "store/file", 10) == "new");
+    write_file(folder / "dangling", "more");
+    CHECK(read_file(folder / "store/new", 10) == "more");
+    CHECK(files_in(folder / "store") == 2);
+    std::filesystem::create_symlink("round", folder / "round");
+    CHECK_THROWS_AS(write_file(folder / "round", "text"), FileError);
+    CHECK_THROWS_AS(require_writable(folder / "round"), FileError);
+}

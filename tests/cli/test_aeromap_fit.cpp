@@ -160,3 +160,29 @@ TEST_CASE("A comparison lists every model for every source and surface") {
     const std::string text = run(folder, {"aeromap", "compare", DOWNWASH_MEASUREMENTS}).out;
     CHECK_THAT(text, Catch::Contains("jirs2024, ceiling: 16 measurements, z/R 0.328 to 2.297\n"));
 }
+
+TEST_CASE("A comparison without a column of surfaces takes all measurements at the surface that is asked for") {
+    const ScratchFolder folder;
+    write_file(folder / "m.csv", "z_over_r,thrust_ratio\n0.5,1.3\n1,1.1\n2,1.02\n");
+    const auto models_of = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"aeromap", "compare", folder / "m.csv", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const auto sets = run(folder, arguments).json().at("data_sets");
+        REQUIRE(sets.size() == 1);
+        std::string names = sets[0].at("surface").get<std::string>() + ":";
+        for (const auto& model : sets[0].at("models")) {
+            names += " " + model.at("model").get<std::string>();
+        }
+        return names;
+    };
+    CHECK_THAT(models_of({}), Catch::Contains("cheeseman-bennett") && Catch::Contains("sanchez-cuevas"));
+    CHECK_THAT(models_of({"--surface", "ceiling"}), Catch::StartsWith("ceiling: none sanchez-cuevas"));
+    CHECK_THAT(models_of({"--surface", "ground"}), !Catch::Contains("sanchez-cuevas"));
+    const Result misspelt = run(folder, {"aeromap", "compare", folder / "m.csv", "--surface", "cieling"});
+    CHECK(misspelt.code == 2);
+    CHECK_THAT(misspelt.err, Catch::Contains("did you mean 'ceiling'?"));
+    write_file(folder / "m.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,grond\n");
+    const Result in_file = run(folder, {"aeromap", "compare", folder / "m.csv"});
+    CHECK(in_file.code == 2);
+    CHECK_THAT(in_file.err, Catch::Contains("line 2") && Catch::Contains("did you mean 'ground'?"));
+}

@@ -84,3 +84,52 @@ TEST_CASE("Points that are none are refused") {
     write_file(folder / "points.txt", "x_m,y_m,z_m\n0,0,3 # one\n");
     CHECK(query(folder / "points.txt").code == 0);
 }
+
+TEST_CASE("The ranges of a grid are those where one may fly") {
+    const ScratchFolder folder;
+    const std::string head = "x_m,z_m,factor,flyable\n";
+    write_file(folder / "grid.csv", head + "0,0,2,0\n1,0,1.5,1\n0,1,1.1,1\n1,1,0.5,0\n");
+    const Result text = run(folder, {"aeromap", "info", folder / "grid.csv"});
+    CHECK_THAT(text.out, Contains("\nflyable      2 of 4 nodes\n"));
+    CHECK_THAT(text.out, Contains("\nfactor       1.1 to 1.5 where flyable\n"));
+    const auto json = run(folder, {"aeromap", "info", folder / "grid.csv", "--json"}).json();
+    CHECK(json.at("nodes") == 4);
+    CHECK(json.at("flyable_nodes") == 2);
+    REQUIRE(json.at("fields").size() == 1);
+    CHECK(json.at("fields")[0].at("greatest") == 1.5);
+    write_file(folder / "grid.csv", head + "0,0,2,0\n1,0,1.5,0\n0,1,1.1,0\n1,1,0.5,0\n");
+    CHECK_THAT(run(folder, {"aeromap", "info", folder / "grid.csv"}).out, Contains("factor       flyable nowhere"));
+    CHECK(run(folder, {"aeromap", "info", folder / "grid.csv", "--json"}).json().at("fields")[0].at("least").is_null());
+    write_file(folder / "grid.csv", "x_m,z_m,factor\n0,0,2\n1,0,1.5\n0,1,1.1\n1,1,0.5\n");
+    CHECK_THAT(run(folder, {"aeromap", "info", folder / "grid.csv"}).out, Contains("\nfactor       0.5 to 2\n"));
+}
+
+TEST_CASE("A grid built into a log says what it wrote and no hundred percentages") {
+    const ScratchFolder folder;
+    const Result result =
+        run(folder, {"aeromap", "build", problem_file("open_air"), "-o", folder / "grid.csv", "--step", "0.5"});
+    REQUIRE(result.code == 0);
+    CHECK_THAT(result.err, !Contains("%"));
+    CHECK_THAT(result.err, Contains("nodes"));
+}
+
+TEST_CASE("A grid built onto a link is written where that leads") {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "store");
+    write_file(folder / "store/old.csv", "old");
+    std::filesystem::create_symlink("store/old.csv", folder / "grid.csv");
+    REQUIRE(
+        run(folder, {"aeromap", "build", problem_file("open_air"), "-o", folder / "grid.csv", "--step", "0.5"}).code ==
+        0);
+    CHECK(std::filesystem::is_symlink(folder / "grid.csv"));
+    CHECK_THAT(read_file(folder / "store/old.csv"), Contains("x_m,"));
+}
+
+TEST_CASE("Every line of what is wrong says which program found it") {
+    const ScratchFolder folder;
+    write_file(folder / "grid.csv", "x_m,z_m,factor\n0,0,a\n1,0,b\n");
+    const Result result = run(folder, {"aeromap", "info", folder / "grid.csv"});
+    CHECK(result.code == 2);
+    CHECK(result.err == "downwash: " + (folder / "grid.csv") + ":2:5: factor is 'a': expected a number\n" +
+                            "downwash: " + (folder / "grid.csv") + ":3:5: factor is 'b': expected a number\n");
+}

@@ -74,8 +74,9 @@ TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without
 TEST_CASE("A hold query prints a table for people") {
     const ScratchFolder folder;
     const auto answer = run(folder, {"aeromap", "hold", problem_file("bridge_inspection"), "--arm-deg", "90", "--at",
-                                     "-8", "5", "--at", "-8", "9.75"});
+                                     "-8", "5", "--at", "-8", "9.74955"});
     CHECK(answer.code == 0);
+    CHECK(answer.out.find(" 9.74955 ") != std::string::npos);
     CHECK(answer.out.find("verdict") != std::string::npos);
     CHECK(answer.out.find("unstable") != std::string::npos);
 }

@@ -70,6 +70,7 @@ TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
         {"execute", open_air, "--plan", folder / "plan.json"},
         {"execute", open_air, "--plan", folder / "plan.json", "--aero", "maybe"},
         {"aeromap"},
+        {"aeromap", "foo"},
         {"aeromap", "query"},
         {"aeromap", "query", open_air},
         {"aeromap", "query", open_air, "--at", "1", "2"},
@@ -128,4 +129,13 @@ TEST_CASE("Check tells of every fault with file and line and column") {
         CHECK_FALSE(fault.at("message").get<std::string>().empty());
     }
     CHECK(run(folder, {"check", good, "--json"}).json() == nlohmann::json{{"faults", nlohmann::json::array()}});
+}
+
+TEST_CASE("An unknown command is named, at any depth") {
+    const ScratchFolder folder;
+    CHECK_THAT(run(folder, {"slove"}).err, Catch::StartsWith("downwash: there is no command 'slove': expected") &&
+                                               Catch::Contains("did you mean 'solve'?"));
+    CHECK_THAT(run(folder, {"aeromap", "foo"}).err,
+               Catch::StartsWith("downwash: there is no command 'aeromap foo': expected query, build"));
+    CHECK_THAT(run(folder, {"aeromap", "biuld"}).err, Catch::Contains("did you mean 'build'?"));
 }

@@ -101,3 +101,14 @@ TEST_CASE("Measurements from hundreds of sources are no comparison") {
     }
     CHECK_THROWS_AS(compare_effects(parse_measurements(text, "m.csv")), InputError);
 }
+
+TEST_CASE("A surface that no model was made for is refused with the line that has it") {
+    const auto measured_at = [](const std::string& surface) {
+        return parse_measurements("z_over_r,thrust_ratio,surface\n1,1.1,ground\n2,1.1," + surface + "\n", "m.csv");
+    };
+    CHECK(compare_effects(measured_at("ceiling")).size() == 2);
+    CHECK(compare_effects(measured_at("")).size() == 2);
+    CHECK_THROWS_WITH(compare_effects(measured_at("cieling")),
+                      "line 3 of the measurements has the surface 'cieling'; expected ground or ceiling; did you mean "
+                      "'ceiling'?");
+}
