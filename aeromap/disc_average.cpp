@@ -25,16 +25,16 @@ constexpr double far_stake = 0.01;
 constexpr std::size_t most_with_crossings = 24;
 
 /// A part of an obstacle that may be the first surface for some point of the disc.
-struct Candidate {
+struct FacingPart {
     const Footprint* footprint;
     double gap_m;   ///< nowhere smaller
     double factor;  ///< at that gap: everywhere when the part is level
 };
 
 /// A candidate's shadow on one chord.
-struct Stretch {
+struct ShadowedStretch {
     double low, high;
-    const Candidate* candidate;
+    const FacingPart* candidate;
 };
 
 /// Cuts the disc into chords, splits them where outlines begin, end or leave the disc, and takes the first surface
@@ -42,7 +42,7 @@ struct Stretch {
 class DiscQuadrature {
  public:
     /// @param background_m gap of what lies behind all candidates; infinite for nothing
-    DiscQuadrature(const DiscQuery& query, double background_m, std::pmr::vector<Candidate>& candidates,
+    DiscQuadrature(const DiscQuery& query, double background_m, std::pmr::vector<FacingPart>& candidates,
                    std::pmr::memory_resource* memory)
         : query_(query),
           background_m_(background_m),
@@ -52,7 +52,7 @@ class DiscQuadrature {
           stretches_(memory),
           cuts_(memory) {
         std::sort(candidates.begin(), candidates.end(),
-                  [](const Candidate& a, const Candidate& b) { return a.gap_m < b.gap_m; });
+                  [](const FacingPart& a, const FacingPart& b) { return a.gap_m < b.gap_m; });
         const ShadowOutline& first = candidates.front().footprint->outline;
         frame_ = {query.hub_m[0], query.hub_m[1], query.radius_m, first.slope_x, first.slope_y};
         const double stake =
@@ -60,8 +60,8 @@ class DiscQuadrature {
         is_far_ = stake < far_stake;
         const double weight = is_far_ ? 0.12 : stake < 0.1 ? 0.5 : 1;
         const bool is_level = std::all_of(candidates.begin(), candidates.end(),
-                                          [](const Candidate& candidate) { return candidate.footprint->is_level; });
-        is_polygonal_ = is_level && std::all_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+                                          [](const FacingPart& candidate) { return candidate.footprint->is_level; });
+        is_polygonal_ = is_level && std::all_of(candidates.begin(), candidates.end(), [](const FacingPart& candidate) {
                             return candidate.footprint->outline.ellipses.empty();
                         });
         scale_ = (is_level ? 2 : 1) * weight / query.radius_m;  // level chords cost little
@@ -129,7 +129,7 @@ class DiscQuadrature {
         const double x = frame_.x_of(0, v);
         const double y = frame_.y_of(0, v);
         stretches_.clear();
-        for (const Candidate& candidate : candidates_) {
+        for (const FacingPart& candidate : candidates_) {
             const Interval shadow =
                 query_.scene.shadow_on_line(candidate.footprint->part, x, y, frame_.du_x, frame_.du_y);
             const double low = std::max(shadow.low, -half);
@@ -142,7 +142,7 @@ class DiscQuadrature {
             return 0;
         }
         cuts_.clear();
-        for (const Stretch& stretch : stretches_) {
+        for (const ShadowedStretch& stretch : stretches_) {
             cuts_.push_back(stretch.low);
             cuts_.push_back(stretch.high);
             if (!is_far_ && !stretch.candidate->footprint->is_level) {
@@ -161,7 +161,7 @@ class DiscQuadrature {
     /// A piece of a chord over which the same candidates lie.
     double piece(double low, double high, double v) {
         const double middle = 0.5 * (low + high);
-        for (const Stretch& stretch : stretches_) {  // nearest first
+        for (const ShadowedStretch& stretch : stretches_) {  // nearest first
             if (!(stretch.low < middle && middle < stretch.high)) {
                 continue;
             }
@@ -178,7 +178,7 @@ class DiscQuadrature {
         const double middle = 0.5 * (low + high);
         const auto gap = [&](double u) {
             double least = background_m_;
-            for (const Stretch& stretch : stretches_) {
+            for (const ShadowedStretch& stretch : stretches_) {
                 if (stretch.candidate->gap_m >= least) {
                     break;
                 }
@@ -228,7 +228,7 @@ class DiscQuadrature {
         return 0.5 * (end + nearest);
     }
 
-    double gap_at(const Candidate& candidate, double x, double y) const {
+    double gap_at(const FacingPart& candidate, double x, double y) const {
         if (candidate.footprint->is_level) {
             return candidate.gap_m;
         }
@@ -239,7 +239,7 @@ class DiscQuadrature {
     void collect_breaks() {
         breaks_.push_back(-query_.radius_m);
         breaks_.push_back(query_.radius_m);
-        for (const Candidate& candidate : candidates_) {
+        for (const FacingPart& candidate : candidates_) {
             add_breaks(frame_, query_.side, candidate.footprint->outline, breaks_);
         }
         if (is_polygonal_) {
@@ -263,10 +263,10 @@ class DiscQuadrature {
     bool is_far_ = false;
     bool is_polygonal_ = false;  ///< level faces with straight edges only
     double scale_ = 0;           ///< what makes a width one that matters
-    const std::pmr::vector<Candidate>& candidates_;
+    const std::pmr::vector<FacingPart>& candidates_;
     ChordFrame frame_{};
     std::pmr::vector<double> breaks_;
-    std::pmr::vector<Stretch> stretches_;
+    std::pmr::vector<ShadowedStretch> stretches_;
     std::pmr::vector<double> cuts_;
 };
 
@@ -294,7 +294,7 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     add_others(query, others);
 
     std::vector<Footprint> made;  // of the others, when they are few
-    std::pmr::vector<Candidate> candidates(&memory);
+    std::pmr::vector<FacingPart> candidates(&memory);
     candidates.reserve(16);
     double cover_m = infinity;  // gap of the nearest level part that covers the disc
     const auto add_over_disc = [&](const Footprint& footprint) {
@@ -318,10 +318,10 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
         std::for_each(made.begin(), made.end(), add_over_disc);
     }
     candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                    [&](const Candidate& candidate) { return candidate.gap_m >= cover_m; }),
+                                    [&](const FacingPart& candidate) { return candidate.gap_m >= cover_m; }),
                      candidates.end());
     if (!are_few) {
-        for (const Candidate& candidate : candidates) {
+        for (const FacingPart& candidate : candidates) {
             others.push_back(candidate.footprint->part);
         }
         return chord_sum(query, cover_m, others, &memory);
@@ -329,7 +329,7 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     if (candidates.empty()) {
         return query.factor(cover_m);
     }
-    for (Candidate& candidate : candidates) {
+    for (FacingPart& candidate : candidates) {
         candidate.factor = query.factor(candidate.gap_m);
     }
     return DiscQuadrature(query, cover_m, candidates, &memory).average();
