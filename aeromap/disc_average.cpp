@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <limits>
 #include <memory_resource>
+#include <optional>
 #include <vector>
 
 #include "downwash/aeromap/chord_sum.hpp"
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
+#include "downwash/aeromap/plane_average.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
@@ -270,6 +272,23 @@ class DiscQuadrature {
     std::pmr::vector<double> cuts_;
 };
 
+/// The plane that covers the disc, not level, when it hides all other candidates and what lies behind them.
+std::optional<PlaneCover> only_plane(const DiscQuery& query, const std::pmr::vector<FacingPart>& candidates,
+                                     double background_m) {
+    const auto nearest = std::min_element(candidates.begin(), candidates.end(),
+                                          [](const FacingPart& a, const FacingPart& b) { return a.gap_m < b.gap_m; });
+    if (nearest->footprint->is_level) {
+        return {};
+    }
+    const std::optional<PlaneCover> cover = plane_cover(query, *nearest->footprint);
+    const auto is_hidden = [&](const FacingPart& candidate) {
+        return &candidate == &*nearest || candidate.gap_m >= cover->farthest_m();
+    };
+    return cover && cover->farthest_m() <= background_m && std::all_of(candidates.begin(), candidates.end(), is_hidden)
+               ? cover
+               : std::nullopt;
+}
+
 /// Triangles and boxes of octrees over or under the disc, in the scene's order, however they were found; none that is
 /// seen from its edge only.
 void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
@@ -328,6 +347,9 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     }
     if (candidates.empty()) {
         return query.factor(cover_m);
+    }
+    if (const auto cover = only_plane(query, candidates, cover_m)) {
+        return plane_average(query, *cover);
     }
     for (FacingPart& candidate : candidates) {
         candidate.factor = query.factor(candidate.gap_m);

@@ -43,6 +43,35 @@ TEST_CASE("The edge of a half plane covers a circular segment, whatever its dire
     }
 }
 
+TEST_CASE("Over a wide slope Cheeseman and Bennett's formula has a closed average") {
+    test::Random random(8);
+    // The average of 1 / (a + s u) over the unit disc.
+    const auto mean_inverse = [](double a, double s) { return 2 * (a - std::sqrt(a * a - s * s)) / (s * s); };
+    for (int i = 0; i < 200; ++i) {
+        const double pitch = random.uniform(0.05, 0.7);
+        const double yaw = random.uniform(-pi, pi);
+        // Hidden below the slope: a sphere that must not matter.
+        const DirectEffect effect(
+            scene_of({{"slope", Box{{20, 20, 2}}, {}, {0, pitch, yaw}}, {"", Sphere{0.3}, {0, 0, -1.5}, {}}}), {},
+            radius);
+        const double x = random.uniform(-3, 3);
+        const double y = random.uniform(-3, 3);
+        const double top = 1 / std::cos(pitch) - std::tan(pitch) * (x * std::cos(yaw) + y * std::sin(yaw));
+        const double s = radius * std::tan(pitch);
+        const double gap = s + random.uniform(0.36, 4) * radius;  // K = 2 at 0.354 R
+        const double c = radius / 4;
+        const double expected = 1 + 0.5 * c * (mean_inverse(gap - c, s) - mean_inverse(gap + c, s));
+        REQUIRE(effect.factors({x, y, top + gap}).ground == Approx(expected).epsilon(0).margin(1e-7));
+        // Across the cap, and under the slope.
+        const Vector3 near{x, y, top + s + 0.25 * radius};
+        const Vector3 under{x, y, top - 2 / std::cos(pitch) - gap};
+        if (i % 20 == 0) {
+            CHECK(effect.factors(near).ground == Approx(test::by_rays(effect, near, 400).ground).margin(1e-3));
+            CHECK(effect.factors(under).ceiling == Approx(test::by_rays(effect, under, 400).ceiling).margin(1e-3));
+        }
+    }
+}
+
 TEST_CASE("A pipe under the rotor agrees with a million rays") {
     const AeroSettings settings;
     for (const double pipe_radius : {0.03, 0.1, 0.25}) {
