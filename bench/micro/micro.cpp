@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -171,6 +172,51 @@ void map_load(benchmark::State& state) {
     std::filesystem::remove_all(folder, ignored);
 }
 BENCHMARK(map_load)->Unit(benchmark::kMillisecond);
+
+/// 30 m3 under the deck: its underside, the walkway's top and edges, the cross girder.
+struct UnderDeck {
+    MapExtent extent{-8, -2, 8, 10};
+    double lateral_m = 1.25;  ///< to either side
+
+    [[nodiscard]] VolumeMap map() const {
+        const Bridge& bridge = Bridge::get();
+        return {std::make_shared<const DirectEffect>(bridge.model->effect(0)), bridge.model->plane(), extent,
+                -lateral_m, lateral_m};
+    }
+};
+
+void volume_build(benchmark::State& state) {
+    Bridge::get();
+    std::size_t bytes = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        bytes = UnderDeck().map().memory_bytes();
+    }
+    state.counters["MB"] = static_cast<double>(bytes) * 1e-6;
+}
+BENCHMARK(volume_build)->Unit(benchmark::kMillisecond);
+
+void volume_look_up(benchmark::State& state) {
+    const UnderDeck block;
+    const VolumeMap map = block.map();
+    std::mt19937_64 engine(1);
+    const auto uniform = [&engine](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    };
+    std::vector<Vector3> hubs_m(65536);
+    for (Vector3& hub_m : hubs_m) {
+        const double x_m = uniform(block.extent.x_low_m, block.extent.x_high_m);
+        const double lateral_m = uniform(-block.lateral_m, block.lateral_m);
+        hub_m =
+            Bridge::get().model->plane().to_world(x_m, lateral_m, uniform(block.extent.z_low_m, block.extent.z_high_m));
+    }
+    for ([[maybe_unused]] auto _ : state) {
+        for (const Vector3& hub_m : hubs_m) {
+            benchmark::DoNotOptimize(map.factor(hub_m));
+        }
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hubs_m.size()));
+}
+BENCHMARK(volume_look_up);
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {
