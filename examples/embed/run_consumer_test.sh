@@ -20,7 +20,7 @@ count=0
 while read -r header; do
     echo "#include <${header#"$prefix/include/"}>" >"$work/header.cpp"
     g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I "$prefix/include" -MD -MF "$work/header.d" "$work/header.cpp"
-    if grep -nE '/(eigen3|Eigen|ompl[^/]*|fcl|yaml-cpp|boost|nlohmann|spdlog|fmt)/' "$work/header.d"; then
+    if grep -nE '/(eigen3|Eigen|ompl[^/]*|fcl|yaml-cpp|boost|nlohmann|spdlog|fmt|ceres|glog|gflags|octomap)/|/pugi(xml|config)\.hpp' "$work/header.d"; then
         echo "$header brings the header above into programs that use it"
         exit 1
     fi
