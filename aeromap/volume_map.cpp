@@ -44,6 +44,7 @@ VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMo
         const double length_m = high_m_[axis] - low_m_[axis];
         cells[axis] = std::max(1.0, std::ceil(length_m / (longest_radii * effect_->rotor_radius_m())));
         cell_m_[axis] = length_m / cells[axis];
+        cells_per_m_[axis] = cells[axis] / length_m;
     }
     if (!(cells[0] * cells[1] * cells[2] <= static_cast<double>(most_volume_boxes))) {
         throw InputError(std::vector<Fault>{{"", "the volume has more than 2^23 cells; choose it smaller"}});
@@ -110,7 +111,7 @@ double VolumeMap::factor(const Vector3& hub_m) const {
     Cell cell{};
     std::array<double, 3> part{};  // of the way through the box
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double cells = (local_m[axis] - low_m_[axis]) / cell_m_[axis];
+        const double cells = (local_m[axis] - low_m_[axis]) * cells_per_m_[axis];
         if (!(cells >= 0 && local_m[axis] <= high_m_[axis])) {  // NaN too
             return effect_->factor(hub_m);
         }

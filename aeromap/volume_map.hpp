@@ -68,6 +68,7 @@ class DOWNWASH_EXPORT VolumeMap {
     PlaneOfMotion frame_;
     Vector3 low_m_, high_m_;  ///< of the block, in the frame: x, lateral, z
     Vector3 cell_m_{};        ///< a cell's edges
+    Vector3 cells_per_m_{};
     Cell cells_{};
     std::vector<Node> nodes_;     ///< first those of the cells, x running fastest
     std::vector<Values> values_;  ///< the first one stays unused: index 0 stands for K = 1
