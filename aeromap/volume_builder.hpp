@@ -22,6 +22,11 @@ class VolumeMap::Builder {
 
     /// @throws InputError when the volume has too many boxes
     void build();
+    /// Frees what build() made.
+    void clear() noexcept {
+        nodes_ = {};
+        values_ = {};
+    }
 
     [[nodiscard]] const Cell& first() const noexcept { return first_; }
     [[nodiscard]] const Cell& last() const noexcept { return last_; }

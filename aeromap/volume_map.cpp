@@ -74,13 +74,14 @@ void VolumeMap::build(int threads, const std::function<void(double)>& on_progres
     nodes_.resize(cells_[0] * cells_[1] * cells_[2]);
     values_.resize(1);  // index 0 stands for K = 1
     for (Builder& brick : bricks) {
-        append(std::move(brick));  // whose memory is free then
+        append(brick);
+        brick.clear();
     }
     nodes_.shrink_to_fit();
     values_.shrink_to_fit();
 }
 
-void VolumeMap::append(Builder brick) {
+void VolumeMap::append(const Builder& brick) {
     const Cell& first = brick.first();
     const Cell& last = brick.last();
     const std::size_t columns = last[0] - first[0];

@@ -62,7 +62,7 @@ class DOWNWASH_EXPORT VolumeMap {
         return (cell[2] * cells_[1] + cell[1]) * cells_[0] + cell[0];
     }
     void build(int threads, const std::function<void(double)>& on_progress);
-    void append(Builder brick);
+    void append(const Builder& brick);
 
     std::shared_ptr<const DirectEffect> effect_;
     PlaneOfMotion frame_;
