@@ -46,8 +46,8 @@ struct MapCell {
 struct MapView {
     double x_low_m, z_low_m, cells_per_m;
     std::uint32_t columns, rows;
-    const MapCell* cells;                ///< x running fastest
-    const CellFlyability* flyability;    ///< of each cell
+    const MapCell* cells;              ///< x running fastest
+    const CellFlyability* flyability;  ///< of each cell
     const float* nodes;
 };
 

@@ -15,9 +15,8 @@ inline double select(bool condition, double yes, double no) {
 inline double sqrt(double x) {
     return std::sqrt(x);
 }
-template <class T>
-T abs(T x) {
-    return select(x < T(0), -x, x);
+inline double abs(double x) {
+    return std::fabs(x);
 }
 template <class T>
 T min(T a, T b) {
@@ -56,25 +55,22 @@ void sin_cos(T x, T& sine, T& cosine) {
     const T r = b - small;
     const T r_low = ((b - r) - small) - quotient * rest;
 
-    // Taylor series on [-pi/4, pi/4]; the first terms left out are below 3e-19 of the result.
+    // sin r = r + r w s(w) and cos r = 1 - w / 2 + w^2 c(w), s and c interpolated at the six Chebyshev points of
+    // w in [0, (pi/4)^2]: off by less than 2e-17 of the result.
     const T w = r * r;
-    T s(1.0 / 355687428096000.0);
-    s = s * w - T(1.0 / 1307674368000.0);
-    s = s * w + T(1.0 / 6227020800.0);
-    s = s * w - T(1.0 / 39916800.0);
-    s = s * w + T(1.0 / 362880.0);
-    s = s * w - T(1.0 / 5040.0);
-    s = s * w + T(1.0 / 120.0);
-    s = s * w - T(1.0 / 6.0);
+    T s(1.5918129294509297e-10);
+    s = s * w - T(2.5051131844998664e-08);
+    s = s * w + T(2.7557316102552418e-06);
+    s = s * w - T(0.00019841269836758574);
+    s = s * w + T(0.008333333333330948);
+    s = s * w - T(0.16666666666666666);
     const T sin_r = r + (r * w * s + r_low * (T(1) - T(0.5) * w));
-    T c(1.0 / 6402373705728000.0);
-    c = T(1.0 / 20922789888000.0) - c * w;
-    c = T(1.0 / 87178291200.0) - c * w;
-    c = T(1.0 / 479001600.0) - c * w;
-    c = T(1.0 / 3628800.0) - c * w;
-    c = T(1.0 / 40320.0) - c * w;
-    c = T(1.0 / 720.0) - c * w;
-    c = T(1.0 / 24.0) - c * w;
+    T c(1.1382632425298186e-11);
+    c = T(2.0876146268400097e-09) - c * w;
+    c = c * w - T(2.7557317271729777e-07);
+    c = c * w + T(2.480158729876569e-05);
+    c = c * w - T(0.0013888888888887398);
+    c = c * w + T(0.041666666666666664);
     const T half_w = T(0.5) * w;
     const T one_less = T(1) - half_w;
     const T cos_r = one_less + (((T(1) - one_less) - half_w) + (w * w * c - r * r_low));
@@ -100,12 +96,23 @@ T atan2(T y, T x) {
     const auto is_large = ratio > T(0.5);
     const T t = select(is_large, (smaller - larger) / (smaller + select(larger > T(0), larger, T(1))), ratio);
     const T w = t * t;
-    T p(0);
-    for (int k = 26; k >= 1; --k) {  // Taylor series of atan; the first term left out is below 3e-18 of the result
-        p = T(1.0 / (2 * k + 1)) - p * w;
-    }
-    // p = 1/3 - w/5 + w^2/7 - ...; atan t = t - t w p
-    const T bend = t * w * p;
+    // atan t = t - t w p(w), where p = 1/3 - w/5 + w^2/7 - ... is interpolated at the 13 Chebyshev points of [0, 1/4]:
+    // t w p is off by less than 5e-18 t. Even and odd powers apart, which is twice as fast.
+    const T v = w * w;
+    T even(0.009215792047089858);
+    even = even * v + T(0.03806653672057366);
+    even = even * v + T(0.05240099507994713);
+    even = even * v + T(0.06666435677235948);
+    even = even * v + T(0.09090908620322523);
+    even = even * v + T(0.14285714285599188);
+    even = even * v + T(0.3333333333333333);
+    T odd(0.025006503566489507);
+    odd = odd * v + T(0.04628024868570153);
+    odd = odd * v + T(0.05879578429582425);
+    odd = odd * v + T(0.07692294712540285);
+    odd = odd * v + T(0.11111111100917376);
+    odd = odd * v + T(0.19999999999999488);
+    const T bend = t * w * (even - w * odd);
     const T pi_low(1.2246467991473532e-16);
     const T pi_quarter(0.78539816339744830962);
     const T sum = pi_quarter + t;

@@ -46,8 +46,6 @@ struct ControlStep {
     Demand<T> demand;
     ControllerState<T> integrated;  ///< next memory when the demand can be met; a clipped tilt stops x and z already
     ControllerState<T> frozen;      ///< next memory when it was clipped: integrators stand still (anti-windup)
-    dynamics::Attitude<T> attitude;
-    dynamics::EquationsOfMotion<T> equations;
 };
 
 /// D7^-1: the joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give.
@@ -55,9 +53,10 @@ struct ControlStep {
 /// or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the
 /// vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
 template <class T>
-T joint_torque(const PlantModel& model, const ControlStep<T>& step, T thrust_n, T pitch_torque_nm) {
-    const T force[3] = {thrust_n * step.attitude.sin_pitch, thrust_n * step.attitude.cos_pitch, pitch_torque_nm};
-    return dynamics::joint_torque_for(model, step.equations, force, step.demand.arm_acceleration);
+T joint_torque(const PlantModel& model, const dynamics::Motion<T>& motion, T arm_acceleration, T thrust_n,
+               T pitch_torque_nm) {
+    const T force[3] = {thrust_n * motion.attitude.sin_pitch, thrust_n * motion.attitude.cos_pitch, pitch_torque_nm};
+    return dynamics::joint_torque_for(model, motion.equations, force, arm_acceleration);
 }
 
 /// ki * integral, within its limit.
@@ -77,16 +76,14 @@ T integrate(double ki, double limit, T integral, T error, T dt_s) {
 }
 
 /// One control step.
-/// @param q,u plant coordinates and speeds   @param tick_s control period [s], > 0
+/// @param q,u plant coordinates and speeds   @param motion theirs   @param tick_s control period [s], > 0
 template <class T>
 ControlStep<T> model_inversion_control(const PlantModel& model, const ControllerGains& gains, const T q[4],
-                                       const T u[4], const ControllerState<T>& memory, const Setpoint<T>& reference,
-                                       T tick_s) {
-    const dynamics::Attitude<T> a = dynamics::attitude(model, q[2], q[3]);
-    const dynamics::EquationsOfMotion<T> e = dynamics::equations_of_motion(model, a, u);
+                                       const T u[4], const dynamics::Motion<T>& motion,
+                                       const ControllerState<T>& memory, const Setpoint<T>& reference, T tick_s) {
+    const dynamics::Attitude<T>& a = motion.attitude;
+    const dynamics::EquationsOfMotion<T>& e = motion.equations;
     ControlStep<T> step;
-    step.attitude = a;
-    step.equations = e;
     step.frozen = memory;
 
     // Position and arm PID: the accelerations to impose.
@@ -130,9 +127,10 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
         v5 = v5 + (rate_reference - memory.rate_reference) / tick_s;
     }
     const T thrust = step.demand.thrust_n;
-    const T acceleration[4] = {(thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) / mass,
-                               (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) / mass,
-                               v5, v7};
+    const T inverse_mass(model.inverse_mass_1_kg);
+    const T acceleration[4] = {
+        (thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) * inverse_mass,
+        (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) * inverse_mass, v5, v7};
     T force[4];
     dynamics::inverse_dynamics(model, e, acceleration, force);
     step.demand.pitch_torque_nm = force[2];
@@ -149,6 +147,13 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     step.integrated.arm_integral =
         integrate(gains.arm_ki, gains.arm_integral_limit_rad_s2, memory.arm_integral, arm_error, tick_s);
     return step;
+}
+
+template <class T>
+ControlStep<T> model_inversion_control(const PlantModel& model, const ControllerGains& gains, const T q[4],
+                                       const T u[4], const ControllerState<T>& memory, const Setpoint<T>& reference,
+                                       T tick_s) {
+    return model_inversion_control(model, gains, q, u, dynamics::motion_at(model, q, u), memory, reference, tick_s);
 }
 
 }  // namespace downwash::controllers

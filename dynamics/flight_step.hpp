@@ -92,92 +92,101 @@ T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
     return T(model.power_coefficient_w_n1p5) * sum;
 }
 
-/// Time derivative of a plant state.
-template <class T>
-struct PlantRate {
-    T q[4], u[4], thrust_n[max_rotors], energy_j;
-};
-
+/// du/dt of the plant under the free-air thrusts of its rotors.
+/// @param motion at q and u: motion_at(model, q, u)
 template <class T, class Factor>
-PlantRate<T> plant_rate(const PlantModel& model, const PlantState<T>& s, const PlantCommand<T>& command,
-                        const Factor& factor) {
-    PlantRate<T> rate;
-    const Attitude<T> a = attitude(model, s.q[2], s.q[3]);
-    const EquationsOfMotion<T> e = equations_of_motion(model, a, s.u);
-    const RotorWrench<T> wrench = rotor_wrench(model, a, s.q[0], s.q[1], s.thrust_n, factor);
+void accelerations(const PlantModel& model, const T q[4], const Motion<T>& motion, const T thrust_n[max_rotors],
+                   T joint_torque_nm, const Factor& factor, T du[4]) {
+    const Attitude<T>& a = motion.attitude;
+    const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
     const T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
-                        command.joint_torque_nm};
-    forward_dynamics(model, e, force, rate.u);
-    for (int i = 0; i < 4; ++i) {
-        rate.q[i] = s.u[i];
-    }
-    rate.energy_j = lane::abs(command.joint_torque_nm * s.u[3]);
-    if (model.rotor_time_constant_s > 0) {
-        rate.energy_j = rate.energy_j + rotor_power(model, s.thrust_n);
-        for (int i = 0; i < model.rotor_count; ++i) {
-            rate.thrust_n[i] = (command.thrust_n[i] - s.thrust_n[i]) / T(model.rotor_time_constant_s);
-        }
-    }
-    return rate;
-}
-
-template <class T>
-PlantState<T> advanced(const PlantModel& model, const PlantState<T>& s, const PlantRate<T>& rate, T dt_s) {
-    PlantState<T> next = s;
-    for (int i = 0; i < 4; ++i) {
-        next.q[i] = s.q[i] + dt_s * rate.q[i];
-        next.u[i] = s.u[i] + dt_s * rate.u[i];
-    }
-    if (model.rotor_time_constant_s > 0) {
-        for (int i = 0; i < model.rotor_count; ++i) {
-            next.thrust_n[i] = s.thrust_n[i] + dt_s * rate.thrust_n[i];
-        }
-    }
-    next.energy_j = s.energy_j + dt_s * rate.energy_j;
-    return next;
+                        joint_torque_nm};
+    forward_dynamics(model, motion.equations, force, du);
 }
 
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surface effect
 /// is evaluated at the rotor positions of every stage.
+/// @param motion that of the state
+template <class T, class Factor>
+PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
+                          const PlantCommand<T>& command, T dt_s, const Factor& factor) {
+    // A loop over the stages, not four copies of their code: it has to stay in the processor's instruction cache.
+    constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
+    constexpr double weight[] = {1, 2, 2, 1};
+    const bool has_lag = model.rotor_time_constant_s > 0;
+    const int rotors = model.rotor_count;
+    T q[4], u[4], thrust_n[max_rotors];  // at the stage
+    T du[4], thrust_rate[max_rotors];    // there
+    T q_sum[4], u_sum[4], thrust_sum[max_rotors], power_sum(0);
+    for (int i = 0; i < 4; ++i) {
+        q[i] = state.q[i];
+        u[i] = state.u[i];
+        q_sum[i] = u_sum[i] = T(0);
+    }
+    for (int i = 0; i < rotors; ++i) {
+        thrust_n[i] = has_lag ? state.thrust_n[i] : command.thrust_n[i];
+        thrust_sum[i] = T(0);
+    }
+    Motion<T> here = motion;
+    for (int stage = 0; stage < 4; ++stage) {
+        if (stage > 0) {
+            const T step_s = T(share_of_step[stage]) * dt_s;
+            for (int i = 0; i < 4; ++i) {
+                q[i] = state.q[i] + step_s * u[i];
+                u[i] = state.u[i] + step_s * du[i];
+            }
+            if (has_lag) {
+                for (int i = 0; i < rotors; ++i) {
+                    thrust_n[i] = state.thrust_n[i] + step_s * thrust_rate[i];
+                }
+            }
+            here = motion_at(model, q, u);
+        }
+        accelerations(model, q, here, thrust_n, command.joint_torque_nm, factor, du);
+        const T w(weight[stage]);
+        for (int i = 0; i < 4; ++i) {
+            q_sum[i] = q_sum[i] + w * u[i];
+            u_sum[i] = u_sum[i] + w * du[i];
+        }
+        power_sum = power_sum + w * lane::abs(command.joint_torque_nm * u[3]);
+        if (has_lag) {
+            power_sum = power_sum + w * rotor_power(model, thrust_n);
+            for (int i = 0; i < rotors; ++i) {
+                thrust_rate[i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
+                thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
+            }
+        }
+    }
+    const T sixth_s = dt_s * T(1.0 / 6.0);
+    PlantState<T> next;
+    for (int i = 0; i < 4; ++i) {
+        next.q[i] = state.q[i] + sixth_s * q_sum[i];
+        next.u[i] = state.u[i] + sixth_s * u_sum[i];
+    }
+    next.energy_j = state.energy_j + sixth_s * power_sum;
+    if (!has_lag) {
+        next.energy_j = next.energy_j + dt_s * rotor_power(model, command.thrust_n);
+    }
+    for (int i = 0; i < max_rotors; ++i) {
+        next.thrust_n[i] = i >= rotors ? state.thrust_n[i]
+                           : has_lag   ? state.thrust_n[i] + sixth_s * thrust_sum[i]
+                                       : command.thrust_n[i];
+    }
+    return next;
+}
+
 template <class T, class Factor>
 PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
                           const Factor& factor) {
-    PlantState<T> start = state;
-    const bool has_lag = model.rotor_time_constant_s > 0;
-    if (!has_lag) {
-        for (int i = 0; i < model.rotor_count; ++i) {
-            start.thrust_n[i] = command.thrust_n[i];
-        }
-    }
-    const T half = T(0.5) * dt_s;
-    const PlantRate<T> k1 = plant_rate(model, start, command, factor);
-    const PlantRate<T> k2 = plant_rate(model, advanced(model, start, k1, half), command, factor);
-    const PlantRate<T> k3 = plant_rate(model, advanced(model, start, k2, half), command, factor);
-    const PlantRate<T> k4 = plant_rate(model, advanced(model, start, k3, dt_s), command, factor);
-    const auto mean = [](T a, T b, T c, T d) { return (a + T(2) * (b + c) + d) * T(1.0 / 6.0); };
-    PlantState<T> next = start;
-    for (int i = 0; i < 4; ++i) {
-        next.q[i] = start.q[i] + dt_s * mean(k1.q[i], k2.q[i], k3.q[i], k4.q[i]);
-        next.u[i] = start.u[i] + dt_s * mean(k1.u[i], k2.u[i], k3.u[i], k4.u[i]);
-    }
-    next.energy_j = start.energy_j + dt_s * mean(k1.energy_j, k2.energy_j, k3.energy_j, k4.energy_j);
-    if (has_lag) {
-        for (int i = 0; i < model.rotor_count; ++i) {
-            next.thrust_n[i] =
-                start.thrust_n[i] + dt_s * mean(k1.thrust_n[i], k2.thrust_n[i], k3.thrust_n[i], k4.thrust_n[i]);
-        }
-    } else {
-        next.energy_j = next.energy_j + dt_s * rotor_power(model, command.thrust_n);
-    }
-    return next;
+    return flight_step(model, state, motion_at(model, state.q, state.u), command, dt_s, factor);
 }
 
 /// The tick as one Runge-Kutta step; for planning.
 struct OneStep {
     template <class T, class Factor>
-    PlantState<T> operator()(const PlantModel& model, const PlantState<T>& state, const PlantCommand<T>& command,
-                             T dt_s, const Factor& factor) const {
-        return flight_step(model, state, command, dt_s, factor);
+    PlantState<T> operator()(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
+                             const PlantCommand<T>& command, T dt_s, const Factor& factor) const {
+        return flight_step(model, state, motion, command, dt_s, factor);
     }
 };
 
@@ -190,8 +199,9 @@ struct RefinedStep {
 
     template <class Factor>
     PlantState<double> operator()(const PlantModel& model, const PlantState<double>& state,
-                                  const PlantCommand<double>& command, double dt_s, const Factor& factor) const {
-        return refined(model, state, command, dt_s, factor, flight_step(model, state, command, dt_s, factor),
+                                  const Motion<double>& motion, const PlantCommand<double>& command, double dt_s,
+                                  const Factor& factor) const {
+        return refined(model, state, command, dt_s, factor, flight_step(model, state, motion, command, dt_s, factor),
                        most_halvings);
     }
 

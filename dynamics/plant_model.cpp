@@ -35,6 +35,7 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
     model.multirotor_mass_kg = multirotor.mass_kg;
     model.arm_mass_kg = arm.mass_kg;
     model.total_mass_kg = multirotor.mass_kg + arm.mass_kg;
+    model.inverse_mass_1_kg = 1 / model.total_mass_kg;
     model.reduced_mass_kg = multirotor.mass_kg * arm.mass_kg / model.total_mass_kg;
     model.arm_mass_ratio = arm.mass_kg / model.total_mass_kg;
     model.pitch_inertia_kg_m2 = multirotor.pitch_inertia_kg_m2;

@@ -11,6 +11,7 @@ inline constexpr double standard_gravity_m_s2 = 9.80665;
 /// The plant as plain numbers, ready for the tick. Immutable once made.
 struct PlantModel {
     double multirotor_mass_kg, arm_mass_kg, total_mass_kg;
+    double inverse_mass_1_kg;    ///< 1 / (mA + mB)
     double reduced_mass_kg;      ///< mA mB / (mA + mB)
     double arm_mass_ratio;       ///< mB / (mA + mB)
     double pitch_inertia_kg_m2;  ///< IA

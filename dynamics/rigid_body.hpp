@@ -66,6 +66,19 @@ EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude
     return e;
 }
 
+/// All of the above at one instant.
+template <class T>
+struct Motion {
+    Attitude<T> attitude;
+    EquationsOfMotion<T> equations;
+};
+
+template <class T>
+Motion<T> motion_at(const PlantModel& model, const T q[4], const T u[4]) {
+    const Attitude<T> a = attitude(model, q[2], q[3]);
+    return {a, equations_of_motion(model, a, u)};
+}
+
 /// Pitch and arm with the translation eliminated: s55 du5 + s57 du7 = g5, s57 du5 + s77 du7 = tau7 - c7 - coupling.
 /// The determinant s55 s77 - s57^2 is positive for any positive masses and inertias.
 template <class T>
@@ -102,7 +115,7 @@ void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
     acceleration[2] = (s.s77 * s.g5 - s.s57 * g7) * inverse_determinant;
     acceleration[3] = (s.s55 * g7 - s.s57 * s.g5) * inverse_determinant;
     const T ratio(model.arm_mass_ratio);
-    const T inverse_mass(1 / model.total_mass_kg);
+    const T inverse_mass(model.inverse_mass_1_kg);
     acceleration[0] = s.force_x * inverse_mass - ratio * (e.pitch_x * acceleration[2] + e.arm_x * acceleration[3]);
     acceleration[1] = s.force_z * inverse_mass - ratio * (e.pitch_z * acceleration[2] + e.arm_z * acceleration[3]);
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "downwash/controllers/model_inversion.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 
@@ -28,12 +30,20 @@ struct TickRecord {
     T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped
 };
 
-/// A demanded rotor thrust over the greatest; below the least thrust 1 and more, by how far it is missed.
+/// The worst of all rotors: a demanded thrust over the greatest; below the least thrust 1 and more, by how far it is
+/// missed.
 template <class T>
-T thrust_saturation(const PlantModel& plant, T demand_n) {
-    const T span(plant.max_thrust_n - plant.min_thrust_n);
-    const T below = T(plant.min_thrust_n) - demand_n;
-    return lane::select(below > T(0), T(1) + below / span, demand_n / T(plant.max_thrust_n));
+T thrust_saturation(const PlantModel& plant, const T demand_n[max_rotors]) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    T least_n(infinity);
+    T most_n(-infinity);
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        least_n = lane::min(least_n, demand_n[i]);
+        most_n = lane::max(most_n, demand_n[i]);
+    }
+    const T below = T(plant.min_thrust_n) - least_n;
+    const T missed = T(1) + below / T(plant.max_thrust_n - plant.min_thrust_n);
+    return lane::max(most_n / T(plant.max_thrust_n), lane::select(below > T(0), missed, T(0)));
 }
 
 /// What the controller expects of the rotors in the middle of the tick: the commands, or where a lag will have brought
@@ -55,21 +65,23 @@ dynamics::RotorWrench<T> expected_wrench(const TickModel& model, const State<T>&
 }
 
 /// The commands that the controller holds from this state on, and its memory at the end of the tick.
+/// @param motion that of the state
 template <class T>
 controllers::ControllerState<T> control(const TickModel& model, const State<T>& state,
-                                        const controllers::Setpoint<T>& reference, TickRecord<T>& record) {
+                                        const dynamics::Motion<T>& motion, const controllers::Setpoint<T>& reference,
+                                        TickRecord<T>& record) {
     const PlantModel& plant = model.plant;
-    const auto step = controllers::model_inversion_control(plant, model.gains, state.plant.q, state.plant.u,
+    const auto step = controllers::model_inversion_control(plant, model.gains, state.plant.q, state.plant.u, motion,
                                                            state.controller, reference, T(model.tick_s));
     T demand_n[max_rotors];
     dynamics::allocate(plant, step.demand.thrust_n, step.demand.pitch_torque_nm, demand_n);
-    record.saturation = T(0);
+    record.saturation = thrust_saturation(plant, demand_n);
     for (int i = 0; i < plant.rotor_count; ++i) {
-        record.saturation = lane::max(record.saturation, thrust_saturation(plant, demand_n[i]));
         record.command.thrust_n[i] = lane::clamp(demand_n[i], T(plant.min_thrust_n), T(plant.max_thrust_n));
     }
     const dynamics::RotorWrench<T> wrench = expected_wrench(model, state, record.command);
-    const T torque_nm = controllers::joint_torque(plant, step, wrench.thrust_n, wrench.pitch_torque_nm);
+    const T torque_nm =
+        controllers::joint_torque(plant, motion, step.demand.arm_acceleration, wrench.thrust_n, wrench.pitch_torque_nm);
     const T most_torque(plant.max_joint_torque_nm);
     record.saturation = lane::max(record.saturation, lane::abs(torque_nm) / most_torque);
     record.command.joint_torque_nm = lane::clamp(torque_nm, -most_torque, most_torque);
@@ -86,15 +98,25 @@ controllers::ControllerState<T> control(const TickModel& model, const State<T>& 
 }
 
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
+/// @param motion that of the state
 /// @param factor callable (rotor, x_m, z_m) -> K, the surface effect at a rotor hub in the plane
-/// @param integrate callable (plant, state, command, dt, factor) -> state: dynamics::OneStep or dynamics::RefinedStep
+/// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
+/// dynamics::RefinedStep
+template <class T, class Factor, class Integrate = dynamics::OneStep>
+State<T> tick(const TickModel& model, const State<T>& state, const dynamics::Motion<T>& motion,
+              const controllers::Setpoint<T>& reference, const Factor& factor, TickRecord<T>& record,
+              const Integrate& integrate = {}) {
+    State<T> next;
+    next.controller = control(model, state, motion, reference, record);
+    next.plant = integrate(model.plant, state.plant, motion, record.command, T(model.tick_s), factor);
+    return next;
+}
+
 template <class T, class Factor, class Integrate = dynamics::OneStep>
 State<T> tick(const TickModel& model, const State<T>& state, const controllers::Setpoint<T>& reference,
               const Factor& factor, TickRecord<T>& record, const Integrate& integrate = {}) {
-    State<T> next;
-    next.controller = control(model, state, reference, record);
-    next.plant = integrate(model.plant, state.plant, record.command, T(model.tick_s), factor);
-    return next;
+    const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
+    return tick(model, state, motion, reference, factor, record, integrate);
 }
 
 }  // namespace downwash::simulation

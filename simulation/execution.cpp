@@ -159,7 +159,9 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
             });
     }
     TickRecord<double> record{};
-    static_cast<void>(simulation::control(model.tick(), state, simulation::setpoint(reference), record));
+    static_cast<void>(simulation::control(model.tick(), state,
+                                          dynamics::motion_at(model.tick().plant, state.plant.q, state.plant.u),
+                                          simulation::setpoint(reference), record));
     recorder.add_row(state, reference, record);
 
     execution.outcome = outcome_of(fault);

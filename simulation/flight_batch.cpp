@@ -175,8 +175,8 @@ class Lane {
         return job_->judged_ticks > 0 && leg_ + 1 == job_->legs.size();
     }
     [[nodiscard]] bool is_judged() const noexcept {
-        return is_judged_leg() &&
-               static_cast<std::int64_t>(lanes_->tick[number_]) + job_->judged_ticks >= job_->legs.back().segment.ticks();
+        return is_judged_leg() && static_cast<std::int64_t>(lanes_->tick[number_]) + job_->judged_ticks >=
+                                      job_->legs.back().segment.ticks();
     }
 
     void look_after_every_tick() { lanes_->free_motion_m[number_] = -1; }

@@ -25,7 +25,7 @@ struct FlightJob {
     std::int64_t judged_ticks = 0;
 
     /// Why the flight ended early.
-    [[nodiscard]] FlightFault fault() const noexcept;
+    [[nodiscard]] DOWNWASH_EXPORT FlightFault fault() const noexcept;
     /// The vehicle at the end of an accepted flight.
     [[nodiscard]] const FlightState& end() const noexcept { return legs.back().end; }
 };

@@ -13,7 +13,7 @@ namespace downwash::simulation {
 inline constexpr int lane_count = 4;
 
 /// Everything about the edges that changes, as structure of arrays; [..][lane].
-struct alignas(32) FlightLanes {
+struct alignas(64) FlightLanes {
     double q[4][lane_count], u[4][lane_count], thrust_n[max_rotors][lane_count], energy_j[lane_count];
     double position_integral[2][lane_count], pitch_rate_integral[lane_count], arm_integral[lane_count];
     double pitch_reference_rad[lane_count], pitch_reference_rate[lane_count], rate_reference[lane_count];
@@ -33,8 +33,9 @@ struct alignas(32) FlightLanes {
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.
-    double fault[lane_count];       ///< number of a FlightFault
-    double is_unclear[lane_count];  ///< 1 where the flyable area, or motion beyond free_motion_m, asks for a closer look
+    double fault[lane_count];  ///< number of a FlightFault
+    double
+        is_unclear[lane_count];  ///< 1 where the flyable area, or motion beyond free_motion_m, asks for a closer look
 };
 
 /// What a lane's flight does not change.
@@ -51,8 +52,8 @@ struct FlightKernelModel {
     const void* context;
 };
 
-/// Flies all lanes tick by tick until an active one breaks a rule, is unclear, or is at the end of its segment, or until
-/// so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
+/// Flies all lanes tick by tick until an active one breaks a rule, is unclear, or is at the end of its segment, or
+/// until so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
 
 void fly_lanes_baseline(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);

@@ -11,62 +11,111 @@
 namespace downwash::simulation {
 inline namespace {  // NOLINT(google-build-namespaces)
 
+using lane::Doubles;
 using lane::Pack;
 using lane::PackMask;
 
 static_assert(lane::pack_width == lane_count);
 
-/// Where points are in a layer: its cells, and the place within them.
+// Vectors of integers, as wide as one of doubles.
+typedef std::uint32_t Counts __attribute__((vector_size(16)));       // NOLINT(modernize-use-using)
+typedef std::int32_t SignedCounts __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+typedef float Floats __attribute__((vector_size(16)));               // NOLINT(modernize-use-using)
+typedef std::uint64_t Words __attribute__((vector_size(32)));        // NOLINT(modernize-use-using)
+
+#ifdef __AVX2__
+/// The whole part of numbers in [0, 2^31).
+Counts whole(Doubles x) {
+    return reinterpret_cast<Counts>(_mm256_cvttpd_epi32(x));
+}
+Doubles number(Counts x) {
+    return _mm256_cvtepi32_pd(reinterpret_cast<__m128i>(x));
+}
+Doubles floats_in(Counts bits) {
+    return _mm256_cvtps_pd(reinterpret_cast<__m128>(bits));
+}
+Counts low_half(Words x) {
+    const __m256i even = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
+    const __m256i gathered = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x), even);
+    return reinterpret_cast<Counts>(_mm256_castsi256_si128(gathered));
+}
+Counts high_half(Words x) {
+    const __m256i odd = _mm256_setr_epi32(1, 3, 5, 7, 1, 3, 5, 7);
+    const __m256i gathered = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x), odd);
+    return reinterpret_cast<Counts>(_mm256_castsi256_si128(gathered));
+}
+#else
+Counts whole(Doubles x) {
+    return reinterpret_cast<Counts>(__builtin_convertvector(x, SignedCounts));
+}
+Doubles number(Counts x) {
+    return __builtin_convertvector(reinterpret_cast<SignedCounts>(x), Doubles);
+}
+Doubles floats_in(Counts bits) {
+    return __builtin_convertvector(reinterpret_cast<Floats>(bits), Doubles);
+}
+Counts low_half(Words x) {
+    return __builtin_convertvector(x, Counts);
+}
+Counts high_half(Words x) {
+    return __builtin_convertvector(x >> 32, Counts);
+}
+#endif
+
+/// Eight bytes each at four places.
+template <class Element>
+Words words_at(const Element* elements, Counts index) {
+    Words words;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        std::uint64_t word;
+        __builtin_memcpy(&word, elements + index[lane], sizeof word);
+        words[lane] = word;
+    }
+    return words;
+}
+
+/// Where points are in a layer.
 struct CellPlaces {
-    Pack u, w;  ///< in cells, from the lower corner of the map
-    bool is_inside[lane_count];
-    bool all_inside;
+    Counts cell;
+    Doubles across, up;  ///< from the cell's lower corner, in [0, 1)
+    PackMask is_inside;
 };
 
 CellPlaces places_in(const MapView& view, Pack x_m, Pack z_m) {
     CellPlaces at;
-    at.u = (x_m - Pack(view.x_low_m)) * Pack(view.cells_per_m);
-    at.w = (z_m - Pack(view.z_low_m)) * Pack(view.cells_per_m);
-    const PackMask inside = (at.u >= Pack(0)) & (at.w >= Pack(0)) & (at.u < Pack(view.columns)) &
-                            (at.w < Pack(view.rows));  // NaN is outside
-    at.all_inside = true;
-    for (int lane = 0; lane < lane_count; ++lane) {
-        at.is_inside[lane] = inside.bits[lane] != 0;
-        at.all_inside = at.all_inside && at.is_inside[lane];
-    }
-    if (!at.all_inside) {
-        at.u = select(inside, at.u, Pack(0));
-        at.w = select(inside, at.w, Pack(0));
-    }
+    const Pack u = (x_m - Pack(view.x_low_m)) * Pack(view.cells_per_m);
+    const Pack w = (z_m - Pack(view.z_low_m)) * Pack(view.cells_per_m);
+    at.is_inside = (u >= Pack(0)) & (w >= Pack(0)) & (u < Pack(view.columns)) & (w < Pack(view.rows));  // not NaN
+    const Doubles safe_u = select(at.is_inside, u, Pack(0)).values;
+    const Doubles safe_w = select(at.is_inside, w, Pack(0)).values;
+    const Counts i = whole(safe_u);
+    const Counts k = whole(safe_w);
+    at.cell = k * view.columns + i;
+    at.across = safe_u - number(i);
+    at.up = safe_w - number(k);
     return at;
 }
 
-/// AeroMap::factor() for four points.
+/// AeroMap::factor() for every lane.
 Pack factor_in(const MapView& view, const CellPlaces& at) {
-    Pack s, t, k00, k10, k01, k11;
-    for (int lane = 0; lane < lane_count; ++lane) {
-        const double u = at.u[lane];
-        const double w = at.w[lane];
-        const int i = static_cast<int>(u);
-        const int k = static_cast<int>(w);
-        const MapCell cell = view.cells[static_cast<std::uint32_t>(k) * view.columns + static_cast<std::uint32_t>(i)];
-        const double a = (u - i) * cell.steps_x;
-        const double b = (w - k) * cell.steps_z;
-        const int ia = static_cast<int>(a);
-        const int ib = static_cast<int>(b);
-        const float* node = view.nodes + cell.first_node + static_cast<std::uint32_t>(ib) * (cell.steps_x + 1U) +
-                            static_cast<std::uint32_t>(ia);
-        const float* upper = node + cell.steps_x + 1U;
-        s.set(lane, a - ia);
-        t.set(lane, b - ib);
-        k00.set(lane, node[0]);
-        k10.set(lane, node[1]);
-        k01.set(lane, upper[0]);
-        k11.set(lane, upper[1]);
-    }
-    const Pack low = k00 + s * (k10 - k00);
-    const Pack high = k01 + s * (k11 - k01);
-    return low + t * (high - low);
+    static_assert(sizeof(MapCell) == 8 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "a cell is read as one word");
+    const Words cells = words_at(view.cells, at.cell);
+    const Counts steps = high_half(cells);
+    const Counts steps_x = steps & 0xffffU;
+    const Doubles a = at.across * number(steps_x);
+    const Doubles b = at.up * number(steps >> 16U);
+    const Counts ia = whole(a);
+    const Counts ib = whole(b);
+    const Counts node = low_half(cells) + ib * (steps_x + 1U) + ia;
+    const Words lower = words_at(view.nodes, node);  // two neighbours each
+    const Words upper = words_at(view.nodes, node + steps_x + 1U);
+    const Doubles s = a - number(ia);
+    const Doubles t = b - number(ib);
+    const Doubles lower_left = floats_in(low_half(lower));
+    const Doubles upper_left = floats_in(low_half(upper));
+    const Doubles low = lower_left + s * (floats_in(high_half(lower)) - lower_left);
+    const Doubles high = upper_left + s * (floats_in(high_half(upper)) - upper_left);
+    return Pack(low + t * (high - low));
 }
 
 /// The effect looked up in the map.
@@ -79,7 +128,7 @@ struct LaneMapEffect {
         const MapView& view = model.view[rotor];
         const CellPlaces at = places_in(view, x_m, z_m);
         Pack factor = factor_in(view, at);
-        if (!at.all_inside) {
+        if (!all(at.is_inside)) {
             for (int lane = 0; lane < lane_count; ++lane) {
                 if (!at.is_inside[lane]) {
                     factor.set(lane, model.factor_outside(model.context, rotor, x_m[lane], z_m[lane]));
@@ -96,10 +145,9 @@ struct LaneNoEffect {
 };
 
 /// 1 where some hub is not in a cell that is flyable throughout.
-Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state) {
+Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state, const dynamics::Attitude<Pack>& a) {
     const PlantModel& plant = model.tick->plant;
-    const dynamics::Attitude<Pack> a = dynamics::attitude(plant, state.plant.q[2], state.plant.q[3]);
-    unsigned doubt[lane_count] = {};
+    Counts doubt{};
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
         if (model.same_as[rotor] != rotor) {
             continue;
@@ -107,18 +155,13 @@ Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state) {
         const MapView& view = model.view[rotor];
         const auto hub = dynamics::rotor_position(plant, a, state.plant.q[0], state.plant.q[1], rotor);
         const CellPlaces at = places_in(view, hub.x, hub.z);
+        static_assert(static_cast<int>(CellFlyability::flyable) == 0);
         for (int lane = 0; lane < lane_count; ++lane) {
-            const auto i = static_cast<std::uint32_t>(static_cast<int>(at.u[lane]));
-            const auto k = static_cast<std::uint32_t>(static_cast<int>(at.w[lane]));
-            doubt[lane] |= static_cast<unsigned>(!at.is_inside[lane]) |
-                           static_cast<unsigned>(view.flyability[k * view.columns + i] != CellFlyability::flyable);
+            doubt[lane] |= static_cast<std::uint32_t>(view.flyability[at.cell[lane]]);
         }
+        doubt |= reinterpret_cast<Counts>(__builtin_convertvector(at.is_inside.bits, SignedCounts)) + 1U;
     }
-    Pack result(0);
-    for (int lane = 0; lane < lane_count; ++lane) {
-        result.set(lane, doubt[lane]);
-    }
-    return result;
+    return Pack(number(doubt));
 }
 
 /// No point of the robot, and no hub, has moved farther between two poses [m].
@@ -127,8 +170,9 @@ Pack motion_bound_m(const FlightKernelModel& model, const State<Pack>& state, co
     const Pack dz = state.plant.q[1] - anchor[1];
     const Pack pitch = lane::abs(state.plant.q[2] - anchor[2]);
     const Pack arm = lane::abs(state.plant.q[2] + state.plant.q[3] - (anchor[2] + anchor[3]));
-    return lane::sqrt(dx * dx + dz * dz) + lane::max(Pack(model.body_reach_m) * pitch,
-                                                     Pack(model.joint_reach_m) * pitch + Pack(model.arm_length_m) * arm);
+    return lane::sqrt(dx * dx + dz * dz) +
+           lane::max(Pack(model.body_reach_m) * pitch,
+                     Pack(model.joint_reach_m) * pitch + Pack(model.arm_length_m) * arm);
 }
 
 template <int Count>
@@ -204,17 +248,20 @@ void fly_lanes_with(const FlightKernelModel& model, FlightLanes& lanes, int most
     const Pack free_motion_m = Pack::load(lanes.free_motion_m);
     const Pack ticks = Pack::load(lanes.ticks);
     const PackMask is_active = Pack::load(lanes.is_active) > Pack(0);
+    const PlantModel& plant = model.tick->plant;
+    dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
     for (int n = 0; n < most_ticks; ++n) {
         TickRecord<Pack> record;
-        const State<Pack> next = tick(*model.tick, state, reference, factor, record);
+        const State<Pack> next = tick(*model.tick, state, motion, reference, factor, record);
         tick_count = tick_count + Pack(1);
         reference = reference_at(lanes, tick_count, Pack(model.tick->tick_s));
-        length_m = length_m + lane::sqrt(squared_step_m2(model.tick->plant, state, next));
+        length_m = length_m + lane::sqrt(squared_step_m2(plant, state, next));
         state = next;
+        motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
         fault = broken_rule(model.limits, record.saturation, state, reference);
         unclear = select(motion_bound_m(model, state, anchor) > free_motion_m, Pack(1), Pack(0));
         if (model.has_map) {
-            unclear = lane::max(unclear, flyable_doubt(model, state));
+            unclear = lane::max(unclear, flyable_doubt(model, state, motion.attitude));
         }
         if (any(is_active & ((fault > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
             break;
@@ -230,7 +277,7 @@ void fly_lanes_with(const FlightKernelModel& model, FlightLanes& lanes, int most
     unclear.store(lanes.is_unclear);
 }
 
-void fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
+[[gnu::flatten]] void fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
     if (model.has_map) {
         fly_lanes_with(model, lanes, most_ticks, LaneMapEffect{model});
     } else {

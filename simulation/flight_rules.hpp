@@ -44,7 +44,8 @@ T instability(const State<T>& state, T tracking_error_m) {
     for (int i = 0; i < 4; ++i) {
         sum = sum + lane::abs(state.plant.q[i]) + lane::abs(state.plant.u[i]);
     }
-    const T excess = lane::max(lane::abs(state.plant.q[2]) - T(unstable_pitch_rad), tracking_error_m - T(unstable_error_m));
+    const T excess =
+        lane::max(lane::abs(state.plant.q[2]) - T(unstable_pitch_rad), tracking_error_m - T(unstable_error_m));
     return lane::select(sum < T(1e4), excess, T(1));
 }
 
@@ -57,10 +58,9 @@ T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
     const auto number_of = [](FlightFault fault) { return T(static_cast<double>(fault)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);
-    const T beyond_bounds =
-        lane::max(lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
-                            lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m))),
-                  lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad)));
+    const T beyond_bounds = lane::max(lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
+                                                lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m))),
+                                      lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad)));
     const T beyond_tracking = lane::max(error_m - T(limits.max_tracking_error_m),
                                         lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
     T fault = lane::select(beyond_bounds > T(0), number_of(FlightFault::bounds), T(0));

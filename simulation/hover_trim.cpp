@@ -105,10 +105,7 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
 
     // Its limits.
     const double joint_saturation = std::abs(trim.joint_torque_nm) / plant.max_joint_torque_nm;
-    double rotor_saturation = 0;
-    for (int i = 0; i < plant.rotor_count; ++i) {
-        rotor_saturation = lane::max(rotor_saturation, thrust_saturation(plant, trim.rotor_command_n[i]));
-    }
+    const double rotor_saturation = thrust_saturation(plant, trim.rotor_command_n);
     trim.saturation = lane::max(joint_saturation, rotor_saturation);
     const double least_force_n = gains.min_vertical_force_ratio * e.bias[1];
     if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {

@@ -66,7 +66,8 @@ void accelerations(const PlantModel& model, const double (&q)[4], const double (
     const auto a = dynamics::attitude(model, q[2], q[3]);
     const controllers::Demand<double>& demand = step.demand;
     const double force[4] = {demand.thrust_n * std::sin(q[2]), demand.thrust_n * std::cos(q[2]), demand.pitch_torque_nm,
-                             controllers::joint_torque(model, step, demand.thrust_n, demand.pitch_torque_nm)};
+                             controllers::joint_torque(model, dynamics::motion_at(model, q, u), demand.arm_acceleration,
+                                                       demand.thrust_n, demand.pitch_torque_nm)};
     dynamics::forward_dynamics(model, dynamics::equations_of_motion(model, a, u), force, du);
 }
 
@@ -102,7 +103,8 @@ TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and n
             model, robot.controller, q, u, controllers::rested_controller(0.0), hold(1, 2, arm), tick_s);
         const double gravity_torque_nm = -0.45 * 9.80665 * 0.72 * std::cos(arm);
         CHECK(step.demand.thrust_n == Approx(4.95 * 9.80665).epsilon(1e-14));
-        CHECK(controllers::joint_torque(model, step, step.demand.thrust_n, step.demand.pitch_torque_nm) ==
+        CHECK(controllers::joint_torque(model, dynamics::motion_at(model, q, u), step.demand.arm_acceleration,
+                                        step.demand.thrust_n, step.demand.pitch_torque_nm) ==
               Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
         CHECK(step.demand.pitch_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
         CHECK(step.integrated.pitch_reference_rad == Approx(0).margin(1e-15));

@@ -121,6 +121,15 @@ TEST_CASE("Thrust of the weight with the arm hanging hovers") {
     }
 }
 
+/// du/dt in free air.
+struct Accelerations {
+    double u[4];
+    Accelerations(const PlantModel& model, const State& state, const Command& command) {
+        dynamics::accelerations(model, state.q, dynamics::motion_at(model, state.q, state.u), state.thrust_n,
+                                command.joint_torque_nm, FreeAir{}, u);
+    }
+};
+
 TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
     const PlantModel model = plant_of(test_robot());
     Command command = even_command(model, 4.95 * 9.80665, 0);
@@ -128,7 +137,7 @@ TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
     const State start = state_of({0, 2, 0, quarter_turn}, {0, 0, 0, 0});
     State at_rest = start;
     std::copy(command.thrust_n, command.thrust_n + max_rotors, at_rest.thrust_n);
-    const auto rate = dynamics::plant_rate(model, at_rest, command, FreeAir{});
+    const Accelerations rate(model, at_rest, command);
     CHECK(rate.u[1] == Approx(1 / 4.95));
     CHECK(rate.u[2] == Approx(-0.32 * 1 / 0.20));  // the hanging arm pulls through the centre of mass
     // Pitch and arm angle change together: the arm stays hanging.
@@ -141,7 +150,7 @@ TEST_CASE("Thrust acts along the body's axis") {
     State state = state_of({0, 2, pitch, quarter_turn - pitch}, {0, 0, 0, 0});
     const Command command = even_command(model, 60, 0);
     std::copy(command.thrust_n, command.thrust_n + max_rotors, state.thrust_n);
-    const auto rate = dynamics::plant_rate(model, state, command, FreeAir{});
+    const Accelerations rate(model, state, command);
     // Vertical pull goes through the hanging arm's centre of mass: the whole mass rises; sideways the arm swings.
     CHECK(rate.u[1] == Approx(60 * std::cos(pitch) / 4.95 - 9.80665));
     const double swung_mass_kg = 4.5 + 0.45 * 0.06 / (0.06 + 0.45 * 0.72 * 0.72);
@@ -154,7 +163,7 @@ TEST_CASE("A step of joint torque swings the arm and pushes the vehicle the othe
     const State start = state_of({0, 2, 0, quarter_turn}, {0, 0, 0, 0});
     State state = start;
     std::fill(state.thrust_n, state.thrust_n + 4, 4.95 * 9.80665 / 4);
-    const auto rate = dynamics::plant_rate(model, state, even_command(model, 4.95 * 9.80665, 1), FreeAir{});
+    const Accelerations rate(model, state, even_command(model, 4.95 * 9.80665, 1));
     // The arm's absolute angular acceleration: torque about a joint that the vehicle's mass holds back sideways.
     const double reduced_kg = 4.5 * 0.45 / 4.95;
     CHECK(rate.u[2] + rate.u[3] == Approx(1 / (0.06 + reduced_kg * 0.72 * 0.72)));

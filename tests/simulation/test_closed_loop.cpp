@@ -325,11 +325,15 @@ TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the inte
 
 TEST_CASE("Saturation is the demand over the greatest thrust, and above one beyond either limit of a rotor") {
     const auto plant = plant_of(test_robot());
-    CHECK(simulation::thrust_saturation(plant, 28.0) == 1);
-    CHECK(simulation::thrust_saturation(plant, 0.0) == 0);
-    CHECK(simulation::thrust_saturation(plant, 14.0) == 0.5);
-    CHECK(simulation::thrust_saturation(plant, 29.0) > 1);
-    CHECK(simulation::thrust_saturation(plant, -1.0) > 1);
+    const auto saturation = [&plant](std::array<double, downwash::max_rotors> demand_n) {
+        return simulation::thrust_saturation(plant, demand_n.data());
+    };
+    CHECK(saturation({28.0, 28.0, 28.0, 28.0}) == 1);
+    CHECK(saturation({}) == 0);
+    CHECK(saturation({7.0, 3.0, 14.0, 0.0}) == 0.5);
+    CHECK(saturation({1.0, 29.0, 1.0, 1.0}) == 29.0 / 28.0);
+    CHECK(saturation({1.0, 1.0, 1.0, -1.0}) == 1 + 1.0 / 28.0);
+    CHECK(saturation({-7.0, -1.0, -7.0, -7.0}) == 1.25);
 }
 
 TEST_CASE("hover holds with rotor lag up to 30 ms, whatever the arm's direction") {

@@ -1,0 +1,203 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <map>
+
+#include "../support/random.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_batch.hpp"
+#include "hover_scenes.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+std::vector<Instructions> all_instructions() {
+    std::vector<Instructions> all{Instructions::baseline};
+    if (best_instructions() != Instructions::baseline) {
+        all.push_back(best_instructions());
+    }
+    return all;
+}
+
+ReferencePoint random_point(const Bounds& bounds, Random& random) {
+    ReferencePoint point;
+    point.position[0] = random.uniform(bounds.x_low_m, bounds.x_high_m);
+    point.position[1] = random.uniform(bounds.z_low_m, bounds.z_high_m);
+    point.position[2] = random.uniform(-3, 3);
+    return point;
+}
+
+/// Flights of one to three legs all over a scene: through obstacles, too fast, from moving starts.
+std::vector<FlightJob> random_jobs(const Problem& problem, const FlightModel& model, int count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<FlightJob> jobs;
+    while (static_cast<int>(jobs.size()) < count) {
+        ReferencePoint from = random_point(problem.bounds, random);
+        const double q[4] = {from.position[0], from.position[1], random.uniform(-0.05, 0.05), from.position[2]};
+        const double u[4] = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0, random.uniform(-0.1, 0.1)};
+        if (model.collisions().is_nearer_than({q[0], q[1], q[2], q[3]}, 0.05)) {
+            continue;
+        }
+        FlightJob job{model.state_at(q, u), {}};
+        for (int leg = random.integer(1, 3); leg > 0; --leg) {
+            ReferencePoint to = from;
+            to.position[0] += random.uniform(-3, 3);
+            to.position[1] += random.uniform(-1, 1);
+            to.position[2] += random.uniform(-1, 1);
+            to.velocity[0] = leg > 1 ? random.uniform(-0.3, 0.3) : 0;
+            job.legs.push_back({{from, to, random.integer(200, 900), model.tick().tick_s}});
+            from = to;
+        }
+        jobs.push_back(std::move(job));
+    }
+    return jobs;
+}
+
+/// The same flights one after the other, tick by tick.
+void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
+                    std::vector<FlightJob>& jobs) {
+    for (FlightJob& job : jobs) {
+        FlightState state = job.start;
+        for (FlightLeg& leg : job.legs) {
+            leg.flight = fly(model, map, rules, leg.segment, state);
+            leg.end = state;
+            if (leg.flight.fault != FlightFault::none) {
+                break;
+            }
+        }
+    }
+}
+
+bool is_same(const FlightLeg& a, const FlightLeg& b) {
+    return a.flight.fault == b.flight.fault && a.flight.ticks == b.flight.ticks &&
+           a.flight.length_m == b.flight.length_m && a.flight.clearance_integral == b.flight.clearance_integral &&
+           std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
+}
+
+/// Counts of faults, after every leg was found the same to the last bit.
+std::map<FlightFault, int> faults_of_equal_flights(const Problem& problem, bool is_aware, const FlightRules& rules,
+                                                   int count) {
+    const auto model = make_flight_model(problem);
+    const auto map = is_aware ? model->make_map(problem.bounds) : nullptr;
+    const std::vector<FlightJob> jobs = random_jobs(problem, *model, count, 5);
+    std::vector<FlightJob> expected = jobs;
+    fly_one_by_one(*model, map.get(), rules, expected);
+    for (const Instructions instructions : all_instructions()) {
+        std::vector<FlightJob> flown = jobs;
+        fly_batch(*model, map.get(), rules, nullptr, flown, instructions);
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            INFO("job " << i << " with instructions " << static_cast<int>(instructions));
+            REQUIRE(flown[i].fault() == expected[i].fault());
+            for (std::size_t leg = 0; leg < jobs[i].legs.size(); ++leg) {
+                REQUIRE(is_same(flown[i].legs[leg], expected[i].legs[leg]));
+            }
+        }
+    }
+    std::map<FlightFault, int> faults;
+    for (const FlightJob& job : expected) {
+        ++faults[job.fault()];
+    }
+    return faults;
+}
+
+FlightRules rules_of(const Problem& problem) {
+    FlightRules rules;
+    rules.bounds = problem.bounds;
+    rules.margin_m = problem.planner.safety_margin_m;
+    return rules;
+}
+
+}  // namespace
+
+TEST_CASE("edges that fly side by side come out bit for bit as one by one, whatever ends them") {
+    const Problem problem = cluttered_problem();
+    const auto aware = faults_of_equal_flights(problem, true, rules_of(problem), 300);
+    for (const FlightFault fault : {FlightFault::none, FlightFault::collision, FlightFault::flyable_area,
+                                    FlightFault::tracking, FlightFault::bounds}) {
+        INFO("fault " << static_cast<int>(fault));
+        CHECK(aware.count(fault) == 1);  // or the comparison has not seen it
+    }
+    const auto unaware = faults_of_equal_flights(problem, false, rules_of(problem), 300);
+    CHECK(unaware.count(FlightFault::flyable_area) == 0);
+}
+
+TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm limits and unequal rotors") {
+    Problem problem = cluttered_problem();
+    problem.robot.rotors.time_constant_s = 0.02;
+    problem.robot.rotors.positions_m[0][2] = 0.1;
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = -2;
+    problem.robot.arm.upper_limit_rad = 2;
+    problem.aero.ground = SurfaceEffect(EffectModel::multirotor_body);
+    const auto faults = faults_of_equal_flights(problem, true, rules_of(problem), 100);
+    CHECK(faults.count(FlightFault::none) == 1);
+}
+
+TEST_CASE("clearance is measured side by side as one by one") {
+    const Problem problem = cluttered_problem();
+    FlightRules rules = rules_of(problem);
+    rules.measures_clearance = true;
+    CHECK(faults_of_equal_flights(problem, false, rules, 30).count(FlightFault::none) == 1);
+}
+
+TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as one by one") {
+    Problem problem = cluttered_problem();
+    problem.robot.rotors.max_thrust_n = 13;
+    CHECK(faults_of_equal_flights(problem, false, rules_of(problem), 60).count(FlightFault::saturation) == 1);
+
+    const auto model = make_flight_model(cluttered_problem());
+    const double tumbling[4] = {0, 2, 1.5, 0};
+    const double u[4] = {};
+    ReferencePoint at;
+    at.position[1] = 2;
+    std::vector<FlightJob> jobs{{model->state_at(tumbling, u), {{{at, at, 100, model->tick().tick_s}}}}};
+    fly_batch(*model, nullptr, rules_of(problem), nullptr, jobs);
+    CHECK(jobs[0].fault() == FlightFault::unstable);
+    CHECK(jobs[0].legs[0].flight.ticks == 1);
+}
+
+TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
+    const Problem problem = ceiling_problem();
+    const auto model = make_flight_model(problem);
+    FlightRules rules = rules_of(problem);
+    ReferencePoint at;
+    at.position[0] = 3;
+    at.position[1] = 3.6;
+    at.position[2] = -1.5707963267948966;  // the arm points up to the goal at (3, 4.8)
+    const double q[4] = {3, 3.6, 0, at.position[2]};
+    const double u[4] = {};
+    FlightJob held{model->state_at(q, u), {{{at, at, 500, model->tick().tick_s}}}, 100};
+    FlightJob missed = held;
+    missed.legs[0].segment = {at, at, 120, model->tick().tick_s};
+    missed.start.plant.q[0] = 3.2;  // twice the tolerance: on its way to the reference, but too late
+    FlightJob at_once = missed;
+    at_once.legs[0].segment = {at, at, 50, model->tick().tick_s};
+    std::vector<FlightJob> jobs{held, missed, at_once};
+    rules.max_tracking_error_m = 1;
+    fly_batch(*model, nullptr, rules, &problem.goal, jobs);
+    CHECK(jobs[0].fault() == FlightFault::none);
+    CHECK(jobs[0].legs[0].flight.ticks == 500);
+    CHECK(jobs[1].fault() == FlightFault::goal_missed);
+    CHECK(jobs[1].legs[0].flight.ticks == 20);
+    CHECK(jobs[2].fault() == FlightFault::goal_missed);
+    CHECK(jobs[2].legs[0].flight.ticks == 0);  // missed before the first tick
+}
+
+TEST_CASE("a batch can be ended from outside") {
+    const Problem problem = ceiling_problem();
+    const auto model = make_flight_model(problem);
+    FlightRules rules = rules_of(problem);
+    int questions = 0;
+    rules.is_over = [&questions] { return ++questions > 3; };
+    ReferencePoint at;
+    at.position[0] = 0;
+    at.position[1] = 2;
+    const double q[4] = {0, 2, 0, 0};
+    const double u[4] = {};
+    std::vector<FlightJob> jobs(5, FlightJob{model->state_at(q, u), {{{at, at, 100000000, model->tick().tick_s}}}});
+    fly_batch(*model, nullptr, rules, nullptr, jobs);
+    for (const FlightJob& job : jobs) {
+        CHECK(job.fault() == FlightFault::interrupted);
+    }
+}
