@@ -22,17 +22,23 @@ double translation(const double axis[3]) {
     return std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
 }
 
+/// Beyond a limit by no more than rounding.
+constexpr double kept = 1 + 1e-9;
+
+double ratio_at(const ReferencePoint& p, const ReferenceLimits& limits) {
+    return std::max({translation(p.velocity) / limits.max_speed_m_s,
+                     translation(p.acceleration) / limits.max_acceleration_m_s2,
+                     std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
+                     std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
+}
+
 /// Largest ratio of a sampled speed or acceleration to its limit between the ends of the segment.
 double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
     constexpr std::int64_t most_samples = 64;
     const std::int64_t samples = std::min(most_samples, segment.ticks());
     double worst = 0;
     for (std::int64_t i = 1; i < samples; ++i) {
-        const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
-        worst = std::max({worst, translation(p.velocity) / limits.max_speed_m_s,
-                          translation(p.acceleration) / limits.max_acceleration_m_s2,
-                          std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
-                          std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
+        worst = std::max(worst, ratio_at(segment.at_tick(segment.ticks() * i / samples), limits));
     }
     return worst;
 }
@@ -105,18 +111,19 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
         return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(duration_s / tick_s - 1e-9)));
     };
     std::int64_t ticks = ticks_of(rest_to_rest_duration_s(distance_m, arm_rad, limits));
-    if (is_at_rest(from)) {
+    if (is_at_rest(from) && is_at_rest(to)) {
         return ticks;
     }
-    // From a moving start the shortest time has no closed form: begin with less than any motion within the limits
+    // With a moving end the shortest time has no closed form: begin with less than any motion within the limits
     // needs, stretch until they are kept, then close in on the last step.
-    const double braking_s = std::max(translation(from.velocity) / limits.max_acceleration_m_s2,
-                                      std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2);
+    const double change[3] = {to.velocity[0] - from.velocity[0], to.velocity[1] - from.velocity[1],
+                              to.velocity[2] - from.velocity[2]};
+    const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,
+                                      std::abs(change[2]) / limits.max_arm_acceleration_rad_s2);
     ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
     const auto ratio_in = [&](std::int64_t count) {
         return worst_ratio(ReferenceSegment(from, to, count, tick_s), limits);
     };
-    constexpr double kept = 1 + 1e-9;
     constexpr int most_stretches = 60;
     std::int64_t too_few = ticks - 1;
     std::int64_t gentlest = ticks;
@@ -141,6 +148,11 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
         (ratio_in(middle) <= kept ? ticks : too_few) = middle;
     }
     return ticks;
+}
+
+bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits) {
+    return std::max({ratio_at(segment.from(), limits), ratio_at(segment.to(), limits), worst_ratio(segment, limits)}) <=
+           kept;
 }
 
 }  // namespace downwash

@@ -51,12 +51,14 @@ struct ReferenceKnot {
     ReferencePoint point;
 };
 
-/// The fewest ticks in which the quintic from `from` to rest at `to` keeps the limits; 1 when nothing moves.
-/// From a moving start the limits are sampled (kept to 0.3 %), and one tick less breaks them. A start from which no
-/// duration keeps them is given the one that breaks them least.
-/// @pre `to` is at rest
+/// The fewest ticks in which the quintic between two points keeps the limits; 1 when nothing moves.
+/// Where an end moves the limits are sampled (kept to 0.3 %), and one tick less breaks them. Ends between which no
+/// duration keeps them are given the one that breaks them least: keeps_limits() tells.
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
                                                           const ReferenceLimits& limits, double tick_s);
+
+/// Whether a segment keeps the limits wherever they are sampled, its ends included.
+[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits);
 
 /// Duration [s] of the rest-to-rest quintic over a distance [m] and an arm angle [rad] (peak speed 15/8 of the mean,
 /// peak acceleration 10 / sqrt(3) of distance / duration^2), before it is rounded up to ticks.

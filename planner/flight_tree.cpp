@@ -6,7 +6,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "downwash/base/lane_math.hpp"
 #include "downwash/planner/solve.hpp"
 
 namespace downwash::planning {
@@ -23,71 +22,52 @@ bool same_bytes(const FlightState& a, const FlightState& b) {
 
 }  // namespace
 
-std::string cause_of(FlightFault fault) {
-    switch (fault) {
-        case FlightFault::collision:
-            return "collision";
-        case FlightFault::flyable_area:
-            return "flyable_area";
-        case FlightFault::saturation:
-            return "saturation";
-        case FlightFault::tracking:
-            return "tracking";
-        case FlightFault::unstable:
-            return "unstable";
-        case FlightFault::bounds:
-            return "bounds";
-        case FlightFault::goal_missed:
-            return "goal_missed";
-        case FlightFault::none:
-        case FlightFault::interrupted:
-            break;
-    }
-    throw std::logic_error("a flight that was not refused has no cause of refusal");
-}
-
-std::map<std::string, std::uint64_t> no_rejections() {
-    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},    {"tracking", 0}, {"unstable", 0},
-            {"bounds", 0},    {"goal_missed", 0},  {"direct_flight", 0}, {"too_long", 0}};
-}
-
-FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
-                       std::function<bool()> is_over)
-    : problem_(problem),
-      model_(model),
-      space_(space),
-      map_(map),
-      limits_(reference_limits(problem.motion)),
-      free_air_cost_(problem, model, space) {
-    rules_.margin_m = problem.planner.safety_margin_m;
-    rules_.bounds = problem.bounds;
-    rules_.is_over = std::move(is_over);
-    rules_.measures_clearance = problem.planner.objective == Objective::clearance;
-    statistics_.rejected = no_rejections();
+FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space,
+                       PlannedFlights& flights)
+    : model_(model), space_(space), flights_(flights), free_air_cost_(problem, model, space) {
     FlightNode root;
     const Start& start = problem.start;
     root.configuration = {start.x_m, start.z_m, start.arm_rad};
     root.reference = reference_at(start);
     root.state = start_state(model, start);
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
-}
-
-void FlightTree::count_rejection(const std::string& cause) {
-    ++statistics_.rejected[cause];
-    ++statistics_.rejections;
+    places_.push_back(moving_.back()->configuration);
 }
 
 std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_t count) const {
-    // A plain scan: beside edges of a millisecond it does not show below a hundred thousand nodes.
-    std::vector<std::pair<double, std::size_t>> by_distance(moving_.size());
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-        by_distance[i] = {space_.distance_m(moving_[i]->configuration, to), i};
+    // A plain scan that keeps the best so far in a heap: beside edges of a tenth of a millisecond it does not show
+    // below a hundred thousand nodes.
+    using Candidate = std::pair<double, std::size_t>;
+    std::vector<Candidate> best;
+    best.reserve(count + 1);
+    double farthest = HUGE_VAL;  // squared
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const double dx = places_[i].x_m - to.x_m;
+        const double dz = places_[i].z_m - to.z_m;
+        const double travel = dx * dx + dz * dz;
+        if (travel >= farthest) {
+            continue;
+        }
+        const double turn = space_.arm_weight_m() * space_.arm_turn_rad(places_[i].arm_rad, to.arm_rad);
+        const double squared = travel + turn * turn;
+        if (squared >= farthest) {
+            continue;
+        }
+        best.emplace_back(squared, i);
+        std::push_heap(best.begin(), best.end());
+        if (best.size() > count) {
+            std::pop_heap(best.begin(), best.end());
+            best.pop_back();
+        }
+        if (best.size() == count) {
+            farthest = best.front().first;
+        }
     }
-    const std::size_t kept = std::min(count, by_distance.size());
-    std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(kept), by_distance.end());
-    std::vector<FlightNode*> result(kept);
-    for (std::size_t i = 0; i < kept; ++i) {
-        result[i] = moving_[by_distance[i].second];
+    std::sort_heap(best.begin(), best.end());
+    std::vector<FlightNode*> result;
+    result.reserve(best.size());
+    for (const Candidate& candidate : best) {
+        result.push_back(moving_[candidate.second]);
     }
     return result;
 }
@@ -100,81 +80,43 @@ ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferenceP
     return {from.reference, to, ticks, model_.tick().tick_s};
 }
 
-FlightFault FlightTree::reference_fault(const ReferenceSegment& segment) {
-    // A flight follows its reference to a few centimetres, so a reference that collides is not worth flying.
-    constexpr double spacing_m = 0.1;
-    const ReferencePoint& a = segment.from();
-    const ReferencePoint& b = segment.to();
-    const double end_to_end_m = std::abs(b.position[0] - a.position[0]) + std::abs(b.position[1] - a.position[1]) +
-                                problem_.robot.arm.length_m * std::abs(b.position[2] - a.position[2]);
-    const double by_speed_m =
-        (std::abs(a.velocity[0]) + std::abs(a.velocity[1]) + problem_.robot.arm.length_m * std::abs(a.velocity[2])) *
-        segment.duration_s();  // a moving start may overshoot the line
-    const double motion_m = end_to_end_m + by_speed_m;
-    const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
-    for (std::int64_t i = samples; i >= 1; --i) {  // from the new end, where obstacles are likelier
-        const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
-        ++statistics_.states_checked;
-        const FlightFault fault = space_.fault_at({p.position[0], p.position[1], p.position[2]});
-        if (fault != FlightFault::none) {
-            return fault;
+std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) {
+    const ReferenceSegment segment = flights_.fastest_segment(edge.from->reference, at_rest(edge.to));
+    if (segment.ticks() > most_plan_ticks - edge.from->ticks_from_start) {
+        flights_.count_rejection("too_long");
+        return std::nullopt;
+    }
+    if (const FlightFault fault = flights_.reference_fault(segment); fault != FlightFault::none) {
+        flights_.count_rejection(fault);
+        return std::nullopt;
+    }
+    return segment;
+}
+
+std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FlightJob& job) const {
+    if (job.fault() != FlightFault::none) {
+        return std::nullopt;
+    }
+    const FlightLeg& leg = job.legs.back();
+    const double* to = leg.segment.to().position;
+    return Flown{{to[0], to[1], to[2]}, leg.segment.ticks(), leg.end, flights_.cost_after(from.cost, leg)};
+}
+
+std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const Edge> edges) {
+    std::vector<FlightJob> jobs;
+    std::vector<std::size_t> edge_of;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (const auto segment = promising_segment(edges[i])) {
+            jobs.push_back({edges[i].from->state, {{*segment}}});
+            edge_of.push_back(i);
         }
     }
-    return FlightFault::none;
-}
-
-bool FlightTree::accepted(const SegmentFlight& flight) {
-    statistics_.ticks += static_cast<std::uint64_t>(flight.ticks);
-    statistics_.states_checked += static_cast<std::uint64_t>(flight.ticks);
-    if (flight.fault == FlightFault::interrupted) {
-        return false;
+    flights_.fly(jobs);
+    std::vector<std::optional<Flown>> results(edges.size());
+    for (std::size_t job = 0; job < jobs.size(); ++job) {
+        results[edge_of[job]] = flown(*edges[edge_of[job]].from, jobs[job]);
     }
-    if (flight.fault != FlightFault::none) {
-        count_rejection(cause_of(flight.fault));
-        return false;
-    }
-    return true;
-}
-
-double FlightTree::cost_after(double cost_before, const SegmentFlight& flight, const FlightState& state) const {
-    switch (problem_.planner.objective) {
-        case Objective::energy:
-            break;
-        case Objective::time:
-            return cost_before + static_cast<double>(flight.ticks) * model_.tick().tick_s;
-        case Objective::length:
-            return cost_before + flight.length_m;
-        case Objective::clearance:
-            return cost_before + flight.clearance_integral;
-    }
-    return state.plant.energy_j;
-}
-
-std::optional<FlightTree::Flown> FlightTree::fly_to(const FlightNode& from, const Configuration& to,
-                                                    std::int64_t ticks) {
-    const ReferenceSegment segment = segment_to(from, at_rest(to), ticks);
-    Flown result{to, ticks, from.state, 0};
-    ++statistics_.edges;
-    const SegmentFlight flight = fly(model_, map_, rules_, segment, result.state);
-    if (!accepted(flight)) {
-        return std::nullopt;
-    }
-    result.cost = cost_after(from.cost, flight, result.state);
-    return result;
-}
-
-std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const Configuration& to) {
-    const std::int64_t ticks = shortest_ticks(from.reference, at_rest(to), limits_, model_.tick().tick_s);
-    if (ticks > most_plan_ticks - from.ticks_from_start) {
-        count_rejection("too_long");
-        return std::nullopt;
-    }
-    const FlightFault fault = reference_fault(segment_to(from, at_rest(to), ticks));
-    if (fault != FlightFault::none) {
-        count_rejection(cause_of(fault));
-        return std::nullopt;
-    }
-    return fly_to(from, to, ticks);
+    return results;
 }
 
 FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
@@ -188,61 +130,73 @@ FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
     node.ticks_from_start = parent.ticks_from_start + flight.ticks;
     parent.children.push_back(&node);
     moving_.push_back(&node);
+    places_.push_back(node.configuration);
     return node;
 }
 
-std::optional<FlightTree::Flown> FlightTree::fly_hold(const FlightNode& from) {
-    const double tick_s = model_.tick().tick_s;
-    const std::int64_t ticks = hold_ticks(problem_.goal, tick_s);
-    const std::int64_t judged = std::min<std::int64_t>(ticks, std::llround(goal_settling_s / tick_s));
-    const PlantModel& plant = model_.tick().plant;
-    Flown result{from.configuration, ticks, from.state, from.cost};
-    if (ticks <= judged && !meets_goal(problem_.goal, plant, result.state)) {
-        count_rejection("goal_missed");
-        return std::nullopt;
-    }
-    // The last second is flown tick by tick, as the goal has to be met in each of them.
-    std::int64_t remaining = ticks;
-    ++statistics_.edges;
-    while (remaining > 0) {
-        const std::int64_t piece = remaining > judged ? remaining - judged : 1;
-        const SegmentFlight flight = fly(model_, map_, rules_, segment_to(from, from.reference, piece), result.state);
-        if (!accepted(flight)) {
-            return std::nullopt;
-        }
-        result.cost = cost_after(result.cost, flight, result.state);
-        remaining -= piece;
-        if (remaining <= judged && !meets_goal(problem_.goal, plant, result.state)) {
-            count_rejection("goal_missed");
-            return std::nullopt;
+void FlightTree::add_holds(std::span<FlightNode* const> nodes) {
+    std::vector<FlightJob> jobs;
+    std::vector<FlightNode*> held;
+    for (FlightNode* node : nodes) {
+        if (is_at_rest(node->reference)) {
+            jobs.push_back({node->state, {flights_.hold_leg(node->reference)}, flights_.judged_ticks()});
+            held.push_back(node);
         }
     }
-    return result;
+    flights_.fly(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (const auto flight = flown(*held[i], jobs[i])) {
+            FlightNode& hold = add(*held[i], *flight);
+            moving_.pop_back();
+            places_.pop_back();
+            holds_.push_back(&hold);
+            hold.is_hold = true;
+        }
+    }
 }
 
-FlightNode* FlightTree::add_hold(FlightNode& parent) {
-    if (!is_at_rest(parent.reference)) {
-        return nullptr;
+FlightJob FlightTree::edge_job(const FlightNode& from, const FlightNode& to) const {
+    if (to.is_hold) {
+        return {from.state, {flights_.hold_leg(from.reference)}, flights_.judged_ticks()};
     }
-    const std::optional<Flown> flight = fly_hold(parent);
-    if (!flight) {
-        return nullptr;
-    }
-    FlightNode& hold = add(parent, *flight);
-    moving_.pop_back();
-    holds_.push_back(&hold);
-    hold.is_hold = true;
-    return &hold;
+    return {from.state, {{segment_to(from, to.reference, to.ticks)}}};
 }
 
-bool FlightTree::rewire(FlightNode& node, FlightNode& parent) {
-    const Configuration& to = node.configuration;
-    if (std::abs(space_.seen_from(parent.configuration, to).arm_rad - to.arm_rad) > 1e-9) {
-        return false;  // the arm would arrive a whole turn away
+std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
+    std::vector<Rewiring> open;
+    std::vector<Edge> edges;
+    for (const Rewiring& r : rewirings) {
+        const Configuration& to = r.node->configuration;
+        // Otherwise the arm would arrive a whole turn away.
+        if (std::abs(space_.seen_from(r.parent->configuration, to).arm_rad - to.arm_rad) <= 1e-9) {
+            open.push_back(r);
+            edges.push_back({r.parent, to});
+        }
     }
-    const std::optional<Flown> flight = flown(parent, to);
-    if (!flight || flight->cost >= node.cost) {
-        return false;
+    const std::vector<double> cost_before = [&] {
+        std::vector<double> costs;
+        for (const Rewiring& r : open) {
+            costs.push_back(r.parent->cost);
+        }
+        return costs;
+    }();
+    const auto flights = flown(edges);
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        // A parent that an earlier rewiring moved would have to be flown from anew.
+        const bool is_current = open[i].parent->cost == cost_before[i];
+        if (flights[i] && is_current && flights[i]->cost < open[i].node->cost) {
+            done += move_below(*open[i].node, *open[i].parent, *flights[i]) ? 1 : 0;
+        }
+    }
+    return done;
+}
+
+bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& flight) {
+    for (const FlightNode* n = &parent; n != nullptr; n = n->parent) {
+        if (n == &node) {
+            return false;  // an earlier rewiring has put the parent below the node
+        }
     }
     struct Before {
         FlightNode* node;
@@ -261,24 +215,37 @@ bool FlightTree::rewire(FlightNode& node, FlightNode& parent) {
         n.ticks_from_start = from.ticks_from_start + by.ticks;
         n.is_discarded = false;  // a new flight, a new chance
     };
-    replace(node, parent, *flight);
-    for (std::size_t i = 0; i < changed.size(); ++i) {
-        for (FlightNode* child : changed[i].node->children) {
-            const FlightNode& from = *changed[i].node;
-            const std::optional<Flown> again =
-                child->is_hold ? fly_hold(from) : fly_to(from, child->configuration, child->ticks);
-            if (!again || again->cost >= child->cost) {
-                for (const Before& before : changed) {
-                    before.node->state = before.state;
-                    before.node->cost = before.cost;
-                    before.node->ticks = before.ticks;
-                    before.node->ticks_from_start = before.ticks_from_start;
-                    before.node->is_discarded = before.is_discarded;
-                }
-                return false;
-            }
-            replace(*child, from, *again);
+    const auto undo = [&changed] {
+        for (const Before& before : changed) {
+            before.node->state = before.state;
+            before.node->cost = before.cost;
+            before.node->ticks = before.ticks;
+            before.node->ticks_from_start = before.ticks_from_start;
+            before.node->is_discarded = before.is_discarded;
         }
+        return false;
+    };
+    replace(node, parent, flight);
+    std::vector<FlightNode*> generation{&node};
+    while (!generation.empty()) {
+        std::vector<FlightNode*> children;
+        std::vector<FlightJob> jobs;
+        for (const FlightNode* n : generation) {
+            for (FlightNode* child : n->children) {
+                children.push_back(child);
+                jobs.push_back(edge_job(*n, *child));
+            }
+        }
+        flights_.fly(jobs);
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            const FlightNode& from = *children[i]->parent;
+            const auto again = flown(from, jobs[i]);
+            if (!again || again->cost >= children[i]->cost) {
+                return undo();
+            }
+            replace(*children[i], from, *again);
+        }
+        generation = std::move(children);
     }
     std::erase(node.parent->children, &node);
     node.parent = &parent;
@@ -312,7 +279,7 @@ void FlightTree::verify(const FlightNode& node) const {
     FlightState state = nodes_.front().state;
     for (const FlightNode* n : way) {
         const ReferenceSegment segment = segment_to(*n->parent, n->reference, n->ticks);
-        const SegmentFlight flight = fly(model_, map_, rules_, segment, state);
+        const SegmentFlight flight = fly(model_, flights_.map(), flights_.rules(), segment, state);
         if (flight.fault != FlightFault::none || !same_bytes(state, n->state)) {
             throw std::logic_error("re-flying a plan did not reproduce the search tree bit for bit");
         }

@@ -31,8 +31,14 @@ constexpr double range_share = 0.2;
 constexpr double optimism = 0.9;
 
 /// While the search goes on a better plan is worth a direct flight from this relative gain on; at its end any is.
-constexpr double worthwhile_gain = 5e-3;
+constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
+
+/// A direct flight costs as much as dozens of waves; while plans get better quickly not every step is worth one.
+constexpr int waves_between_reviews = 12;
+
+/// Samples whose flights are flown side by side. Fixed, so that the result does not depend on lanes and threads.
+constexpr std::uint64_t wave_size = 8;
 
 /// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
 /// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
@@ -50,13 +56,15 @@ std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
 
 }  // namespace
 
-FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, FlightTree& tree,
-                                     const SearchSpace& space, Random& random,
-                                     std::function<bool(const Candidate&)> accept)
+FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const Problem& problem,
+                                     FlightTree& tree, const SearchSpace& space, PlannedFlights& flights,
+                                     Random& random, std::function<bool(const Candidate&)> accept)
     : ompl::base::Planner(information, "FlightTree"),
       tree_(tree),
       space_(space),
+      flights_(flights),
       random_(random),
+      refiner_(problem, space, flights, random),
       accept_(std::move(accept)),
       nearest_to_goal_(&tree.root()),
       nearest_distance_m_(space.goal_distance_m(tree.root().configuration)),
@@ -67,18 +75,25 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
 
 ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
     if (iterations_ == 0 && space_.is_near_goal(tree_.root().configuration)) {
-        try_hold(tree_.root());
-        review_holds(worthwhile_gain);
+        const std::vector<FlightNode*> root{&tree_.root()};
+        tree_.add_holds(root);
+        review(worthwhile_gain);
     }
     while (!terminated && !(max_iterations_ && iterations_ >= *max_iterations_)) {
-        ++iterations_;
-        grow();
-        review_holds(worthwhile_gain);
+        if (refiner_.champion() != nullptr && 2 * refine_ticks_ < flights_.statistics().ticks) {
+            refine();
+        } else {
+            const std::uint64_t left = max_iterations_ ? *max_iterations_ - iterations_ : wave_size;
+            grow(std::min(left, wave_size));
+        }
+        if (!incumbent_ || ++waves_since_review_ >= waves_between_reviews) {
+            review(worthwhile_gain);
+        }
         if (observer_) {
             observer_();
         }
     }
-    review_holds(any_gain);
+    review(any_gain);
     return incumbent_ ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::TIMEOUT;
 }
 
@@ -105,108 +120,189 @@ std::size_t FlightTreePlanner::neighbour_count() const {
     return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
 }
 
-void FlightTreePlanner::grow() {
-    const std::optional<Configuration> aim = target();
-    if (!aim) {
-        return;
-    }
-    const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
-    const Configuration to = space_.steered(nearest, *aim, range_m_);
-    if (const FlightFault fault = space_.fault_at(to); fault != FlightFault::none) {
-        tree_.count_rejection(cause_of(fault));
-        return;
-    }
-    const std::vector<FlightNode*> neighbours = tree_.nearest(to, neighbour_count());
-    FlightNode* const node = connect(to, neighbours);
-    if (node == nullptr) {
-        return;
-    }
-    const double distance_m = space_.goal_distance_m(node->configuration);
-    if (distance_m < nearest_distance_m_) {
-        nearest_distance_m_ = distance_m;
-        nearest_to_goal_ = node;
-    }
-    if (space_.is_near_goal(node->configuration)) {
-        try_hold(*node);
-    }
-    rewire_through(*node, neighbours);
-}
-
-FlightNode* FlightTreePlanner::connect(const Configuration& to, const std::vector<FlightNode*>& neighbours) {
-    struct Parent {
-        FlightNode* node;
-        double estimate;
-    };
-    std::vector<Parent> parents;
-    for (FlightNode* node : with_ancestors(neighbours)) {
-        const double estimate = node->cost + optimism * tree_.estimated_cost(*node, to);
-        const bool is_hopeless = incumbent_ && estimate >= incumbent_->cost;
-        if (!is_hopeless && space_.distance_m(node->configuration, to) > 1e-6) {
-            parents.push_back({node, estimate});
+void FlightTreePlanner::grow(std::uint64_t samples) {
+    std::vector<Growth> wave;
+    for (std::uint64_t i = 0; i < samples; ++i) {
+        ++iterations_;
+        if (auto growth = sampled()) {
+            wave.push_back(std::move(*growth));
         }
     }
-    std::stable_sort(parents.begin(), parents.end(),
-                     [](const Parent& a, const Parent& b) { return a.estimate < b.estimate; });
-    std::optional<FlightTree::Flown> best;
-    FlightNode* best_parent = nullptr;
-    for (const Parent& parent : parents) {
-        if (best && parent.estimate >= best->cost) {
-            break;
-        }
-        auto flight = tree_.flown(*parent.node, space_.seen_from(parent.node->configuration, to));
-        if (flight && (!best || flight->cost < best->cost)) {
-            best = flight;
-            best_parent = parent.node;
-        }
-    }
-    if (!best || (incumbent_ && best->cost >= incumbent_->cost)) {
-        return nullptr;
-    }
-    return &tree_.add(*best_parent, *best);
-}
-
-void FlightTreePlanner::rewire_through(FlightNode& node, std::vector<FlightNode*> neighbours) {
-    // A better corner pays only when the next corner of the best plan, far away as a rule, is reached from it.
-    for (FlightNode* n = best_hold_ != nullptr ? best_hold_->parent : nullptr; n != nullptr; n = n->parent) {
-        if (n != &node && std::find(neighbours.begin(), neighbours.end(), n) == neighbours.end()) {
-            neighbours.push_back(n);
-        }
-    }
-    for (FlightNode* neighbour : neighbours) {
-        if (neighbour == &tree_.root() || neighbour == node.parent) {
+    choose_parents(wave);
+    const std::vector<FlightNode*> added = add(wave);
+    std::vector<FlightNode*> arrived;
+    for (FlightNode* node : added) {
+        if (node == nullptr) {
             continue;
         }
-        if (node.cost + optimism * tree_.estimated_cost(node, neighbour->configuration) < neighbour->cost) {
-            tree_.rewire(*neighbour, node);
+        const double distance_m = space_.goal_distance_m(node->configuration);
+        if (distance_m < nearest_distance_m_) {
+            nearest_distance_m_ = distance_m;
+            nearest_to_goal_ = node;
+        }
+        if (space_.is_near_goal(node->configuration)) {
+            arrived.push_back(node);
+        }
+    }
+    tree_.add_holds(arrived);
+    rewire_through(wave, added);
+    if (const FlightNode* hold = best_hold()) {
+        best_hold_cost_ = hold->cost;
+    }
+    hand_to_refiner();
+}
+
+std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
+    const std::optional<Configuration> aim = target();
+    if (!aim) {
+        return std::nullopt;
+    }
+    const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
+    Growth growth;
+    growth.to = space_.steered(nearest, *aim, range_m_);
+    if (const FlightFault fault = space_.fault_at(growth.to); fault != FlightFault::none) {
+        flights_.count_rejection(fault);
+        return std::nullopt;
+    }
+    growth.neighbours = tree_.nearest(growth.to, neighbour_count());
+    for (FlightNode* node : with_ancestors(growth.neighbours)) {
+        const double estimate = node->cost + optimism * tree_.estimated_cost(*node, growth.to);
+        if (estimate < best_hold_cost_ && space_.distance_m(node->configuration, growth.to) > 1e-6) {
+            growth.parents.push_back({node, estimate});
+        }
+    }
+    std::stable_sort(growth.parents.begin(), growth.parents.end(),
+                     [](const Growth::Parent& a, const Growth::Parent& b) { return a.estimate < b.estimate; });
+    return growth;
+}
+
+void FlightTreePlanner::choose_parents(std::vector<Growth>& wave) {
+    for (;;) {
+        std::vector<FlightTree::Edge> edges;
+        std::vector<Growth*> growths;
+        for (Growth& growth : wave) {
+            if (growth.next_parent == growth.parents.size()) {
+                continue;
+            }
+            const Growth::Parent& parent = growth.parents[growth.next_parent];
+            if (growth.best && parent.estimate >= growth.best->cost) {
+                growth.next_parent = growth.parents.size();
+                continue;
+            }
+            edges.push_back({parent.node, space_.seen_from(parent.node->configuration, growth.to)});
+            growths.push_back(&growth);
+        }
+        if (edges.empty()) {
+            return;
+        }
+        const auto flights = tree_.flown(edges);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            Growth& growth = *growths[i];
+            if (flights[i] && (!growth.best || flights[i]->cost < growth.best->cost)) {
+                growth.best = flights[i];
+                growth.best_parent = growth.parents[growth.next_parent].node;
+            }
+            ++growth.next_parent;
         }
     }
 }
 
-void FlightTreePlanner::try_hold(FlightNode& node) {
-    tree_.add_hold(node);
+/// One node per sample, nullptr for those that became none.
+std::vector<FlightNode*> FlightTreePlanner::add(const std::vector<Growth>& wave) {
+    std::vector<FlightNode*> added;
+    for (const Growth& growth : wave) {
+        const bool is_worthwhile = growth.best && growth.best->cost < best_hold_cost_;
+        added.push_back(is_worthwhile ? &tree_.add(*growth.best_parent, *growth.best) : nullptr);
+    }
+    return added;
 }
 
-void FlightTreePlanner::review_holds(double least_gain) {
-    for (;;) {
-        const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
-        FlightNode* best = nullptr;
-        for (FlightNode* hold : tree_.holds()) {
-            if (!hold->is_discarded && hold->cost < to_beat && (best == nullptr || hold->cost < best->cost)) {
-                best = hold;
+void FlightTreePlanner::rewire_through(const std::vector<Growth>& wave, const std::vector<FlightNode*>& added) {
+    std::vector<FlightTree::Rewiring> rewirings;
+    const FlightNode* hold = best_hold();
+    for (std::size_t i = 0; i < wave.size(); ++i) {
+        FlightNode* const node = added[i];
+        if (node == nullptr) {
+            continue;
+        }
+        std::vector<FlightNode*> neighbours = wave[i].neighbours;
+        // A better corner pays only when the next corner of the best plan, far away as a rule, is reached from it.
+        for (FlightNode* n = hold != nullptr ? hold->parent : nullptr; n != nullptr; n = n->parent) {
+            if (n != node && std::find(neighbours.begin(), neighbours.end(), n) == neighbours.end()) {
+                neighbours.push_back(n);
             }
         }
-        if (best == nullptr) {
-            return;
+        for (FlightNode* neighbour : neighbours) {
+            if (neighbour != &tree_.root() && neighbour != node->parent &&
+                node->cost + optimism * tree_.estimated_cost(*node, neighbour->configuration) < neighbour->cost) {
+                rewirings.push_back({neighbour, node});
+            }
         }
-        Candidate candidate{tree_.plan_to(*best), best->cost, iterations_};
+    }
+    tree_.rewire(rewirings);
+}
+
+void FlightTreePlanner::refine() {
+    const std::uint64_t before = flights_.statistics().ticks;
+    refiner_.improve();
+    // A wave of nothing but refused changes flies nothing, and still has had its turn.
+    refine_ticks_ += std::max<std::uint64_t>(1, flights_.statistics().ticks - before);
+}
+
+/// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
+void FlightTreePlanner::hand_to_refiner() {
+    const FlightNode* const best = best_hold();
+    if (best == nullptr) {
+        return;
+    }
+    const std::uint64_t before = flights_.statistics().ticks;
+    if (best->cost < (1 - worthwhile_gain) * handed_over_cost_) {
+        handed_over_cost_ = best->cost;
+        refiner_.take(tree_.plan_to(*best));
+    } else if (refiner_.wants_plan() && random_.chance(0.05)) {
+        const auto& holds = tree_.holds();
+        const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
+        if (!hold->is_discarded) {
+            refiner_.take(tree_.plan_to(*hold));
+        }
+    }
+    refine_ticks_ += flights_.statistics().ticks - before;
+}
+
+FlightNode* FlightTreePlanner::best_hold() const {
+    FlightNode* best = nullptr;
+    for (FlightNode* hold : tree_.holds()) {
+        if (!hold->is_discarded && (best == nullptr || hold->cost < best->cost)) {
+            best = hold;
+        }
+    }
+    return best;
+}
+
+void FlightTreePlanner::review(double least_gain) {
+    waves_since_review_ = 0;
+    const auto to_beat = [&] { return incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL; };
+    while (refiner_.champion() != nullptr && refiner_.champion()->cost < to_beat()) {
+        Candidate candidate{refiner_.plan_of(*refiner_.champion()), refiner_.champion()->cost, iterations_};
         if (accept_(candidate)) {
-            tree_.verify(*best);
             incumbent_ = std::move(candidate);
-            best_hold_ = best;
             return;
         }
-        best->is_discarded = true;
-        tree_.count_rejection("direct_flight");
+        flights_.count_rejection("direct_flight");
+        refiner_.drop_champion();
+        if (incumbent_) {
+            refiner_.take(incumbent_->plan);
+        }
+    }
+    for (FlightNode* hold = best_hold(); hold != nullptr && hold->cost < to_beat(); hold = best_hold()) {
+        Candidate candidate{tree_.plan_to(*hold), hold->cost, iterations_};
+        if (accept_(candidate)) {
+            tree_.verify(*hold);
+            incumbent_ = std::move(candidate);
+            return;
+        }
+        hold->is_discarded = true;
+        flights_.count_rejection("direct_flight");
     }
 }
 

@@ -122,7 +122,9 @@ void search_by_flights(const Problem& problem, const FlightModel& model, const S
     const planning::SearchSpace space(problem, model);
     planning::Random random(problem.planner.seed);
     Search search(problem, options, solution);
-    planning::FlightTree tree(problem, model, space, map, [&search] { return search.is_over(); });
+    planning::PlannedFlights flights(
+        problem, model, space, map, [&search] { return search.is_over(); }, options.threads);
+    planning::FlightTree tree(problem, model, space, flights);
     planning::QueryCounts counts;
     SearchRecord& record = solution.planning;
 
@@ -142,17 +144,17 @@ void search_by_flights(const Problem& problem, const FlightModel& model, const S
     };
     const planning::QuietOmpl quiet;
     const auto information = planning::make_space_information(space, random, 0.1, counts);
-    planning::FlightTreePlanner planner(information, tree, space, random, accept);
+    planning::FlightTreePlanner planner(information, problem, tree, space, flights, random, accept);
     planner.set_max_iterations(problem.planner.max_iterations);
-    planner.set_observer([&] { search.report(planner.iterations(), tree.size(), tree.statistics().rejections); });
+    planner.set_observer([&] { search.report(planner.iterations(), tree.size(), flights.statistics().rejections); });
     planner.solve(ompl::base::PlannerTerminationCondition([&] { return search.is_over(); }));
 
     record.wall_s = search.seconds();
     record.iterations = planner.iterations();
-    record.edges_simulated = tree.statistics().edges;
-    record.simulated_s = static_cast<double>(tree.statistics().ticks) * model.tick().tick_s;
-    record.states_checked = tree.statistics().states_checked;
-    record.rejected = tree.statistics().rejected;
+    record.edges_simulated = flights.statistics().edges;
+    record.simulated_s = static_cast<double>(flights.statistics().ticks) * model.tick().tick_s;
+    record.states_checked = flights.statistics().states_checked;
+    record.rejected = flights.statistics().rejected;
     if (planner.incumbent()) {
         solution.status = Status::solved;
         solution.plan = planner.incumbent()->plan;

@@ -1,9 +1,13 @@
 #include "downwash/simulation/flight_batch.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <optional>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
 
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
@@ -56,7 +60,7 @@ double factor_outside(const void* context, int rotor, double x_m, double z_m) {
     return world.map->factor(world.model.rotor_layer(rotor), x_m, z_m);
 }
 
-FlightKernelModel kernel_model(const World& world) {
+FlightKernelModel make_kernel_model(const World& world) {
     const simulation::TickModel& tick = world.model.tick();
     const PlantModel& plant = tick.plant;
     FlightKernelModel kernel{};
@@ -300,41 +304,126 @@ Instructions best_instructions() noexcept {
     return Instructions::baseline;
 }
 
-void fly_batch(const FlightModel& model, const AeroMap* map, const FlightRules& rules, const Goal* goal,
-               std::span<FlightJob> jobs, Instructions instructions) {
-    const World world{model, map, rules, goal};
-    const FlightKernelModel kernel_model_of_world = kernel_model(world);
-    const simulation::FlightKernel kernel = kernel_for(instructions);
-    FlightLanes lanes{};
-    std::vector<Lane> flights;
-    for (int i = 0; i < lane_count; ++i) {
-        flights.emplace_back(world, lanes, i);
+struct FlightCrew::Impl {
+    Impl(const FlightModel& model, const AeroMap* map, FlightRules the_rules, const Goal* goal,
+         Instructions instructions)
+        : rules(std::move(the_rules)),
+          world{model, map, rules, goal},
+          kernel_model(make_kernel_model(world)),
+          kernel(kernel_for(instructions)) {}
+
+    /// Flies jobs until none is left; several threads may do so at once.
+    void work() {
+        FlightLanes lanes{};
+        std::vector<Lane> flights;
+        for (int i = 0; i < lane_count; ++i) {
+            flights.emplace_back(world, lanes, i);
+        }
+        for (;;) {
+            const Lane* busy = nullptr;
+            for (Lane& lane : flights) {
+                while (lane.is_free()) {
+                    const std::size_t job = next_job++;
+                    if (job >= jobs.size()) {
+                        break;
+                    }
+                    lane.begin(jobs[job]);
+                }
+                busy = lane.is_free() ? busy : &lane;
+            }
+            if (busy == nullptr) {
+                return;
+            }
+            for (Lane& lane : flights) {
+                if (lane.is_free()) {
+                    lane.idle_like(*busy);
+                }
+            }
+            kernel(kernel_model, lanes, most_ticks_per_call);
+            const bool is_interrupted = rules.is_over && rules.is_over();
+            for (Lane& lane : flights) {
+                if (!lane.is_free()) {
+                    lane.look(is_interrupted);
+                }
+            }
+        }
     }
-    std::size_t next_job = 0;
-    for (;;) {
-        const Lane* busy = nullptr;
-        for (Lane& lane : flights) {
-            while (lane.is_free() && next_job < jobs.size()) {
-                lane.begin(jobs[next_job++]);
+
+    /// Waits for batches until the crew is dismissed.
+    void stand_by() {
+        std::uint64_t seen = 0;
+        for (;;) {
+            {
+                std::unique_lock lock(mutex);
+                called.wait(lock, [&] { return is_dismissed || batch != seen; });
+                if (is_dismissed) {
+                    return;
+                }
+                seen = batch;
             }
-            busy = lane.is_free() ? busy : &lane;
-        }
-        if (busy == nullptr) {
-            return;
-        }
-        for (Lane& lane : flights) {
-            if (lane.is_free()) {
-                lane.idle_like(*busy);
-            }
-        }
-        kernel(kernel_model_of_world, lanes, most_ticks_per_call);
-        const bool is_interrupted = rules.is_over && rules.is_over();
-        for (Lane& lane : flights) {
-            if (!lane.is_free()) {
-                lane.look(is_interrupted);
+            work();
+            const std::scoped_lock lock(mutex);
+            if (--working == 0) {
+                done.notify_one();
             }
         }
     }
+
+    FlightRules rules;
+    World world;
+    FlightKernelModel kernel_model;
+    simulation::FlightKernel kernel;
+
+    std::span<FlightJob> jobs;
+    std::atomic<std::size_t> next_job{0};
+
+    std::mutex mutex;
+    std::condition_variable called, done;
+    std::uint64_t batch = 0;
+    std::size_t working = 0;  ///< threads other than the calling one
+    bool is_dismissed = false;
+    std::vector<std::jthread> others;
+};
+
+FlightCrew::FlightCrew(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
+                       Instructions instructions)
+    : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions)) {
+    for (int i = 1; i < threads; ++i) {
+        impl_->others.emplace_back([impl = impl_.get()] { impl->stand_by(); });
+    }
+}
+
+FlightCrew::~FlightCrew() {
+    {
+        const std::scoped_lock lock(impl_->mutex);
+        impl_->is_dismissed = true;
+    }
+    impl_->called.notify_all();
+    impl_->others.clear();  // joins
+}
+
+const FlightRules& FlightCrew::rules() const noexcept {
+    return impl_->rules;
+}
+
+void FlightCrew::fly(std::span<FlightJob> jobs) {
+    Impl& crew = *impl_;
+    crew.jobs = jobs;
+    crew.next_job = 0;
+    // What fits into the lanes of one thread is not worth waking others for.
+    if (crew.others.empty() || jobs.size() <= 2) {
+        crew.work();
+        return;
+    }
+    {
+        const std::scoped_lock lock(crew.mutex);
+        ++crew.batch;
+        crew.working = crew.others.size();
+    }
+    crew.called.notify_all();
+    crew.work();
+    std::unique_lock lock(crew.mutex);
+    crew.done.wait(lock, [&crew] { return crew.working == 0; });
 }
 
 }  // namespace downwash

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,11 +40,29 @@ enum class Instructions : std::uint8_t {
 /// The widest that this build and this processor have.
 [[nodiscard]] DOWNWASH_EXPORT Instructions best_instructions() noexcept;
 
-/// Flies jobs side by side in the lanes of wide registers, each exactly as fly() flies its legs one after the other. A
-/// lane whose flight ends takes on the next job. Calls from several threads do not disturb each other.
-/// @param map,rules as for fly()   @param goal of jobs with judged_ticks; may be nullptr when there are none
-/// @pre `instructions` are there
-DOWNWASH_EXPORT void fly_batch(const FlightModel& model, const AeroMap* map, const FlightRules& rules, const Goal* goal,
-                               std::span<FlightJob> jobs, Instructions instructions = best_instructions());
+/// Flies jobs side by side: in the lanes of wide registers, and on several threads. Every job comes out exactly as
+/// fly() flies its legs one after the other, whatever the instructions and the number of threads. A lane whose flight
+/// ends takes on the next job.
+class DOWNWASH_EXPORT FlightCrew {
+ public:
+    /// @param map,rules as for fly(); rules.is_over is asked from all threads
+    /// @param goal of jobs with judged_ticks; may be nullptr when there are none
+    /// @param threads at least 1, the calling one included; the others wait between batches
+    /// @pre the referred objects outlive the crew, and `instructions` are there
+    FlightCrew(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads = 1,
+               Instructions instructions = best_instructions());
+    ~FlightCrew();
+    FlightCrew(const FlightCrew&) = delete;
+    FlightCrew& operator=(const FlightCrew&) = delete;
+
+    /// Not to be called from two threads at once.
+    void fly(std::span<FlightJob> jobs);
+
+    [[nodiscard]] const FlightRules& rules() const noexcept;
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace downwash

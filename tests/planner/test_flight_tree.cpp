@@ -17,17 +17,34 @@ struct Fixture {
           model(make_flight_model(problem)),
           space(problem, *model),
           map(model->make_map(problem.bounds)),
-          tree(problem, *model, space, map.get()) {}
+          flights(problem, *model, space, map.get()),
+          tree(problem, *model, space, flights) {}
 
+    std::optional<planning::FlightTree::Flown> flown(const FlightNode& from, const Configuration& to) {
+        const planning::FlightTree::Edge edge{&from, space.seen_from(from.configuration, to)};
+        return tree.flown({&edge, 1}).front();
+    }
     FlightNode* fly(FlightNode& from, const Configuration& to) {
-        const auto flight = tree.flown(from, space.seen_from(from.configuration, to));
+        const auto flight = flown(from, to);
         return flight ? &tree.add(from, *flight) : nullptr;
+    }
+    bool rewire(FlightNode& node, FlightNode& parent) {
+        const planning::FlightTree::Rewiring rewiring{&node, &parent};
+        return tree.rewire({&rewiring, 1}) == 1;
+    }
+    /// The hold at a node, or nullptr.
+    FlightNode* hold(FlightNode& node) {
+        const std::size_t before = tree.holds().size();
+        FlightNode* const nodes[] = {&node};
+        tree.add_holds(nodes);
+        return tree.holds().size() > before ? tree.holds().back() : nullptr;
     }
 
     Problem problem;
     std::shared_ptr<const FlightModel> model;
     planning::SearchSpace space;
     std::shared_ptr<const AeroMap> map;
+    planning::PlannedFlights flights;
     planning::FlightTree tree;
 };
 
@@ -51,7 +68,7 @@ TEST_CASE("re-flying from the start reproduces every node of a random tree bit f
         for (FlightNode* neighbour : near) {
             if (neighbour != &f.tree.root() && neighbour != node->parent &&
                 node->cost + f.tree.estimated_cost(*node, neighbour->configuration) < neighbour->cost) {
-                rewired += f.tree.rewire(*neighbour, *node) ? 1 : 0;
+                rewired += f.rewire(*neighbour, *node) ? 1 : 0;
             }
         }
     }
@@ -70,8 +87,8 @@ TEST_CASE("an edge starts from the whole vehicle state of its parent, not from r
     const double q[4] = {first->configuration.x_m, first->configuration.z_m, 0, first->configuration.arm_rad};
     const double u[4] = {0, 0, 0, 0};
     rested.state = f.model->state_at(q, u);
-    const auto from_flight = f.tree.flown(*first, {1, 3, 0});
-    const auto from_rest = f.tree.flown(rested, {1, 3, 0});
+    const auto from_flight = f.flown(*first, {1, 3, 0});
+    const auto from_rest = f.flown(rested, {1, 3, 0});
     REQUIRE(from_flight);
     REQUIRE(from_rest);
     CHECK_FALSE(same_bytes(from_flight->state, from_rest->state));
@@ -87,7 +104,7 @@ TEST_CASE("a rewiring that does not pay leaves the tree untouched") {
     REQUIRE(child != nullptr);
     const FlightState before = direct->state;
     const FlightState child_before = child->state;
-    CHECK_FALSE(f.tree.rewire(*direct, *detour));
+    CHECK_FALSE(f.rewire(*direct, *detour));
     CHECK(direct->parent == &f.tree.root());
     CHECK(same_bytes(direct->state, before));
     CHECK(same_bytes(child->state, child_before));
@@ -103,7 +120,7 @@ TEST_CASE("a rewiring that pays flies the whole subtree again") {
     REQUIRE(child != nullptr);
     const double cost = node->cost;
     const double child_cost = child->cost;
-    REQUIRE(f.tree.rewire(*node, f.tree.root()));
+    REQUIRE(f.rewire(*node, f.tree.root()));
     CHECK(node->parent == &f.tree.root());
     CHECK(detour->children.empty());
     CHECK(node->cost < cost);
@@ -113,9 +130,9 @@ TEST_CASE("a rewiring that pays flies the whole subtree again") {
 
 TEST_CASE("a vehicle cannot be sent into an obstacle, and the refusal is counted") {
     Fixture f(test::walled_problem());
-    const auto before = f.tree.statistics().rejected.at("collision");
+    const auto before = f.flights.statistics().rejected.at("collision");
     CHECK(f.fly(f.tree.root(), {3, 2, 1.5}) == nullptr);
-    CHECK(f.tree.statistics().rejected.at("collision") == before + 1);
+    CHECK(f.flights.statistics().rejected.at("collision") == before + 1);
     CHECK(f.tree.size() == 1);
 }
 
@@ -130,8 +147,8 @@ TEST_CASE("hovering right under a wide ceiling is found out by flying, hold incl
         node->reference.position[1] = under_the_ceiling_m;
         node->reference.position[2] = 1.5;
     }
-    CHECK((node == nullptr || f.tree.add_hold(*node) == nullptr));
-    const auto& rejected = f.tree.statistics().rejected;
+    CHECK((node == nullptr || f.hold(*node) == nullptr));
+    const auto& rejected = f.flights.statistics().rejected;
     CHECK(rejected.at("collision") + rejected.at("flyable_area") + rejected.at("tracking") +
               rejected.at("goal_missed") >
           0);

@@ -12,7 +12,7 @@ namespace {
 /// Searches the ceiling problem, asking `accept` about every better plan.
 struct Search {
     Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> accept)
-        : planner(planning::make_space_information(space, random, 0.1, counts), tree, space, random,
+        : planner(planning::make_space_information(space, random, 0.1, counts), problem, tree, space, flights, random,
                   std::move(accept)) {
         planner.set_max_iterations(iterations);
         static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition([] { return false; })));
@@ -23,7 +23,8 @@ struct Search {
     planning::SearchSpace space{problem, *model};
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
     planning::Random random{1};
-    planning::FlightTree tree{problem, *model, space, map.get()};
+    planning::PlannedFlights flights{problem, *model, space, map.get()};
+    planning::FlightTree tree{problem, *model, space, flights};
     planning::QueryCounts counts;
     planning::FlightTreePlanner planner;
 };
@@ -41,14 +42,14 @@ TEST_CASE("a refused plan is counted and discarded, and the search goes on to an
     };
     const Search search(300, accept);
     CHECK(refused.size() == 3);
-    CHECK(search.tree.statistics().rejected.at("direct_flight") == 3);
+    CHECK(search.flights.statistics().rejected.at("direct_flight") == 3);
     REQUIRE(search.planner.incumbent());
     CHECK(search.planner.iterations() == 300);
 }
 
 TEST_CASE("when every plan is refused there is none, however many were found") {
     const Search search(60, [](const planning::Candidate&) { return false; });
-    CHECK(search.tree.statistics().rejected.at("direct_flight") > 1);
+    CHECK(search.flights.statistics().rejected.at("direct_flight") > 1);
     CHECK_FALSE(search.planner.incumbent());
 }
 

@@ -12,12 +12,13 @@ using namespace downwash::test;
 
 namespace {
 
-std::vector<Instructions> all_instructions() {
-    std::vector<Instructions> all{Instructions::baseline};
+/// Instructions and numbers of threads.
+std::vector<std::pair<Instructions, int>> ways_to_fly() {
+    std::vector<std::pair<Instructions, int>> ways{{Instructions::baseline, 1}, {best_instructions(), 3}};
     if (best_instructions() != Instructions::baseline) {
-        all.push_back(best_instructions());
+        ways.emplace_back(best_instructions(), 1);
     }
-    return all;
+    return ways;
 }
 
 ReferencePoint random_point(const Bounds& bounds, Random& random) {
@@ -83,11 +84,11 @@ std::map<FlightFault, int> faults_of_equal_flights(const Problem& problem, bool 
     const std::vector<FlightJob> jobs = random_jobs(problem, *model, count, 5);
     std::vector<FlightJob> expected = jobs;
     fly_one_by_one(*model, map.get(), rules, expected);
-    for (const Instructions instructions : all_instructions()) {
+    for (const auto& [instructions, threads] : ways_to_fly()) {
         std::vector<FlightJob> flown = jobs;
-        fly_batch(*model, map.get(), rules, nullptr, flown, instructions);
+        FlightCrew(*model, map.get(), rules, nullptr, threads, instructions).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
-            INFO("job " << i << " with instructions " << static_cast<int>(instructions));
+            INFO("job " << i << " with instructions " << static_cast<int>(instructions) << ", threads " << threads);
             REQUIRE(flown[i].fault() == expected[i].fault());
             for (std::size_t leg = 0; leg < jobs[i].legs.size(); ++leg) {
                 REQUIRE(is_same(flown[i].legs[leg], expected[i].legs[leg]));
@@ -152,7 +153,7 @@ TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as o
     ReferencePoint at;
     at.position[1] = 2;
     std::vector<FlightJob> jobs{{model->state_at(tumbling, u), {{{at, at, 100, model->tick().tick_s}}}}};
-    fly_batch(*model, nullptr, rules_of(problem), nullptr, jobs);
+    FlightCrew(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
     CHECK(jobs[0].fault() == FlightFault::unstable);
     CHECK(jobs[0].legs[0].flight.ticks == 1);
 }
@@ -175,13 +176,29 @@ TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
     at_once.legs[0].segment = {at, at, 50, model->tick().tick_s};
     std::vector<FlightJob> jobs{held, missed, at_once};
     rules.max_tracking_error_m = 1;
-    fly_batch(*model, nullptr, rules, &problem.goal, jobs);
+    FlightCrew(*model, nullptr, rules, &problem.goal).fly(jobs);
     CHECK(jobs[0].fault() == FlightFault::none);
     CHECK(jobs[0].legs[0].flight.ticks == 500);
     CHECK(jobs[1].fault() == FlightFault::goal_missed);
     CHECK(jobs[1].legs[0].flight.ticks == 20);
     CHECK(jobs[2].fault() == FlightFault::goal_missed);
     CHECK(jobs[2].legs[0].flight.ticks == 0);  // missed before the first tick
+}
+
+TEST_CASE("a crew flies one batch after the other, empty ones too, and can be dismissed without any") {
+    const Problem problem = ceiling_problem();
+    const auto model = make_flight_model(problem);
+    FlightCrew crew(*model, nullptr, rules_of(problem), nullptr, 3);
+    for (const int count : {40, 0, 1, 7, 25}) {
+        std::vector<FlightJob> jobs = random_jobs(problem, *model, count, 11);
+        std::vector<FlightJob> expected = jobs;
+        fly_one_by_one(*model, nullptr, rules_of(problem), expected);
+        crew.fly(jobs);
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            CHECK(is_same(jobs[i].legs[0], expected[i].legs[0]));
+        }
+    }
+    const FlightCrew idle(*model, nullptr, rules_of(problem), nullptr, 4);
 }
 
 TEST_CASE("a batch can be ended from outside") {
@@ -196,7 +213,7 @@ TEST_CASE("a batch can be ended from outside") {
     const double q[4] = {0, 2, 0, 0};
     const double u[4] = {};
     std::vector<FlightJob> jobs(5, FlightJob{model->state_at(q, u), {{{at, at, 100000000, model->tick().tick_s}}}});
-    fly_batch(*model, nullptr, rules, nullptr, jobs);
+    FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
         CHECK(job.fault() == FlightFault::interrupted);
     }

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "downwash/planner/planned_flights.hpp"
+#include "downwash/planner/random.hpp"
+#include "downwash/planner/solution.hpp"
+
+namespace downwash::planning {
+
+/// A plan with all that was found out by flying it, hold included.
+struct FlownPlan {
+    std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
+    std::vector<FlightState> states;     ///< the vehicle at each point
+    std::vector<double> costs;           ///< from the start up to each point
+    std::vector<std::int64_t> ticks;     ///< from each point to the next
+    double cost = 0;                     ///< hold included
+};
+
+/// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
+/// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
+/// only when that is cheaper: an evolution strategy with success-driven step length (Rechenberg 1973), several changes
+/// side by side. Of two plans that it works on the cheaper one is the champion; the other one is given a chance to
+/// overtake it before it is dropped.
+class PlanRefiner {
+ public:
+    PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random);
+
+    /// Whether there is room for another plan to work on.
+    [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < most_tracks; }
+    /// Flies a plan and takes it on, if nothing refuses it. Far more expensive ones than the champion are not wanted.
+    void take(const Plan& plan);
+
+    /// Tries some changes of one of its plans, as many as are flown side by side.
+    void improve();
+
+    [[nodiscard]] const FlownPlan* champion() const noexcept;
+    /// Forgets the champion, which flies in the planner's model only, and goes on with what is left.
+    void drop_champion();
+    [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
+
+ private:
+    static constexpr std::size_t most_tracks = 2;
+    struct Track {
+        FlownPlan plan;
+        double step = 1;   ///< of changes, as a share of the largest
+        int failures = 0;  ///< waves since the last success
+    };
+    /// A changed plan that may be worth flying.
+    struct Change {
+        std::vector<ReferencePoint> points;
+        std::vector<std::int64_t> ticks;
+        std::size_t first;  ///< segment that differs
+    };
+
+    [[nodiscard]] std::optional<Change> changed(const Track& track);
+    [[nodiscard]] std::size_t mutate(std::vector<ReferencePoint>& points, const Track& track, std::size_t& last);
+    [[nodiscard]] FlightJob job_for(const FlownPlan& base, const Change& change) const;
+    [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+    [[nodiscard]] double noise(double size);
+
+    const Problem& problem_;
+    const SearchSpace& space_;
+    PlannedFlights& flights_;
+    Random& random_;
+    std::vector<Track> tracks_;  ///< the champion first
+    std::size_t turn_ = 0;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,139 @@
+#include "downwash/planner/planned_flights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "downwash/planner/free_air_cost.hpp"
+#include "downwash/simulation/execution.hpp"
+
+namespace downwash::planning {
+namespace {
+
+FlightRules planning_rules(const Problem& problem, std::function<bool()> is_over) {
+    FlightRules rules;
+    rules.margin_m = problem.planner.safety_margin_m;
+    rules.bounds = problem.bounds;
+    rules.is_over = std::move(is_over);
+    rules.measures_clearance = problem.planner.objective == Objective::clearance;
+    return rules;
+}
+
+}  // namespace
+
+std::string cause_of(FlightFault fault) {
+    switch (fault) {
+        case FlightFault::collision:
+            return "collision";
+        case FlightFault::flyable_area:
+            return "flyable_area";
+        case FlightFault::saturation:
+            return "saturation";
+        case FlightFault::tracking:
+            return "tracking";
+        case FlightFault::unstable:
+            return "unstable";
+        case FlightFault::bounds:
+            return "bounds";
+        case FlightFault::goal_missed:
+            return "goal_missed";
+        case FlightFault::none:
+        case FlightFault::interrupted:
+            break;
+    }
+    throw std::logic_error("a flight that was not refused has no cause of refusal");
+}
+
+std::map<std::string, std::uint64_t> no_rejections() {
+    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},    {"tracking", 0}, {"unstable", 0},
+            {"bounds", 0},    {"goal_missed", 0},  {"direct_flight", 0}, {"too_long", 0}};
+}
+
+PlannedFlights::PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space,
+                               const AeroMap* map, std::function<bool()> is_over, int threads)
+    : problem_(problem),
+      model_(model),
+      space_(space),
+      map_(map),
+      limits_(reference_limits(problem.motion)),
+      crew_(model, map, planning_rules(problem, std::move(is_over)), &problem.goal, threads) {
+    statistics_.rejected = no_rejections();
+}
+
+void PlannedFlights::count_rejection(const std::string& cause) {
+    ++statistics_.rejected[cause];
+    ++statistics_.rejections;
+}
+
+void PlannedFlights::count_rejection(FlightFault fault) {
+    if (fault != FlightFault::interrupted) {
+        count_rejection(cause_of(fault));
+    }
+}
+
+FlightFault PlannedFlights::reference_fault(const ReferenceSegment& segment) {
+    constexpr double spacing_m = 0.1;
+    const ReferencePoint& a = segment.from();
+    const ReferencePoint& b = segment.to();
+    const double arm_m = problem_.robot.arm.length_m;
+    const auto weighted = [arm_m](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + arm_m * std::abs(v[2]); };
+    const double step[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
+                            b.position[2] - a.position[2]};
+    // Ends that move may lead beyond the line between them.
+    const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
+    const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
+    for (std::int64_t i = samples; i >= 1; --i) {  // from the new end, where obstacles are likelier
+        const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
+        ++statistics_.states_checked;
+        const FlightFault fault = space_.fault_at({p.position[0], p.position[1], p.position[2]});
+        if (fault != FlightFault::none) {
+            return fault;
+        }
+    }
+    return FlightFault::none;
+}
+
+void PlannedFlights::fly(std::span<FlightJob> jobs) {
+    crew_.fly(jobs);
+    for (const FlightJob& job : jobs) {
+        for (const FlightLeg& leg : job.legs) {
+            statistics_.edges += leg.flight.ticks > 0 ? 1 : 0;
+            statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
+            statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
+        }
+        if (job.fault() != FlightFault::none) {
+            count_rejection(job.fault());
+        }
+    }
+}
+
+FlightLeg PlannedFlights::hold_leg(const ReferencePoint& at) const {
+    const double tick_s = model_.tick().tick_s;
+    return {{at, at, hold_ticks(problem_.goal, tick_s), tick_s}};
+}
+
+std::int64_t PlannedFlights::judged_ticks() const {
+    const double tick_s = model_.tick().tick_s;
+    return std::min<std::int64_t>(hold_ticks(problem_.goal, tick_s), std::llround(goal_settling_s / tick_s));
+}
+
+double PlannedFlights::cost_after(double cost_before, const FlightLeg& leg) const {
+    switch (problem_.planner.objective) {
+        case Objective::energy:
+            break;
+        case Objective::time:
+            return cost_before + static_cast<double>(leg.flight.ticks) * model_.tick().tick_s;
+        case Objective::length:
+            return cost_before + leg.flight.length_m;
+        case Objective::clearance:
+            return cost_before + leg.flight.clearance_integral;
+    }
+    return leg.end.plant.energy_j;
+}
+
+ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {
+    const double tick_s = model_.tick().tick_s;
+    return {from, to, shortest_ticks(from, to, limits_, tick_s), tick_s};
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/search_space.hpp"
+#include "downwash/simulation/flight_batch.hpp"
+
+namespace downwash::planning {
+
+/// Counters of everything that was flown.
+struct FlightStatistics {
+    std::uint64_t edges = 0;
+    std::uint64_t ticks = 0;
+    std::uint64_t states_checked = 0;
+    std::map<std::string, std::uint64_t> rejected;
+    std::uint64_t rejections = 0;
+};
+
+/// How the flights of one search are flown, judged, paid for and counted.
+class PlannedFlights {
+ public:
+    /// @param map surface effects of the planner's own model; nullptr for none
+    /// @param is_over asked now and then within flights, from all threads; true ends them without a result
+    /// @param threads at least 1; nothing but the time depends on it
+    PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
+                   std::function<bool()> is_over = {}, int threads = 1);
+
+    /// What forbids a reference before anything is flown: the level vehicle on it collides or leaves the bounds. A
+    /// flight follows its reference to a few centimetres, so that such a one is not worth flying.
+    [[nodiscard]] FlightFault reference_fault(const ReferenceSegment& segment);
+
+    /// Flies jobs, and counts ticks and refusals.
+    void fly(std::span<FlightJob> jobs);
+
+    /// The hold at the goal as the last leg of a job; the job's judged_ticks have to be judged_ticks().
+    [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
+    [[nodiscard]] std::int64_t judged_ticks() const;
+
+    /// The cost from the start up to the end of a leg.
+    [[nodiscard]] double cost_after(double cost_before, const FlightLeg& leg) const;
+
+    /// A segment between two points in as few ticks as the limits of motion allow.
+    [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
+    [[nodiscard]] const ReferenceLimits& limits() const noexcept { return limits_; }
+
+    [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
+    [[nodiscard]] const FlightModel& model() const noexcept { return model_; }
+    [[nodiscard]] const AeroMap* map() const noexcept { return map_; }
+    [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
+    void count_rejection(const std::string& cause);
+    /// Counts a refusal; an interrupted flight is none.
+    void count_rejection(FlightFault fault);
+
+ private:
+    const Problem& problem_;
+    const FlightModel& model_;
+    const SearchSpace& space_;
+    const AeroMap* map_;
+    ReferenceLimits limits_;
+    FlightCrew crew_;
+    FlightStatistics statistics_;
+};
+
+/// A count of nothing for every cause of refusal.
+[[nodiscard]] std::map<std::string, std::uint64_t> no_rejections();
+
+/// The name under which a refusal is counted.
+[[nodiscard]] std::string cause_of(FlightFault fault);
+
+}  // namespace downwash::planning
