@@ -14,7 +14,8 @@
 namespace downwash::planning {
 namespace {
 
-/// How often the search aims at the goal region.
+/// How often the search aims at the goal region, before it has a plan and after.
+constexpr double first_goal_bias = 0.4;
 constexpr double goal_bias = 0.1;
 
 /// How often, once there is a plan, the search looks beside one of its corners (local biasing, Akgun and Stilman 2011).
@@ -39,6 +40,7 @@ constexpr int waves_between_reviews = 12;
 
 /// Samples whose flights are flown side by side. Fixed, so that the result does not depend on lanes and threads.
 constexpr std::uint64_t wave_size = 8;
+constexpr std::uint64_t first_wave_size = 4;  ///< as long as there is no plan
 
 /// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
 /// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
@@ -83,8 +85,9 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
         if (refiner_.champion() != nullptr && 2 * refine_ticks_ < flights_.statistics().ticks) {
             refine();
         } else {
-            const std::uint64_t left = max_iterations_ ? *max_iterations_ - iterations_ : wave_size;
-            grow(std::min(left, wave_size));
+            const std::uint64_t wanted = has_plan() ? wave_size : first_wave_size;
+            const std::uint64_t left = max_iterations_ ? *max_iterations_ - iterations_ : wanted;
+            grow(std::min(left, wanted));
         }
         if (!incumbent_ || ++waves_since_review_ >= waves_between_reviews) {
             review(worthwhile_gain);
@@ -101,7 +104,8 @@ std::optional<Configuration> FlightTreePlanner::target() {
     if (incumbent_ && random_.chance(local_bias)) {
         return target_beside_incumbent();
     }
-    return random_.chance(goal_bias) ? space_.sample_goal(random_) : space_.sample(random_);
+    return random_.chance(has_plan() ? goal_bias : first_goal_bias) ? space_.sample_goal(random_)
+                                                                    : space_.sample(random_);
 }
 
 std::optional<Configuration> FlightTreePlanner::target_beside_incumbent() {
@@ -145,10 +149,11 @@ void FlightTreePlanner::grow(std::uint64_t samples) {
         }
     }
     tree_.add_holds(arrived);
-    rewire_through(wave, added);
-    if (const FlightNode* hold = best_hold()) {
-        best_hold_cost_ = hold->cost;
+    if (has_plan()) {
+        rewire_through(wave, added);
     }
+    const FlightNode* const hold = best_hold();
+    best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
     hand_to_refiner();
 }
 
@@ -159,7 +164,8 @@ std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
     }
     const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
     Growth growth;
-    growth.to = space_.steered(nearest, *aim, range_m_);
+    // Goals are aimed at from any distance: what stands in between is found before anything is flown.
+    growth.to = space_.is_near_goal(*aim) ? *aim : space_.steered(nearest, *aim, range_m_);
     if (const FlightFault fault = space_.fault_at(growth.to); fault != FlightFault::none) {
         flights_.count_rejection(fault);
         return std::nullopt;
@@ -185,7 +191,8 @@ void FlightTreePlanner::choose_parents(std::vector<Growth>& wave) {
                 continue;
             }
             const Growth::Parent& parent = growth.parents[growth.next_parent];
-            if (growth.best && parent.estimate >= growth.best->cost) {
+            // Until there is a plan any way on will do.
+            if (growth.best && (parent.estimate >= growth.best->cost || !has_plan())) {
                 growth.next_parent = growth.parents.size();
                 continue;
             }

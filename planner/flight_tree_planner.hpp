@@ -69,6 +69,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     void refine();
     void hand_to_refiner();
     [[nodiscard]] FlightNode* best_hold() const;
+    [[nodiscard]] bool has_plan() const noexcept { return !tree_.holds().empty(); }
     void review(double least_gain);
     [[nodiscard]] std::size_t neighbour_count() const;
 

@@ -26,8 +26,8 @@ struct Progress {
 
 /// How a program takes part in a search.
 struct SolveOptions {
-    int threads = 1;                                   ///< for building the aero map; the result does not depend on it
-    std::stop_token stop;                              ///< ends the search early, with the best plan so far
+    int threads = 1;       ///< for flights and the aero map; the result does not depend on it
+    std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
     bool stop_at_first_solution = false;
     std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty

@@ -13,6 +13,7 @@
 #include "downwash/aeromap/volume_map.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 
 using namespace downwash;
@@ -217,6 +218,39 @@ void volume_look_up(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hubs_m.size()));
 }
 BENCHMARK(volume_look_up);
+
+/// Random edges all over the bridge under all rules, side by side.
+void batch(benchmark::State& state, bool is_aware, Instructions instructions, int threads) {
+    const Bridge& bridge = Bridge::get();
+    FlightRules rules;
+    rules.bounds = bridge.problem.bounds;
+    FlightCrew crew(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, nullptr, threads, instructions);
+    const double tick_s = bridge.model->tick().tick_s;
+    std::vector<FlightJob> edges;
+    const std::vector<Query> from = random_queries(bridge.problem.bounds);
+    for (std::size_t i = 0; edges.size() < 512; ++i) {
+        const double q[4] = {from[i].x_m, from[i].z_m, 0, from[i].arm_rad};
+        const double u[4] = {};
+        if (!bridge.model->collisions().is_nearer_than({q[0], q[1], q[2], q[3]}, rules.margin_m)) {
+            const ReferencePoint to = rest(q[0] + 20 * from[i].pitch_rad, q[1], q[3] + 0.5);
+            edges.push_back({bridge.model->state_at(q, u), {{{rest(q[0], q[1], q[3]), to, 800, tick_s}}}});
+        }
+    }
+    std::int64_t ticks = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        std::vector<FlightJob> jobs = edges;
+        crew.fly(jobs);
+        for (const FlightJob& job : jobs) {
+            ticks += job.legs[0].flight.ticks;
+        }
+    }
+    state.SetItemsProcessed(ticks);
+}
+BENCHMARK_CAPTURE(batch, dynamics_aware_baseline, false, Instructions::baseline, 1);
+BENCHMARK_CAPTURE(batch, dynamics_aware_best, false, best_instructions(), 1);
+BENCHMARK_CAPTURE(batch, aerodynamics_aware_baseline, true, Instructions::baseline, 1);
+BENCHMARK_CAPTURE(batch, aerodynamics_aware_best, true, best_instructions(), 1);
+BENCHMARK_CAPTURE(batch, aerodynamics_aware_best_two_threads, true, best_instructions(), 2)->UseRealTime();
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {
