@@ -178,7 +178,8 @@ std::string expectation(const ParameterInfo& info) {
         case ParameterKind::identifier:
             return "1 to 64 letters, digits, '_' or '-'";
         case ParameterKind::choice:
-            return (info.names.size() > 1 ? "one of " : "") + joined_names(info.names);
+            return (info.names.size() > 1 ? "one of " : "") + joined_names(info.names) +
+                   (info.can_be_group ? ", or a group of keys" : "");
         case ParameterKind::numbers:
             return elements_text(info.elements) + in_unit + range + or_null;
         case ParameterKind::points:

@@ -46,10 +46,11 @@ struct ParameterInfo {
     ParameterKind kind = ParameterKind::group;
     std::string description;
     bool required = false;
-    bool nullable = false;     ///< `null` may be written: the value is not set
-    bool exclusive = false;    ///< exactly one of the exclusive keys of a group must be there
-    bool can_be_none = false;  ///< a group that `none` switches off
-    bool can_be_file = false;  ///< a group that may be the path of a file instead
+    bool nullable = false;      ///< `null` may be written: the value is not set
+    bool exclusive = false;     ///< exactly one of the exclusive keys of a group must be there
+    bool can_be_none = false;   ///< a group that `none` switches off
+    bool can_be_file = false;   ///< a group that may be the path of a file instead
+    bool can_be_group = false;  ///< a choice that may be a group of keys instead
     Range range;
     std::vector<std::string_view> names;     ///< of a choice
     std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
@@ -103,8 +104,22 @@ struct Parameter : ParameterInfo {
     Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
     Parameter or_none() && { return can_be_none = true, std::move(*this); }
     Parameter or_file() && { return can_be_file = true, std::move(*this); }
+    /// @param is_group whether it has the form of a group now   @param begin gives it that form
+    Parameter or_group(std::function<bool(const Model&)> is_group, std::function<void(Model&)> begin) && {
+        can_be_group = true;
+        count = [is_group = std::move(is_group)](const Model& model, std::size_t) -> std::size_t {
+            return is_group(model) ? 1 : 0;
+        };
+        resize = [begin = std::move(begin)](Model& model, std::size_t, std::size_t) { begin(model); };
+        return std::move(*this);
+    }
     Parameter only(std::string_view when, std::function<bool(const Model&, std::size_t)> test) && {
         return condition = when, applies = std::move(test), std::move(*this);
+    }
+
+    /// Whether a model has one value here now, not keys below.
+    [[nodiscard]] bool has_value(const Model& model, std::size_t index) const {
+        return get && !(can_be_group && count(model, index) > 0);
     }
 };
 

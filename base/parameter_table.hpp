@@ -57,7 +57,7 @@ void for_each_value(const ParameterTable<Model>& table, const Model& model, cons
         if (parameter->applies && !parameter->applies(model, index)) {
             continue;
         }
-        if (parameter->get) {
+        if (parameter->has_value(model, index)) {
             visit(*parameter, below, index);
         } else if (parameter->kind == ParameterKind::list) {
             for (std::size_t i = 0; i < parameter->count(model, index); ++i) {

@@ -31,8 +31,9 @@ constexpr std::array options{
 };
 
 std::string description(const OptionOfKey& option) {
-    const auto* parameter = problem_parameters().find(option.key);
-    return fmt::format("{}: {}{} [{}]", parameter->description, expectation(*parameter), option.note, option.key);
+    ParameterInfo parameter = *problem_parameters().find(option.key);
+    parameter.can_be_group = false;  // an option is a word
+    return fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key);
 }
 
 /// A fault in the words of the command line, where its key was given there.

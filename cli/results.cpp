@@ -33,18 +33,23 @@ class Table {
     std::string text_;
 };
 
-std::string_view unit_of(Objective objective) {
-    switch (objective) {
+/// With a space before it; a weighted sum has none.
+std::string_view unit_of(const CostFunction& cost) {
+    const auto objective = cost.single();
+    if (!objective) {
+        return "";
+    }
+    switch (*objective) {
         case Objective::energy:
-            return "J";
+            return " J";
         case Objective::time:
-            return "s";
+            return " s";
         case Objective::length:
-            return "m";
+            return " m";
         case Objective::clearance:
             break;
     }
-    return "s/m";
+    return " s/m";
 }
 
 std::string refusals(const SearchRecord& record) {
@@ -62,7 +67,7 @@ void add_flight(Table& table, const Solution& solution, const Execution& flight)
     table.add("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                     flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
     table.add("cost",
-              fmt::format("{:.6g} {} planned, {:.6g} {} flown", solution.cost, unit, solution.execution_cost, unit));
+              fmt::format("{:.6g}{} planned, {:.6g}{} flown", solution.cost, unit, solution.execution_cost, unit));
     table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
     table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
     table.add("goal error", fmt::format("{:.3f} m", flight.goal_error_m));
@@ -120,7 +125,7 @@ std::string verdict_on_search(const Solution& solution) {
 std::string summary_of(const std::string& verdict, const Solution& solution, const std::filesystem::path& folder) {
     Table table;
     table.add("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
-                                    solution.algorithm, name_of(solution.objective), solution.seed));
+                                    solution.algorithm, text_of(solution.objective), solution.seed));
     if (solution.execution) {
         add_flight(table, solution, *solution.execution);
     }

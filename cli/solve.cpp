@@ -33,7 +33,7 @@ struct SolveArguments {
 std::string announcement(const Problem& problem) {
     const PlannerSettings& planner = problem.planner;
     return fmt::format("{}: planning with {} {}, objective {}, seed {}", problem.name, name_of(planner.variant),
-                       planner.algorithm, name_of(planner.objective), planner.seed);
+                       planner.algorithm, text_of(planner.objective), planner.seed);
 }
 
 ExitCode run(const SolveArguments& arguments) {

@@ -39,12 +39,22 @@ std::size_t element_of(const std::string& path) {
     return 0;
 }
 
+/// The problem whose values of a key are its defaults: below a choice that is written as a group they are those of one
+/// that has just begun.
+Problem in_groups(const std::string& path) {
+    Problem problem = with_everything();
+    const Parameter<Problem>* group = problem_parameters().find(parent_path(path));
+    if (group != nullptr && group->can_be_group) {
+        group->resize(problem, 0, 1);
+    }
+    return problem;
+}
+
 std::string in_file_units(const std::string& path, double value) {
     return fmt::format("{:.6g}", is_in_degrees(path) ? value * degrees_per_radian : value);
 }
 
 std::string default_text(const Parameter<Problem>& parameter) {
-    static const Problem defaults = with_everything();
     if (parameter.required) {
         return "required";
     }
@@ -55,7 +65,7 @@ std::string default_text(const Parameter<Problem>& parameter) {
         return "";
     }
     const std::string& path = parameter.path;
-    const Value value = parameter.get(defaults, element_of(path));
+    const Value value = parameter.get(in_groups(path), element_of(path));
     if (const auto* flag = std::get_if<bool>(&value)) {
         return *flag ? "true" : "false";
     }

@@ -99,7 +99,7 @@ std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const
     }
     const FlightLeg& leg = job.legs.back();
     const double* to = leg.segment.to().position;
-    return Flown{{to[0], to[1], to[2]}, leg.segment.ticks(), leg.end, flights_.cost_after(from.cost, leg)};
+    return Flown{{to[0], to[1], to[2]}, leg.segment.ticks(), leg.end, flights_.cost_after(from.cost, from.state, leg)};
 }
 
 std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const Edge> edges) {

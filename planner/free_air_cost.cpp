@@ -24,6 +24,7 @@ ReferenceLimits reference_limits(const MotionLimits& motion) {
 
 FreeAirCost::FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space)
     : objective_(problem.planner.objective),
+      counts_clearance_(objective_.weight(Objective::clearance) > 0),
       model_(model),
       space_(space),
       limits_(reference_limits(problem.motion)),
@@ -32,31 +33,13 @@ FreeAirCost::FreeAirCost(const Problem& problem, const FlightModel& model, const
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
     const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits_);
-    switch (objective_) {
-        case Objective::energy:
-            return hover_power_w_ * duration_s;
-        case Objective::time:
-            return duration_s;
-        case Objective::length:
-            return space_.distance_m(from, to);
-        case Objective::clearance:
-            break;
-    }
-    return duration_s * mean_clearance_density(from, space_.seen_from(from, to));
+    const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
+    return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), duration_s * density});
 }
 
 double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
-    switch (objective_) {
-        case Objective::energy:
-            return hover_power_w_ * hold_s;
-        case Objective::time:
-            return hold_s;
-        case Objective::length:
-            return 0;
-        case Objective::clearance:
-            break;
-    }
-    return hold_s * clearance_density(at);
+    const double density = counts_clearance_ ? clearance_density(at) : 0;
+    return objective_({hover_power_w_ * hold_s, hold_s, 0, hold_s * density});
 }
 
 double FreeAirCost::clearance_density(const Configuration& at) const {

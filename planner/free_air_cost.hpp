@@ -21,7 +21,8 @@ class FreeAirCost {
     [[nodiscard]] double clearance_density(const Configuration& at) const;
     [[nodiscard]] double mean_clearance_density(const Configuration& from, const Configuration& to) const;
 
-    Objective objective_;
+    CostFunction objective_;
+    bool counts_clearance_;  ///< it takes queries of distance
     const FlightModel& model_;
     const SearchSpace& space_;
     ReferenceLimits limits_;

@@ -72,10 +72,10 @@ FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const 
     plan.states.assign(base.states.begin(), base.states.begin() + kept);
     plan.costs.assign(base.costs.begin(), base.costs.begin() + kept);
     for (std::size_t leg = 0; leg + 1 < job.legs.size(); ++leg) {
-        plan.costs.push_back(flights_.cost_after(plan.costs.back(), job.legs[leg]));
+        plan.costs.push_back(flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs[leg]));
         plan.states.push_back(job.legs[leg].end);
     }
-    plan.cost = flights_.cost_after(plan.costs.back(), job.legs.back());
+    plan.cost = flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs.back());
     return plan;
 }
 

@@ -15,7 +15,7 @@ FlightRules planning_rules(const Problem& problem, std::function<bool()> is_over
     rules.margin_m = problem.planner.safety_margin_m;
     rules.bounds = problem.bounds;
     rules.is_over = std::move(is_over);
-    rules.measures_clearance = problem.planner.objective == Objective::clearance;
+    rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
     return rules;
 }
 
@@ -117,18 +117,10 @@ std::int64_t PlannedFlights::judged_ticks() const {
     return std::min<std::int64_t>(hold_ticks(problem_.goal, tick_s), std::llround(goal_settling_s / tick_s));
 }
 
-double PlannedFlights::cost_after(double cost_before, const FlightLeg& leg) const {
-    switch (problem_.planner.objective) {
-        case Objective::energy:
-            break;
-        case Objective::time:
-            return cost_before + static_cast<double>(leg.flight.ticks) * model_.tick().tick_s;
-        case Objective::length:
-            return cost_before + leg.flight.length_m;
-        case Objective::clearance:
-            return cost_before + leg.flight.clearance_integral;
-    }
-    return leg.end.plant.energy_j;
+double PlannedFlights::cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
+    const double time_s = static_cast<double>(leg.flight.ticks) * model_.tick().tick_s;
+    return cost_before + problem_.planner.objective({leg.end.plant.energy_j - from.plant.energy_j, time_s,
+                                                     leg.flight.length_m, leg.flight.clearance_integral});
 }
 
 ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {

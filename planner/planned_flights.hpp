@@ -40,8 +40,8 @@ class PlannedFlights {
     [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
     [[nodiscard]] std::int64_t judged_ticks() const;
 
-    /// The cost from the start up to the end of a leg.
-    [[nodiscard]] double cost_after(double cost_before, const FlightLeg& leg) const;
+    /// The cost from the start up to the end of a leg that began with `from`.
+    [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
 
     /// A segment between two points in as few ticks as the limits of motion allow.
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;

@@ -8,6 +8,7 @@
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/fault.hpp"
+#include "downwash/planner/objective.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/goal.hpp"
@@ -20,14 +21,6 @@ enum class Variant {
     mp_arm,      ///< geometry only: straight lines of (x, z, arm), the vehicle level
     mp_arm_da,   ///< dynamics-aware: closed-loop flights without surface effects
     mp_arm_ada,  ///< aerodynamics-aware: closed-loop flights through the aero map
-};
-
-/// What a plan should keep small; hold included.
-enum class Objective {
-    energy,     ///< rotor and arm power over time [J]
-    time,       ///< duration [s]
-    length,     ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2) [m], w = half the arm's length
-    clearance,  ///< integral of dt / (clearance + 0.1 m) [s/m]
 };
 
 /// Where the flight begins.
@@ -52,7 +45,7 @@ inline constexpr double default_time_limit_s = 10;
 struct PlannerSettings {
     Variant variant = Variant::mp_arm_ada;
     std::string algorithm = "rrt-star";  ///< one of the names that algorithms() lists
-    Objective objective = Objective::energy;
+    CostFunction objective = Objective::energy;
     /// Wall time of the search [s], > 0. Empty: default_time_limit_s, or none where max_iterations is set.
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit

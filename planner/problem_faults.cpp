@@ -323,7 +323,14 @@ std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
              "nearer to it than planner.safety_margin_m"}};
 }
 
-const std::array<Check<Problem>, 19> checks{{
+std::vector<Fault> weightless_objective(const Problem& p) {
+    if (p.planner.objective == CostFunction::of_nothing()) {
+        return {{"planner.objective", "has no weight above 0: expected one at least"}};
+    }
+    return {};
+}
+
+const std::array<Check<Problem>, 20> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -347,6 +354,7 @@ const std::array<Check<Problem>, 19> checks{{
      configuration_in_collision},
     {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
      end_effector_out_of_reach},
+    {{"planner.objective"}, weightless_objective},
 }};
 
 }  // namespace

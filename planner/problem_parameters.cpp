@@ -1,5 +1,6 @@
 #include "downwash/planner/problem_parameters.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -186,14 +187,31 @@ std::vector<std::string_view> algorithm_names() {
     return names;
 }
 
+void add_objective(Rows& rows) {
+    std::vector<std::pair<Objective, std::string_view>> names;
+    for (const Objective objective : all_objectives) {
+        names.emplace_back(objective, name_of(objective));
+    }
+    rows.push_back(parameters::choice<Problem>(
+                       "planner.objective", "what a plan should keep small; a group: a weighted sum", names,
+                       [](auto& p) -> auto& { return p.planner.objective; })
+                       .or_group([](const Problem& p) { return !p.planner.objective.single(); },
+                                 [](Problem& p) { p.planner.objective = CostFunction::of_nothing(); }));
+    constexpr std::array<std::string_view, all_objectives.size()> units{"J", "second", "metre", "s/m"};
+    for (std::size_t i = 0; i < units.size(); ++i) {
+        const Objective objective = all_objectives[i];
+        rows.push_back(number("planner.objective." + std::string(name_of(objective)),
+                              "weight of a " + std::string(units[i]),
+                              [objective](auto& p) -> decltype(auto) { return p.planner.objective.weight(objective); })
+                           .at_least(0)
+                           .at_most(1e9));
+    }
+}
+
 void add_planner(Rows& rows) {
     std::vector<std::pair<Variant, std::string_view>> variants;
     for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
         variants.emplace_back(variant, name_of(variant));
-    }
-    std::vector<std::pair<Objective, std::string_view>> objectives;
-    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
-        objectives.emplace_back(objective, name_of(objective));
     }
     rows.push_back(group("planner", "how to search"));
     rows.push_back(parameters::choice<Problem>(
@@ -202,9 +220,7 @@ void add_planner(Rows& rows) {
     rows.push_back(parameters::choice<Problem>(
         "planner.algorithm", "the tree planner", algorithm_names(),
         [](auto& p) -> auto& { return p.planner.algorithm; }));
-    rows.push_back(parameters::choice<Problem>(
-        "planner.objective", "what a plan should keep small", objectives,
-        [](auto& p) -> auto& { return p.planner.objective; }));
+    add_objective(rows);
     rows.push_back(positive(
         "planner.time_limit_s",
         "wall time of the search, map and last flight apart; null: 10 s, or none where max_iterations is set", 1e6,

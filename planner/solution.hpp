@@ -69,22 +69,21 @@ struct Solution {
     bool interrupted = false;  ///< ended by the stop token
     Variant variant = Variant::mp_arm_ada;
     std::string algorithm;
-    Objective objective = Objective::energy;
+    CostFunction objective;
     std::uint32_t seed = 1;
     int threads = 1;
     double cost = 0;            ///< the planner's own figure; 0 without a plan
-    double execution_cost = 0;  ///< the same objective in the flight with direct aerodynamics
+    double execution_cost = 0;  ///< by the same objective in the flight with direct aerodynamics
     SearchRecord planning;
     std::optional<Plan> plan;            ///< empty with Status::none
     std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
 };
 
-/// Names as in problem files: "mp-arm-ada", "energy", "solved".
+/// Names as in problem and solution files: "mp-arm-ada", "solved".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
-[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Objective objective);
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Status status);
 
-/// What an executed flight costs under an objective.
-[[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, Objective objective);
+/// What an executed flight costs.
+[[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, const CostFunction& objective);
 
 }  // namespace downwash

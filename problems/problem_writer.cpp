@@ -78,7 +78,7 @@ class Writer {
     void write_content(const Row& row, std::size_t index, const std::string& indent) {
         if (row.kind == ParameterKind::file && !std::holds_alternative<std::monostate>(row.get(problem_, index))) {
             out_ += " " + quoted(file_text_(row, index)) + "\n";
-        } else if (row.get) {
+        } else if (row.has_value(problem_, index)) {
             out_ += " " + value_text(row, row.get(problem_, index)) + "\n";
         } else if (row.kind == ParameterKind::list) {
             write_list(row, index, indent);

@@ -183,14 +183,30 @@ void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
     reader.refuse(*node, "expected " + std::string(names.size() > 1 ? "one of " : "") + joined_names(names));
 }
 
+/// A name, or a group of weights.
+void read_objective(JsonReader& reader, const Node& root, CostFunction& objective) {
+    const auto node = JsonReader::member(root, "objective");
+    if (!node || !node->json->is_object()) {
+        Objective single{};
+        reader.read_choice(root, "objective", all_objectives, single);
+        objective = node ? CostFunction(single) : objective;
+        return;
+    }
+    objective = CostFunction::of_nothing();
+    for (const Objective each : all_objectives) {
+        objective.weight(each) = reader.amount(*node, name_of(each).data(), 0);
+    }
+    if (objective == CostFunction::of_nothing()) {
+        reader.refuse(*node, "expected a weight above 0");
+    }
+}
+
 void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     reader.read_choice(root, "status", std::array{Status::none, Status::approximate, Status::solved}, solution.status);
     reader.read_flag(root, "interrupted", solution.interrupted);
     reader.read_choice(root, "variant", std::array{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada},
                        solution.variant);
-    reader.read_choice(root, "objective",
-                       std::array{Objective::energy, Objective::time, Objective::length, Objective::clearance},
-                       solution.objective);
+    read_objective(reader, root, solution.objective);
     read_algorithm(reader, root, solution);
     reader.read_count(root, "seed", solution.seed);
     reader.read_count(root, "threads", solution.threads);

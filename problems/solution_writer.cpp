@@ -82,6 +82,20 @@ Json execution_json(const Solution& solution) {
             {"goal_error_m", number(flight.goal_error_m)}};
 }
 
+/// A name, or the weights of a sum.
+Json objective_json(const CostFunction& objective) {
+    if (const auto single = objective.single()) {
+        return name_of(*single);
+    }
+    Json weights = Json::object();
+    for (const Objective each : all_objectives) {
+        if (objective.weight(each) > 0) {
+            weights[std::string(name_of(each))] = objective.weight(each);
+        }
+    }
+    return weights;
+}
+
 }  // namespace
 
 std::string solution_json(const Solution& solution, const ProblemReference& problem) {
@@ -92,7 +106,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"problem", {{"name", problem.name}, {"file", problem.file}, {"sha256", problem.sha256}}},
         {"variant", name_of(solution.variant)},
         {"algorithm", solution.algorithm},
-        {"objective", name_of(solution.objective)},
+        {"objective", objective_json(solution.objective)},
         {"seed", solution.seed},
         {"version", version()},
         {"threads", solution.threads},

@@ -190,6 +190,10 @@ void TreeReader::read_parameter(const Group& group, const Parameter<Problem>& pa
             break;
         default:
             places_[key] = {file_, value->mark};
+            if (parameter.can_be_group && value->kind == YamlNode::Kind::map) {
+                read_group(parameter, *value, key, key_node->mark, group.index);
+                return;
+            }
             read_single(parameter, *value, key, group.index);
     }
 }

@@ -134,7 +134,19 @@ const Edit edits[] = {
     {"algorithm: rrt-star", "algorithm: rrt_star",
      "problem.yaml:16:43: planner.algorithm is 'rrt_star': expected rrt-star; did you mean 'rrt-star'?"},
     {"objective: energy", "objective: comfort",
-     "problem.yaml:16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance"},
+     "problem.yaml:16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance, or a "
+     "group "
+     "of keys"},
+    {"objective: energy", "objective: {energy: 1, times: 2, length: -1}",
+     "problem.yaml:16:76: unknown key 'times' in planner.objective: did you mean 'time'?\n"
+     "problem.yaml:16:94: planner.objective.length is -1: expected a number from 0 to 1000000000"},
+    {"objective: energy", "objective: {energy: 0, time: 0}",
+     "problem.yaml:16:64: planner.objective has no weight above 0: expected one at least"},
+    {"objective: energy", "objective: {}",
+     "problem.yaml:16:64: planner.objective has no weight above 0: expected one at least"},
+    {"objective: energy", "objective: [energy, time]",
+     "problem.yaml:16:64: planner.objective is a list: expected one of energy, time, length or clearance, or a group "
+     "of keys"},
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "problem.yaml:16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n"
      "problem.yaml:16:101: unknown key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, "

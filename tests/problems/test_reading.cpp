@@ -65,6 +65,23 @@ TEST_CASE("every shipped problem is sound") {
     CHECK(read_robot(std::filesystem::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml").name == "ars_lrm");
 }
 
+TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {
+    const TestFolder folder;
+    const auto objective_of = [&](std::string_view text) {
+        folder.write("problem.yaml", edited(good_problem, "objective: energy", "objective: " + std::string(text)));
+        folder.write("robot.yaml", good_robot);
+        return read_problem(folder / "problem.yaml").planner.objective;
+    };
+    const CostFunction sum = objective_of("{energy: 0.5, time: 50}");
+    CHECK(sum.weight(Objective::energy) == 0.5);
+    CHECK(sum.weight(Objective::time) == 50);
+    CHECK(sum.weight(Objective::length) == 0);
+    CHECK(sum.weight(Objective::clearance) == 0);
+    CHECK(objective_of("{time: 2}").weight(Objective::energy) == 0);
+    CHECK(objective_of("{length: 1}") == CostFunction(Objective::length));
+    CHECK(objective_of("clearance") == CostFunction(Objective::clearance));
+}
+
 TEST_CASE("single values are set as a file would set them") {
     Problem problem = good();
     set_parameter(problem, "planner.variant", "mp-arm");
@@ -78,6 +95,11 @@ TEST_CASE("single values are set as a file would set them") {
                       "'mp-arm'?");
     CHECK_THROWS_AS(set_parameter(problem, "planner.seed", "-3"), InputError);
     CHECK_THROWS_AS(set_parameter(problem, "planner", "none"), InputError);
+    problem.planner.objective.weight(Objective::time) = 3;
+    set_parameter(problem, "planner.objective", "energy");
+    CHECK(problem.planner.objective == CostFunction(Objective::energy));
+    CHECK_THROWS_WITH(set_parameter(problem, "planner.objective", "fun"),
+                      "planner.objective: is 'fun': expected one of energy, time, length or clearance");
     CHECK_THROWS_AS(set_parameter(problem, "environment.obstacles[].name", "x"), InputError);
 }
 

@@ -58,6 +58,9 @@ class ProblemMaker {
         problem.motion.max_arm_rate_rad_s = 1 + uniform();
         problem.planner.variant = coin() ? Variant::mp_arm : Variant::mp_arm_da;
         problem.planner.objective = coin() ? Objective::length : Objective::clearance;
+        if (coin()) {
+            problem.planner.objective.weight(Objective::energy) = uniform();
+        }
         problem.planner.seed = static_cast<std::uint32_t>(engine_());
         problem.planner.max_iterations = coin() ? std::optional<std::uint64_t>{} : 1 + engine_() % 1000000;
         problem.aero.ceiling = coin() ? EffectModel::sanchez_cuevas : EffectModel::none;

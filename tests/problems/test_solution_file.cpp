@@ -106,6 +106,15 @@ TEST_CASE("A plan is read back to the last bit") {
     CHECK(solution_json(found, {"open_air", "open_air.yaml", std::string(64, 'a')}) == sample_text());
 }
 
+TEST_CASE("The weights of a sum are written and read back") {
+    Solution solution = sample();
+    solution.objective.weight(downwash::Objective::time) = 50.0 / 3;
+    const std::string text = solution_json(solution, {"open_air", "open_air.yaml", ""});
+    CHECK(text.find("\"energy\": 1.0") != std::string::npos);
+    CHECK(text.find("\"clearance\"") == std::string::npos);
+    CHECK(read(text).objective == solution.objective);
+}
+
 TEST_CASE("What is not finite is written as null") {
     Solution solution = sample();
     solution.execution.emplace();
@@ -154,6 +163,9 @@ TEST_CASE("A plan file is refused where it cannot be flown") {
          "3:13: status: expected one of none, approximate or solved"},
         {"\"variant\": \"mp-arm-ada\"", "\"variant\": 5", "variant: expected one of mp-arm"},
         {"\"algorithm\": \"rrt-star\"", "\"algorithm\": \"x\"", "algorithm: expected"},
+        {"\"objective\": \"energy\"", "\"objective\": \"fun\"", "objective: expected one of energy, time"},
+        {"\"objective\": \"energy\"", "\"objective\": {\"time\": 0}", "objective: expected a weight above 0"},
+        {"\"objective\": \"energy\"", "\"objective\": {\"time\": -1}", "objective.time: expected a number"},
         {"\"seed\": 4294967295", "\"seed\": 4294967296", "seed: expected a whole number from 0 to 4294967295"},
         {"\"interrupted\": false", "\"interrupted\": 0", "interrupted: expected true or false"},
         {"\"planning\": {", "\"planning\": 1, \"old\": {", "planning: expected a group of keys"},
