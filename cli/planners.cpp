@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
@@ -9,21 +11,45 @@
 namespace downwash::cli {
 namespace {
 
+nlohmann::ordered_json variants_of(const AlgorithmInfo& algorithm) {
+    auto names = nlohmann::ordered_json::array();
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        if (algorithm.plans_for(variant)) {
+            names.push_back(name_of(variant));
+        }
+    }
+    return names;
+}
+
 void print_json() {
     auto list = nlohmann::ordered_json::array();
     for (const AlgorithmInfo& algorithm : algorithms()) {
+        auto parameters = nlohmann::ordered_json::array();
+        for (const AlgorithmParameter& parameter : algorithm.parameters) {
+            parameters.push_back(
+                {{"name", parameter.name}, {"value", parameter.value}, {"description", parameter.description}});
+        }
         list.push_back({{"name", algorithm.name},
                         {"kind", algorithm.kind},
+                        {"variants", variants_of(algorithm)},
                         {"description", algorithm.description},
-                        {"parameters", nlohmann::ordered_json::array()}});
+                        {"parameters", std::move(parameters)}});
     }
     fmt::print("{}\n", json_text(nlohmann::ordered_json{{"planners", std::move(list)}}));
 }
 
 void print_table() {
     for (const AlgorithmInfo& algorithm : algorithms()) {
-        fmt::print("{}\n  kind        {}\n  about       {}\n  parameters  none of its own\n", algorithm.name,
-                   algorithm.kind, algorithm.description);
+        fmt::print("{}\n  kind        {}\n  about       {}\n  parameters  ", algorithm.name, algorithm.kind,
+                   algorithm.description);
+        if (algorithm.parameters.empty()) {
+            fmt::print("none of its own\n");
+        }
+        std::string_view indent;
+        for (const AlgorithmParameter& parameter : algorithm.parameters) {
+            fmt::print("{}{} {}: {}\n", indent, parameter.name, parameter.value, parameter.description);
+            indent = "              ";
+        }
     }
 }
 

@@ -14,6 +14,12 @@ class FreeAirCost {
     /// Along the rest-to-rest reference between two configurations, the arm by the shorter turn.
     [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;
 
+    /// No motion between two configurations, however it is divided, costs less than this.
+    [[nodiscard]] double least_of_motion(const Configuration& from, const Configuration& to) const;
+
+    /// Nor does any motion from a configuration to one that meets the goal, and the hold there.
+    [[nodiscard]] double least_to_goal(const Configuration& from, double hold_s) const;
+
     /// Of holding at a configuration [s].
     [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const;
 

@@ -33,7 +33,8 @@ struct GeometricHooks {
     std::function<void(double cost, std::uint64_t iteration)> on_improvement;
 };
 
-/// MP-ARM: OMPL's RRT* in (x, z, arm) with the vehicle level and straight edges; blind to dynamics (thesis C.2).
+/// MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics
+/// (thesis C.2). An iteration is one turn of the planner's own loop.
 [[nodiscard]] GeometricResult plan_geometrically(const Problem& problem, const FlightModel& model,
                                                  const SearchSpace& space, Random& random, const GeometricHooks& hooks);
 

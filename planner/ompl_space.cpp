@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "downwash/base/lane_math.hpp"
 
@@ -21,6 +20,12 @@ using Position = ob::RealVectorStateSpace::StateType;
 using Arm = ob::RealVectorStateSpace::StateType;
 using TurningArm = ob::SO2StateSpace::StateType;
 
+/// It is a metric space, but if it said so OMPL would search neighbours with random numbers of its own seed.
+class ConfigurationSpace : public ob::CompoundStateSpace {
+ public:
+    bool isMetricSpace() const override { return false; }
+};
+
 ob::StateSpacePtr make_space(const SearchSpace& space) {
     const auto position = std::make_shared<ob::RealVectorStateSpace>(2);
     ob::RealVectorBounds bounds(2);
@@ -29,7 +34,7 @@ ob::StateSpacePtr make_space(const SearchSpace& space) {
     bounds.setLow(1, space.bounds().z_low_m);
     bounds.setHigh(1, space.bounds().z_high_m);
     position->setBounds(bounds);
-    const auto compound = std::make_shared<ob::CompoundStateSpace>();
+    const auto compound = std::make_shared<ConfigurationSpace>();
     compound->addSubspace(position, 1);
     if (space.arm_is_limited()) {
         const auto arm = std::make_shared<ob::RealVectorStateSpace>(1);
@@ -133,8 +138,9 @@ class StraightMotion : public ob::MotionValidator {
 
 class GoalRegion : public ob::GoalSampleableRegion {
  public:
-    GoalRegion(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random)
-        : ob::GoalSampleableRegion(information), space_(space), random_(random) {
+    GoalRegion(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+               unsigned int most_samples)
+        : ob::GoalSampleableRegion(information), space_(space), random_(random), most_samples_(most_samples) {
         setThreshold(1e-9);  // distanceGoal is 0 inside the region
     }
 
@@ -146,11 +152,12 @@ class GoalRegion : public ob::GoalSampleableRegion {
         write(sample.value_or(space_.sample(random_)), state, space_);
     }
 
-    unsigned int maxSampleCount() const override { return std::numeric_limits<unsigned int>::max(); }
+    unsigned int maxSampleCount() const override { return most_samples_; }
 
  private:
     const SearchSpace& space_;
     Random& random_;
+    unsigned int most_samples_;
 };
 
 }  // namespace
@@ -194,8 +201,9 @@ ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random&
     return information;
 }
 
-ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random) {
-    return std::make_shared<GoalRegion>(information, space, random);
+ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+                             unsigned int most_samples) {
+    return std::make_shared<GoalRegion>(information, space, random, most_samples);
 }
 
 }  // namespace downwash::planning

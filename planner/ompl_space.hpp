@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "downwash/planner/random.hpp"
@@ -31,8 +32,10 @@ struct QueryCounts {
                                                                      double motion_step_m, QueryCounts& counts);
 
 /// The goal region: any level configuration that meets the goal, sampled by inverse kinematics.
-[[nodiscard]] ompl::base::GoalPtr make_goal_region(const ompl::base::SpaceInformationPtr& information,
-                                                   const SearchSpace& space, Random& random);
+/// @param most_samples that planners draw which collect goals before they search
+[[nodiscard]] ompl::base::GoalPtr make_goal_region(
+    const ompl::base::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+    unsigned int most_samples = std::numeric_limits<unsigned int>::max());
 
 /// Copies a configuration into a state of that space.
 void write(const Configuration& configuration, ompl::base::State* state, const SearchSpace& space);

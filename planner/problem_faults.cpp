@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -7,11 +8,14 @@
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/angles.hpp"
+#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/planner/goal_reach.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/problem_parameters.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -330,7 +334,26 @@ std::vector<Fault> weightless_objective(const Problem& p) {
     return {};
 }
 
-const std::array<Check<Problem>, 20> checks{{
+std::vector<Fault> algorithm_of_another_variant(const Problem& p) {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        if (algorithm.plans_for(p.planner.variant)) {
+            names.push_back(algorithm.name);
+        }
+    }
+    if (std::find(names.begin(), names.end(), p.planner.algorithm) != names.end()) {
+        return {};
+    }
+    std::string hint = did_you_mean(p.planner.algorithm, names);
+    if (hint.empty()) {
+        hint = "; did you mean '" + std::string(names.front()) + "'?";
+    }
+    return {{"planner.algorithm", "is '" + excerpt(p.planner.algorithm) + "', which does not plan for " +
+                                      std::string(name_of(p.planner.variant)) + ": expected " + joined_names(names) +
+                                      hint}};
+}
+
+const std::array<Check<Problem>, 21> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -355,6 +378,7 @@ const std::array<Check<Problem>, 20> checks{{
     {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
      end_effector_out_of_reach},
     {{"planner.objective"}, weightless_objective},
+    {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
 }};
 
 }  // namespace

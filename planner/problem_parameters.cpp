@@ -218,8 +218,8 @@ void add_planner(Rows& rows) {
         "planner.variant", "what the planner knows of the physics", variants,
         [](auto& p) -> auto& { return p.planner.variant; }));
     rows.push_back(parameters::choice<Problem>(
-        "planner.algorithm", "the tree planner", algorithm_names(),
-        [](auto& p) -> auto& { return p.planner.algorithm; }));
+        "planner.algorithm", "how it searches; not each plans for every variant, see `downwash planners`",
+        algorithm_names(), [](auto& p) -> auto& { return p.planner.algorithm; }));
     add_objective(rows);
     rows.push_back(positive(
         "planner.time_limit_s",

@@ -140,6 +140,47 @@ Configuration SearchSpace::moved_to_goal(Configuration c, Random& random) const 
     return c;
 }
 
+Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
+    const auto nearest_angle = [&](double from_rad, double goal_rad) {
+        const double most = share * tolerance_rad();
+        return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most));
+    };
+    // Of the distance by which something is off, the part that may stay.
+    const auto kept = [&](double dx, double dz) {
+        const double most = share * tolerance_m();
+        const double distance = std::sqrt(dx * dx + dz * dz);
+        return distance > most ? most / distance : 1;
+    };
+    if (goal_.end_effector) {
+        const EndEffectorGoal& goal = *goal_.end_effector;
+        if (goal.direction_rad) {
+            c.arm_rad = nearest_angle(c.arm_rad, *goal.direction_rad);
+        }
+        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
+        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
+        const double dx = c.x_m + tip.x - goal.x_m;
+        const double dz = c.z_m + tip.z - goal.z_m;
+        const double part = kept(dx, dz);
+        c.x_m = goal.x_m + part * dx - tip.x;
+        c.z_m = goal.z_m + part * dz - tip.z;
+        return c;
+    }
+    const ConfigurationGoal& goal = *goal_.configuration;
+    const double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
+    const double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
+    const double part = kept(dx, dz);
+    if (goal.x_m) {
+        c.x_m = *goal.x_m + part * dx;
+    }
+    if (goal.z_m) {
+        c.z_m = *goal.z_m + part * dz;
+    }
+    if (goal.arm_rad) {
+        c.arm_rad = nearest_angle(c.arm_rad, *goal.arm_rad);
+    }
+    return c;
+}
+
 std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
     constexpr int tries = 20;
     for (int i = 0; i < tries; ++i) {
@@ -175,9 +216,14 @@ double SearchSpace::goal_distance_m(const Configuration& c) const {
     if (is_near_goal(c)) {
         return 0;
     }
+    const GoalError off = error_beyond_tolerance(c);
+    return off.distance_m + arm_weight_m() * off.angle_rad;
+}
+
+GoalError SearchSpace::error_beyond_tolerance(const Configuration& c) const {
     const GoalError e = error(c);
-    return std::max(0.0, e.distance_m - usable_tolerance_share * tolerance_m()) +
-           arm_weight_m() * std::max(0.0, e.angle_rad - usable_tolerance_share * tolerance_rad());
+    return {std::max(0.0, e.distance_m - usable_tolerance_share * tolerance_m()),
+            std::max(0.0, e.angle_rad - usable_tolerance_share * tolerance_rad())};
 }
 
 bool SearchSpace::is_inside(const Configuration& c) const noexcept {

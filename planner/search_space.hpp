@@ -69,12 +69,20 @@ class SearchSpace {
     [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
                                                                 Random& random) const;
 
+    /// The configuration nearest to another that uses up at most so much of each of the goal's tolerances; what the
+    /// goal leaves free is kept. May collide.
+    /// @param share of the tolerances, 0 to 1; 0 is the middle of the goal
+    [[nodiscard]] Configuration moved_into_goal(Configuration configuration, double share) const;
+
     /// Goal error of the level vehicle.
     [[nodiscard]] GoalError error(const Configuration& configuration) const;
 
     /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within the
     /// usable share of each tolerance.
     [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
+
+    /// By how much the goal error exceeds the usable share of each tolerance.
+    [[nodiscard]] GoalError error_beyond_tolerance(const Configuration& configuration) const;
 
     /// Distance and angle to the goal as one length [m], 0 inside the goal region.
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
@@ -85,6 +93,9 @@ class SearchSpace {
         return fault_at(configuration) == FlightFault::none;
     }
 
+    /// Whether a configuration keeps the bounds and the arm's limits.
+    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
+
     /// Largest distance between two configurations [m].
     [[nodiscard]] double extent_m() const noexcept;
 
@@ -92,7 +103,6 @@ class SearchSpace {
     [[nodiscard]] Configuration moved_to_goal(Configuration configuration, Random& random) const;
     /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
-    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
     [[nodiscard]] double tolerance_m() const noexcept;
     [[nodiscard]] double tolerance_rad() const noexcept;
 

@@ -1,8 +1,8 @@
 #include "downwash/planner/solve.hpp"
 
-#include <array>
 #include <chrono>
 
+#include "downwash/planner/control_planners.hpp"
 #include "downwash/planner/flight_tree_planner.hpp"
 #include "downwash/planner/mp_arm.hpp"
 #include "downwash/planner/ompl_space.hpp"
@@ -10,11 +10,6 @@
 
 namespace downwash {
 namespace {
-
-constexpr std::array algorithm_table{
-    AlgorithmInfo{"rrt-star", "geometric (mp-arm), kinodynamic (mp-arm-da, mp-arm-ada)",
-                  "RRT*: straight edges by OMPL for mp-arm; closed-loop flights as edges for mp-arm-da and mp-arm-ada, "
-                  "parents chosen and nodes rewired by flown cost. Anytime."}};
 
 class Stopwatch {
  public:
@@ -116,45 +111,92 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     solution.cost = result.cost;
 }
 
-void search_by_flights(const Problem& problem, const FlightModel& model, const SolveOptions& options,
-                       const AeroMap* map, Solution& solution) {
-    const bool is_aware = problem.planner.variant == Variant::mp_arm_ada;
-    const planning::SearchSpace space(problem, model);
-    planning::Random random(problem.planner.seed);
-    Search search(problem, options, solution);
-    planning::PlannedFlights flights(
-        problem, model, space, map, [&search] { return search.is_over(); }, options.threads);
-    planning::FlightTree tree(problem, model, space, flights);
-    planning::QueryCounts counts;
-    SearchRecord& record = solution.planning;
+/// What searches whose edges are flights have in common: every better plan of mp-arm-ada is flown with direct
+/// aerodynamics before it counts, and everything flown is accounted for.
+struct FlightSearch {
+    FlightSearch(const Problem& of, const FlightModel& with, const SolveOptions& options, const AeroMap* map,
+                 Solution& into)
+        : problem(of),
+          model(with),
+          solution(into),
+          search(of, options, into),
+          space(of, with),
+          random(of.planner.seed),
+          flights(
+              of, with, space, map, [this] { return search.is_over(); }, options.threads) {}
 
-    const auto accept = [&](const planning::Candidate& candidate) {
+    bool accept(const Plan& plan, double cost, std::uint64_t iteration) {
         search.found_first(search.seconds());
-        if (is_aware) {
+        if (problem.planner.variant == Variant::mp_arm_ada) {
             double flight_wall_s = 0;
-            Execution flight = fly_directly(problem, model, candidate.plan, flight_wall_s);
+            Execution flight = fly_directly(problem, model, plan, flight_wall_s);
             if (flight.outcome != Outcome::ok) {
                 return false;
             }
             solution.execution = std::move(flight);
-            record.flight_wall_s = flight_wall_s;
+            solution.planning.flight_wall_s = flight_wall_s;
         }
-        search.improved(candidate.cost, candidate.iteration);
+        search.improved(cost, iteration);
         return true;
-    };
-    const planning::QuietOmpl quiet;
-    const auto information = planning::make_space_information(space, random, 0.1, counts);
-    planning::FlightTreePlanner planner(information, problem, tree, space, flights, random, accept);
-    planner.set_max_iterations(problem.planner.max_iterations);
-    planner.set_observer([&] { search.report(planner.iterations(), tree.size(), flights.statistics().rejections); });
-    planner.solve(ompl::base::PlannerTerminationCondition([&] { return search.is_over(); }));
+    }
 
-    record.wall_s = search.seconds();
-    record.iterations = planner.iterations();
-    record.edges_simulated = flights.statistics().edges;
-    record.simulated_s = static_cast<double>(flights.statistics().ticks) * model.tick().tick_s;
-    record.states_checked = flights.statistics().states_checked;
-    record.rejected = flights.statistics().rejected;
+    void account(std::uint64_t iterations) {
+        SearchRecord& record = solution.planning;
+        record.wall_s = search.seconds();
+        record.iterations = iterations;
+        record.edges_simulated = flights.statistics().edges;
+        record.simulated_s = static_cast<double>(flights.statistics().ticks) * model.tick().tick_s;
+        record.states_checked = flights.statistics().states_checked;
+        record.rejected = flights.statistics().rejected;
+    }
+
+    const Problem& problem;
+    const FlightModel& model;
+    Solution& solution;
+    Search search;
+    planning::SearchSpace space;
+    planning::Random random;
+    planning::PlannedFlights flights;
+};
+
+/// OMPL's planners over controls.
+void search_by_controls(FlightSearch& common) {
+    const PlannerSettings& settings = common.problem.planner;
+    planning::SteeredFlights flights(common.problem, common.space, common.flights);
+    planning::ControlHooks hooks;
+    hooks.is_over = [&](std::uint64_t iteration) {
+        const planning::FlightStatistics& flown = common.flights.statistics();
+        common.search.report(iteration, flown.edges, flown.rejections);
+        return common.search.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
+    };
+    hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
+        return common.accept(plan, cost, iteration);
+    };
+    planning::ControlResult result =
+        planning::plan_by_controls(settings.algorithm, settings.seed, flights, common.random, hooks);
+    common.account(result.iterations);
+    common.solution.status = result.status;
+    common.solution.plan = std::move(result.plan);
+    common.solution.cost = result.cost;
+}
+
+/// The tree of flights.
+void search_by_flights(FlightSearch& common) {
+    planning::FlightTree tree(common.problem, common.model, common.space, common.flights);
+    planning::QueryCounts counts;
+    const planning::QuietOmpl quiet;
+    const auto information = planning::make_space_information(common.space, common.random, 0.1, counts);
+    planning::FlightTreePlanner planner(information, common.problem, tree, common.space, common.flights, common.random,
+                                        [&](const planning::Candidate& candidate) {
+                                            return common.accept(candidate.plan, candidate.cost, candidate.iteration);
+                                        });
+    planner.set_max_iterations(common.problem.planner.max_iterations);
+    planner.set_observer(
+        [&] { common.search.report(planner.iterations(), tree.size(), common.flights.statistics().rejections); });
+    planner.solve(ompl::base::PlannerTerminationCondition([&] { return common.search.is_over(); }));
+
+    common.account(planner.iterations());
+    Solution& solution = common.solution;
     if (planner.incumbent()) {
         solution.status = Status::solved;
         solution.plan = planner.incumbent()->plan;
@@ -167,10 +209,6 @@ void search_by_flights(const Problem& problem, const FlightModel& model, const S
 }
 
 }  // namespace
-
-std::span<const AlgorithmInfo> algorithms() {
-    return algorithm_table;
-}
 
 std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
     return std::make_shared<const FlightModel>(problem.robot, problem.plane,
@@ -204,7 +242,8 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
             map = options.map ? options.map : model->make_map(problem.bounds, options.threads, {}, options.map_cache);
             solution.planning.map_wall_s = clock.seconds();
         }
-        search_by_flights(problem, *model, options, map.get(), solution);
+        FlightSearch common(problem, *model, options, map.get(), solution);
+        problem.planner.algorithm == "rrt-star" ? search_by_flights(common) : search_by_controls(common);
     }
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
         solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning.flight_wall_s);

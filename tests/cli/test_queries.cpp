@@ -111,6 +111,10 @@ TEST_CASE("Planners are listed for people and for programs") {
     for (const auto& planner : planners) {
         CHECK(text.find(planner.at("name").get<std::string>()) != std::string::npos);
         CHECK(planner.contains("kind"));
-        CHECK(planner.contains("parameters"));
+        CHECK_FALSE(planner.at("variants").empty());
+        for (const auto& parameter : planner.at("parameters")) {
+            CHECK(text.find(parameter.at("name").get<std::string>()) != std::string::npos);
+            CHECK(parameter.at("value").is_number());
+        }
     }
 }

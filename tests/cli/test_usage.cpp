@@ -56,6 +56,8 @@ TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
         {"solve", open_air, "--margin", "99"},
         {"solve", open_air, "--variant", "mp-arm-adda"},
         {"solve", open_air, "--algorithm", "magic"},
+        {"solve", open_air, "--algorithm", "bit-star"},
+        {"solve", open_air, "--algorithm", "rrt", "--variant", "mp-arm"},
         {"solve", open_air, "--objective", ""},
         {"solve", open_air, "--threads", "0"},
         {"solve", open_air, "--threads", "many"},

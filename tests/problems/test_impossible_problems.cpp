@@ -91,7 +91,7 @@ TEST_CASE("a problem built in code is judged by the same ranges as a file") {
     CHECK(problem_faults(problem).empty());
     problem.start.x_m = std::numeric_limits<double>::quiet_NaN();
     problem.robot.arm.length_m = -1;
-    problem.planner.algorithm = "rrt";
+    problem.planner.algorithm = "magic";
     const std::vector<Fault> faults = problem_faults(problem);
     REQUIRE(faults.size() == 3);
     CHECK(faults[0].key == "robot.arm.length_m");

@@ -132,7 +132,11 @@ const Edit edits[] = {
      "problem.yaml:16:20: planner.variant is 'mp-arm-aad': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you "
      "mean 'mp-arm-ada'?"},
     {"algorithm: rrt-star", "algorithm: rrt_star",
-     "problem.yaml:16:43: planner.algorithm is 'rrt_star': expected rrt-star; did you mean 'rrt-star'?"},
+     "problem.yaml:16:43: planner.algorithm is 'rrt_star': expected one of rrt-star, rrt-connect, informed-rrt-star, "
+     "bit-star, rrt, sst, kpiece1 or est; did you mean 'rrt-star'?"},
+    {"algorithm: rrt-star", "algorithm: bit-star",
+     "problem.yaml:16:43: planner.algorithm is 'bit-star', which does not plan for mp-arm-ada: expected rrt-star, rrt, "
+     "sst, kpiece1 or est; did you mean 'rrt-star'?"},
     {"objective: energy", "objective: comfort",
      "problem.yaml:16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance, or a "
      "group "

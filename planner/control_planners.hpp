@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "downwash/planner/random.hpp"
+#include "downwash/planner/steered_flights.hpp"
+
+namespace downwash::planning {
+
+/// How a search over controls ended.
+struct ControlResult {
+    Status status = Status::none;
+    std::optional<Plan> plan;
+    double cost = 0;
+    std::uint64_t iterations = 0;
+};
+
+/// What a search over controls is told and asked while it runs.
+struct ControlHooks {
+    /// Asked before every iteration.
+    std::function<bool(std::uint64_t iteration)> is_over;
+    /// Asked about every better plan; false discards it and the search goes on.
+    std::function<bool(const Plan& plan, double cost, std::uint64_t iteration)> accept;
+};
+
+/// OMPL's planners over controls on steered flights: `rrt`, `sst`, `kpiece1` or `est`. An iteration is one turn of the
+/// planner's own loop. `sst` goes on for better plans; the others end with the first that is accepted.
+[[nodiscard]] ControlResult plan_by_controls(std::string_view algorithm, std::uint32_t seed,
+                                             const SteeredFlights& flights, Random& random, const ControlHooks& hooks);
+
+}  // namespace downwash::planning

@@ -1,0 +1,147 @@
+#include "downwash/planner/steered_flights.hpp"
+
+#include <cstring>
+#include <span>
+#include <stdexcept>
+
+#include "downwash/planner/solve.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// A flight may close from so far away [m], the arm's turn counted as way.
+constexpr double closing_range_m = 0.5;
+
+bool same_bytes(const FlightState& a, const FlightState& b) {
+    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
+}
+
+bool is_at_rest(const ReferencePoint& point) {
+    return point.velocity[0] == 0 && point.velocity[1] == 0 && point.velocity[2] == 0;
+}
+
+}  // namespace
+
+SteeredFlights::SteeredFlights(const Problem& problem, const SearchSpace& space, PlannedFlights& flights)
+    : problem_(problem), space_(space), flights_(flights), steps_(flights.limits(), flights.model().tick().tick_s) {}
+
+FlightPoint SteeredFlights::start() const {
+    FlightPoint point;
+    point.vehicle = start_state(flights_.model(), problem_.start);
+    point.reference = reference_at(problem_.start);
+    point.rest = steps_.rest_of(point.reference);
+    return point;
+}
+
+FlightPoint SteeredFlights::resting_at(const Configuration& c) const {
+    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
+    const double u[4] = {};
+    FlightPoint point;
+    point.vehicle = flights_.model().state_at(q, u);
+    point.reference = at_rest(c);
+    point.rest = c;
+    return point;
+}
+
+FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[3]) const {
+    FlightPoint next = from;
+    next.reference = steps_.after(from.reference, velocity);
+    next.rest = steps_.rest_of(next.reference);
+    next.ticks = from.ticks + steps_.ticks();
+    next.is_valid = false;
+    if (static_cast<double>(next.ticks) + steps_.braking_ticks(next.reference) > static_cast<double>(most_plan_ticks)) {
+        flights_.count_rejection("too_long");
+        return next;
+    }
+    if (!space_.is_inside(next.rest)) {  // it could only stop, or turn, outside
+        flights_.count_rejection(FlightFault::bounds);
+        return next;
+    }
+    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), flights_.model().tick().tick_s);
+    FlightJob job{from.vehicle, {{segment}}};
+    flights_.fly(std::span(&job, 1));
+    next.vehicle = job.end();
+    next.is_valid = job.fault() == FlightFault::none;
+    if (next.is_valid) {
+        next.cost = flights_.cost_after(from.cost, from.vehicle, job.legs.front());
+    }
+    return next;
+}
+
+bool SteeredFlights::is_worth_closing(const FlightPoint& point) const {
+    return space_.goal_distance_m(point.rest) <= closing_range_m;
+}
+
+std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
+    // The middle of the goal leaves the whole tolerance to the flight; where an obstacle stands there, its rim does
+    // too.
+    Configuration goal = space_.moved_into_goal(from.rest, 0);
+    if (!space_.is_valid(goal)) {
+        goal = space_.moved_into_goal(from.rest, usable_tolerance_share);
+    }
+    if (const FlightFault fault = space_.fault_at(goal); fault != FlightFault::none) {
+        flights_.count_rejection(fault);
+        return std::nullopt;
+    }
+    const double* place = from.reference.position;
+    goal = space_.seen_from({place[0], place[1], place[2]}, goal);
+    const ReferenceSegment segment = flights_.fastest_segment(from.reference, at_rest(goal));
+    if (segment.ticks() > most_plan_ticks - from.ticks) {
+        flights_.count_rejection("too_long");
+        return std::nullopt;
+    }
+    FlightJob job{from.vehicle, {{segment}, flights_.hold_leg(segment.to())}, flights_.judged_ticks()};
+    flights_.fly(std::span(&job, 1));
+    if (job.fault() != FlightFault::none) {
+        return std::nullopt;
+    }
+    const double arrived = flights_.cost_after(from.cost, from.vehicle, job.legs[0]);
+    const double cost = flights_.cost_after(arrived, job.legs[0].end, job.legs[1]);
+    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.end(), cost};
+}
+
+Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
+    Plan plan;
+    plan.tick_s = flights_.model().tick().tick_s;
+    for (const FlightPoint& point : points) {
+        plan.reference.push_back({point.ticks, point.reference});
+    }
+    if (end) {
+        plan.reference.push_back(end->goal);
+    } else {
+        constexpr double still[3] = {0, 0, 0};
+        while (!is_at_rest(plan.reference.back().point)) {
+            const ReferenceKnot& last = plan.reference.back();
+            plan.reference.push_back({last.tick + steps_.ticks(), steps_.after(last.point, still)});
+        }
+    }
+    for (const ReferenceKnot& knot : plan.reference) {
+        plan.waypoints.push_back({knot.point.position[0], knot.point.position[1], knot.point.position[2]});
+    }
+    return plan;
+}
+
+void SteeredFlights::verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const {
+    FlightRules rules = flights_.rules();
+    rules.is_over = {};
+    FlightState state = points.front().vehicle;
+    const auto fly_and_compare = [&](const ReferenceSegment& segment, const FlightState& expected) {
+        const SegmentFlight flight = fly(flights_.model(), flights_.map(), rules, segment, state);
+        if (flight.fault != FlightFault::none || !same_bytes(state, expected)) {
+            throw std::logic_error("flying a plan did not reproduce the planner's flight bit for bit");
+        }
+    };
+    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
+        const ReferenceKnot& from = plan.reference[i - 1];
+        const ReferenceKnot& to = plan.reference[i];
+        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan.tick_s);
+        if (i < points.size()) {
+            fly_and_compare(segment, points[i].vehicle);
+        } else {
+            static_cast<void>(fly(flights_.model(), flights_.map(), rules, segment, state));
+        }
+    }
+    fly_and_compare(flights_.hold_leg(end.goal.point).segment, end.end);
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+
+using namespace downwash;
+
+namespace {
+
+constexpr Variant variants[] = {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
+
+Problem with(Variant variant, std::string_view algorithm, Problem problem = test::ceiling_problem()) {
+    problem.planner.variant = variant;
+    problem.planner.algorithm = algorithm;
+    problem.planner.max_iterations = 5000;
+    return problem;
+}
+
+/// Every combination that exists.
+template <class Check>
+void for_all(const Check& check) {
+    for (const Variant variant : variants) {
+        for (const AlgorithmInfo& algorithm : algorithms()) {
+            if (algorithm.plans_for(variant)) {
+                CAPTURE(name_of(variant), algorithm.name);
+                check(variant, algorithm);
+            }
+        }
+    }
+}
+
+bool same_bytes(const Plan& a, const Plan& b) {
+    return std::equal(a.reference.begin(), a.reference.end(), b.reference.begin(), b.reference.end(),
+                      [](const ReferenceKnot& k, const ReferenceKnot& l) {
+                          return k.tick == l.tick && std::memcmp(&k.point, &l.point, sizeof(k.point)) == 0;
+                      });
+}
+
+}  // namespace
+
+TEST_CASE("every algorithm solves an easy problem, twice with the same bytes") {
+    for_all([](Variant variant, const AlgorithmInfo& algorithm) {
+        SolveOptions first;
+        first.stop_at_first_solution = true;
+        const Problem problem = with(variant, algorithm.name);
+        const Solution a = solve(problem, first);
+        const Solution b = solve(problem, first);
+        REQUIRE(a.status == Status::solved);
+        REQUIRE(b.status == Status::solved);
+        CHECK(same_bytes(*a.plan, *b.plan));
+        CHECK(a.cost == b.cost);
+        CHECK(a.planning.iterations == b.planning.iterations);
+        CHECK(a.planning.rejected == b.planning.rejected);
+        CHECK(a.execution_cost == b.execution_cost);
+        CHECK(a.planning.first_solution_wall_s);
+        CHECK(a.planning.improvements.back().cost == Approx(a.cost));
+        CHECK(a.plan->waypoints.size() == a.plan->reference.size());
+        CHECK(a.plan->waypoints.front().x_m == problem.start.x_m);
+        if (variant == Variant::mp_arm_ada) {
+            CHECK(a.execution->outcome == Outcome::ok);
+            CHECK(a.execution_cost == Approx(a.cost).epsilon(0.01));
+        }
+    });
+}
+
+TEST_CASE("no algorithm calls a walled problem solved") {
+    for_all([](Variant variant, const AlgorithmInfo& algorithm) {
+        Problem problem = with(variant, algorithm.name, test::walled_problem());
+        problem.planner.max_iterations = 200;
+        const Solution solution = solve(problem);
+        CHECK(solution.status != Status::solved);
+        CHECK(solution.planning.improvements.empty());
+        CHECK_FALSE(solution.planning.first_solution_wall_s);
+        CHECK(solution.planning.iterations <= 200);
+        if (solution.plan) {
+            CHECK(solution.execution->outcome != Outcome::ok);
+            const ReferencePoint& end = solution.plan->reference.back().point;
+            CHECK(end.velocity[0] == 0);
+            CHECK(end.velocity[1] == 0);
+            CHECK(end.velocity[2] == 0);
+        }
+    });
+}
+
+TEST_CASE("planners over controls keep the limits of the reference at every tick") {
+    SolveOptions first;
+    first.stop_at_first_solution = true;
+    for (const char* algorithm : {"rrt", "sst", "kpiece1", "est"}) {
+        CAPTURE(algorithm);
+        const Problem problem = with(Variant::mp_arm_da, algorithm);
+        const Solution solution = solve(problem, first);
+        REQUIRE(solution.execution);
+        double speed = 0;
+        double acceleration = 0;
+        double arm_rate = 0;
+        for (const FlightRow& row : solution.execution->rows) {
+            speed = std::max(speed, std::hypot(row.reference.velocity[0], row.reference.velocity[1]));
+            acceleration =
+                std::max(acceleration, std::hypot(row.reference.acceleration[0], row.reference.acceleration[1]));
+            arm_rate = std::max(arm_rate, std::abs(row.reference.velocity[2]));
+        }
+        CHECK(speed <= 1.0 * 1.003);
+        CHECK(acceleration <= 0.5 * 1.003);
+        CHECK(arm_rate <= 0.7853981633974483 * 1.003);
+        CHECK(speed > 0.3);
+    }
+}
+
+TEST_CASE("SST goes on for better plans, whatever the objective") {
+    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+        CAPTURE(name_of(objective));
+        Problem problem = with(Variant::mp_arm_da, "sst");
+        problem.planner.objective = objective;
+        problem.planner.max_iterations = objective == Objective::clearance ? 1500 : 4000;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        const auto& improvements = solution.planning.improvements;
+        for (std::size_t i = 1; i < improvements.size(); ++i) {
+            CHECK(improvements[i].cost < improvements[i - 1].cost);
+        }
+        CHECK(improvements.back().cost == solution.cost);
+        CHECK(solution.planning.iterations == *problem.planner.max_iterations);
+    }
+}
+
+TEST_CASE("an algorithm that does not plan for the variant is refused, and another is named") {
+    const auto fault_of = [](Variant variant, std::string_view algorithm) {
+        const std::vector<Fault> faults = problem_faults(with(variant, algorithm));
+        REQUIRE(faults.size() == 1);
+        CHECK(faults.front().key == "planner.algorithm");
+        return faults.front().message;
+    };
+    CHECK(
+        fault_of(Variant::mp_arm, "kpiece1") ==
+        "is 'kpiece1', which does not plan for mp-arm: expected rrt-star, rrt-connect, informed-rrt-star or bit-star; "
+        "did you mean 'rrt-star'?");
+    CHECK(fault_of(Variant::mp_arm_da, "bit-star") ==
+          "is 'bit-star', which does not plan for mp-arm-da: expected rrt-star, rrt, sst, kpiece1 or est; did you mean "
+          "'rrt-star'?");
+    int refused = 0;
+    for (const Variant variant : variants) {
+        for (const AlgorithmInfo& algorithm : algorithms()) {
+            refused += problem_faults(with(variant, algorithm.name)).empty() ? 0 : 1;
+        }
+    }
+    CHECK(refused == 10);  // four planners over controls for mp-arm, three geometric ones for each of the others
+    CHECK_THROWS_AS(static_cast<void>(solve(with(Variant::mp_arm, "est"))), InputError);
+}
+
+TEST_CASE("a start that already meets the goal needs no search, whatever plans") {
+    for (const char* algorithm : {"rrt", "sst", "kpiece1", "est"}) {
+        CAPTURE(algorithm);
+        Problem problem = with(Variant::mp_arm_ada, algorithm);
+        problem.start.x_m = 3 - 0.6;
+        problem.start.z_m = 4.8 - 1.2 * 0.8660254037844386;
+        problem.start.arm_rad = -1.0471975511965976;
+        problem.planner.max_iterations = 1;
+        const Solution solution = solve(problem);
+        REQUIRE(solution.status == Status::solved);
+        CHECK(solution.execution->outcome == Outcome::ok);
+        CHECK(solution.execution->duration_s < problem.goal.hold_s + 1);
+    }
+}
+
+TEST_CASE("planners over controls start in motion, and refuse flights of absurd length") {
+    for (const char* algorithm : {"rrt", "sst", "kpiece1", "est"}) {
+        CAPTURE(algorithm);
+        Problem problem = with(Variant::mp_arm_da, algorithm);
+        problem.start.vx_m_s = 0.5;
+        problem.start.x_m = problem.bounds.x_high_m - 0.1;  // it cannot but overshoot the bound
+        problem.planner.max_iterations = 50;
+        CHECK(solve(problem).status != Status::solved);
+
+        problem = with(Variant::mp_arm_da, algorithm);
+        problem.motion.max_speed_m_s = 1e-9;
+        problem.planner.max_iterations = 50;
+        CHECK(solve(problem).status != Status::solved);
+    }
+}
