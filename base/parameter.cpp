@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <type_traits>
 #include <utility>
 
 #include "downwash/base/text.hpp"
@@ -108,6 +110,35 @@ std::optional<std::string> text_fault(const ParameterInfo& info, const std::stri
     return std::nullopt;
 }
 
+/// A list of which every element stands for itself, so that none is superfluous.
+template <class Element>
+std::optional<std::string> set_fault(const ParameterInfo& info, const std::vector<Element>& elements) {
+    if (elements.empty()) {
+        return "is empty: expected " + expectation(info);
+    }
+    std::set<Element> seen;
+    for (const Element& element : elements) {
+        if (!seen.insert(element).second) {
+            if constexpr (std::is_same_v<Element, std::string>) {
+                return "has '" + excerpt(element) + "' twice: expected " + expectation(info);
+            } else {
+                return "has " + to_text(static_cast<double>(element)) + " twice: expected " + expectation(info);
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> texts_fault(const ParameterInfo& info, const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+        if (info.kind == ParameterKind::choices &&
+            std::find(info.names.begin(), info.names.end(), text) == info.names.end()) {
+            return "has '" + excerpt(text) + "': expected " + expectation(info) + did_you_mean(text, info.names);
+        }
+    }
+    return set_fault(info, texts);
+}
+
 template <class Numbers>
 std::optional<std::string> first_fault(const ParameterInfo& info, const Numbers& numbers) {
     for (const double number : numbers) {
@@ -164,7 +195,8 @@ std::string expectation(const ParameterInfo& info) {
     switch (info.kind) {
         case ParameterKind::group:
             return std::string("a group of keys") + (info.can_be_none ? " or none" : "") +
-                   (info.can_be_file ? " or the path of a file" : "");
+                   (info.can_be_file ? " or the path of a file" : "") +
+                   (info.can_be_integers ? " or a list of whole numbers" + range : "");
         case ParameterKind::list:
             return "a list";
         case ParameterKind::number:
@@ -186,6 +218,12 @@ std::string expectation(const ParameterInfo& info) {
             return "a list of [x, y, z]" + in_unit + range;
         case ParameterKind::file:
             return "the path of a file";
+        case ParameterKind::samples:
+            return "a list of different numbers" + in_unit + range + or_null;
+        case ParameterKind::choices:
+            return "a list of " + joined_names(info.names);
+        case ParameterKind::files:
+            return "a list of paths of files";
     }
     return "";
 }
@@ -206,7 +244,15 @@ std::optional<std::string> value_fault(const ParameterInfo& info, const Value& v
         return text_fault(info, *text);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-        return first_fault(info, *numbers);
+        const auto fault = info.kind == ParameterKind::samples ? set_fault(info, *numbers) : std::nullopt;
+        return fault ? fault : first_fault(info, *numbers);
+    }
+    if (const auto* integers = std::get_if<std::vector<std::uint64_t>>(&value)) {
+        const auto fault = set_fault(info, *integers);
+        return fault ? fault : first_fault(info, std::vector<double>(integers->begin(), integers->end()));
+    }
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
+        return texts_fault(info, *texts);
     }
     if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
         for (const Vector3& point : *points) {

@@ -15,8 +15,8 @@
 namespace downwash {
 
 /// What a parameter can hold, in SI units and radians. Empty (monostate) stands for `null`.
-using Value =
-    std::variant<std::monostate, bool, double, std::uint64_t, std::string, std::vector<double>, std::vector<Vector3>>;
+using Value = std::variant<std::monostate, bool, double, std::uint64_t, std::string, std::vector<double>,
+                           std::vector<Vector3>, std::vector<std::uint64_t>, std::vector<std::string>>;
 
 /// What is written behind a key of a problem file.
 enum class ParameterKind {
@@ -31,6 +31,9 @@ enum class ParameterKind {
     numbers,     ///< a list of as many numbers as `elements`
     points,      ///< a list of [x, y, z]
     file,        ///< path of a file whose content belongs to the model, relative to the file that names it
+    samples,     ///< a list of numbers, as many as one likes
+    choices,     ///< a list of some of `names`
+    files,       ///< a list of paths, relative to the file that names them
 };
 
 /// Values that make sense, in the unit of the file (degrees where the key says so). Empty: no limit.
@@ -46,13 +49,14 @@ struct ParameterInfo {
     ParameterKind kind = ParameterKind::group;
     std::string description;
     bool required = false;
-    bool nullable = false;      ///< `null` may be written: the value is not set
-    bool exclusive = false;     ///< exactly one of the exclusive keys of a group must be there
-    bool can_be_none = false;   ///< a group that `none` switches off
-    bool can_be_file = false;   ///< a group that may be the path of a file instead
-    bool can_be_group = false;  ///< a choice that may be a group of keys instead
+    bool nullable = false;         ///< `null` may be written: the value is not set
+    bool exclusive = false;        ///< exactly one of the exclusive keys of a group must be there
+    bool can_be_none = false;      ///< a group that `none` switches off
+    bool can_be_file = false;      ///< a group that may be the path of a file instead
+    bool can_be_group = false;     ///< a choice that may be a group of keys instead
+    bool can_be_integers = false;  ///< a group that may be a list of whole numbers instead
     Range range;
-    std::vector<std::string_view> names;     ///< of a choice
+    std::vector<std::string_view> names;     ///< of a choice, or of choices
     std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
     std::string condition;                   ///< when it applies, for people; empty: always
 };

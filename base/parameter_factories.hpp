@@ -103,6 +103,58 @@ Parameter<Model> choice(std::string_view path, std::string_view description, con
     return parameter;
 }
 
+/// A list of texts out of a list.
+template <class Model, class Member>
+Parameter<Model> choices(std::string_view path, std::string_view description,
+                         const std::vector<std::string_view>& names, Member member) {
+    auto parameter = member_row<Model, std::vector<std::string>>(ParameterKind::choices, path, description, member);
+    parameter.names = names;
+    return parameter;
+}
+
+/// A list of enumerations whose values have names.
+template <class Model, class Enumeration, class Member>
+Parameter<Model> choices(std::string_view path, std::string_view description,
+                         std::vector<std::pair<Enumeration, std::string_view>> named, Member member) {
+    auto parameter = row<Model>(ParameterKind::choices, path, description);
+    for (const auto& entry : named) {
+        parameter.names.push_back(entry.second);
+    }
+    parameter.get = [member, named](const Model& model, std::size_t i) {
+        std::vector<std::string> names;
+        for (const Enumeration value : at(member, model, i)) {
+            const auto found =
+                std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.first == value; });
+            names.emplace_back(found == named.end() ? std::string_view() : found->second);
+        }
+        return Value(std::move(names));
+    };
+    parameter.set = [member, named](Model& model, std::size_t i, const Value& value) {
+        auto& values = at(member, model, i);
+        values.clear();
+        for (const std::string& name : std::get<std::vector<std::string>>(value)) {
+            for (const auto& entry : named) {
+                if (entry.second == name) {
+                    values.push_back(entry.first);
+                }
+            }
+        }
+    };
+    return parameter;
+}
+
+/// A list of numbers, as many as one likes.
+template <class Model, class Member>
+Parameter<Model> samples(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::vector<double>>(ParameterKind::samples, path, description, member);
+}
+
+/// A list of paths of files.
+template <class Model, class Member>
+Parameter<Model> files(std::string_view path, std::string_view description, Member member) {
+    return member_row<Model, std::vector<std::string>>(ParameterKind::files, path, description, member);
+}
+
 /// An enumeration whose values have names.
 template <class Model, class Enumeration, class Member>
 Parameter<Model> choice(std::string_view path, std::string_view description,

@@ -15,6 +15,7 @@ void add_check(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
 void add_aeromap(CLI::App& program, Action& action);
+void add_bench(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 
 /// The same for the commands of `aeromap`.
@@ -25,5 +26,9 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action);
 void add_aeromap_compare(CLI::App& aeromap, Action& action);
 void add_aeromap_hold(CLI::App& aeromap, Action& action);
 void add_aeromap_plot(CLI::App& aeromap, Action& action);
+
+/// And for those of `bench`.
+void add_bench_run(CLI::App& bench, Action& action);
+void add_bench_report(CLI::App& bench, Action& action);
 
 }  // namespace downwash::cli

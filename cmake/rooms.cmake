@@ -27,6 +27,7 @@ find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Ceres REQUIRED)
+find_package(SQLite3 REQUIRED)
 
 # OMPL 1.5.2 exports no target of its own.
 add_library(downwash_ompl INTERFACE)

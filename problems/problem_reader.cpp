@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "downwash/planner/problem_parameters.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -17,7 +18,9 @@ std::string joined(const std::vector<LocatedFault>& faults) {
     return text;
 }
 
-void throw_faults(const problems::TreeReader& reader) {
+using ProblemTreeReader = problems::TreeReader<Problem>;
+
+void throw_faults(const ProblemTreeReader& reader) {
     if (auto faults = reader.faults(); !faults.empty()) {
         throw ProblemFileError(std::move(faults));
     }
@@ -33,27 +36,27 @@ ProblemFileError::ProblemFileError(std::vector<LocatedFault> faults)
     : std::runtime_error(joined(faults)), faults_(std::move(faults)) {}
 
 Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust) {
-    problems::TreeReader reader;
-    reader.read_problem_file(file);
+    ProblemTreeReader reader(problem_parameters());
+    reader.read(file);
     if (adjust) {
         reader.adjust(adjust);
     }
     if (!reader.is_full()) {
-        reader.add(further_problem_faults(reader.problem(), reader.faulty_keys()));
+        reader.add(further_problem_faults(reader.model(), reader.faulty_keys()));
     }
     throw_faults(reader);
-    return reader.problem();
+    return reader.model();
 }
 
 Robot read_robot(const std::filesystem::path& file) {
-    problems::TreeReader reader;
-    reader.read_robot_file(file);
+    ProblemTreeReader reader(problem_parameters());
+    reader.read(file, "robot");
     if (!reader.is_full()) {
         FaultyKeys faulty = reader.faulty_keys();
-        reader.add(further_robot_faults(reader.problem().robot, faulty, "robot."));
+        reader.add(further_robot_faults(reader.model().robot, faulty, "robot."));
     }
     throw_faults(reader);
-    return reader.problem().robot;
+    return reader.model().robot;
 }
 
 void set_parameter(Problem& problem, std::string_view key, std::string_view text) {

@@ -5,6 +5,7 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/campaign.hpp"
 #include "downwash/problems/key_remedy.hpp"
 #include "downwash/problems/value_reader.hpp"
 
@@ -17,33 +18,17 @@ std::string joined(const std::string& key, std::string_view name) {
     return key.empty() ? std::string(name) : key + "." + std::string(name);
 }
 
-/// Names of the keys of which exactly one must be there; empty when there are none.
-std::vector<std::string_view> alternatives_of(std::string_view path) {
-    std::vector<std::string_view> names;
-    for (const Parameter<Problem>* child : problem_parameters().children(path)) {
-        if (child->exclusive) {
-            names.push_back(last_name(child->path));
-        }
-    }
-    return names;
-}
-
 }  // namespace
 
-void TreeReader::read_problem_file(const std::filesystem::path& file) {
-    read_document(file, "", {});
-}
-
-void TreeReader::read_robot_file(const std::filesystem::path& file) {
-    read_document(file, "robot", {});
-}
-
-bool TreeReader::is_full() const noexcept {
+template <class Model>
+bool TreeReader<Model>::is_full() const noexcept {
     return found_.size() >= most_faults;
 }
 
 /// Reads a file as the group `path`; what keeps it from being read at all is reported where it was referred from.
-void TreeReader::read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from) {
+template <class Model>
+void TreeReader<Model>::read_document(const std::filesystem::path& file, const std::string& path,
+                                      const Mark& referred_from) {
     const std::size_t referring_file = file_;
     std::string text;
     try {
@@ -74,8 +59,9 @@ void TreeReader::read_document(const std::filesystem::path& file, const std::str
 }
 
 /// Under another schema every key could mean something else: nothing more is read then.
-bool TreeReader::has_supported_schema(const YamlNode& root, const std::string& path) {
-    const Parameter<Problem>& schema = *problem_parameters().find(joined(path, "schema"));
+template <class Model>
+bool TreeReader<Model>::has_supported_schema(const YamlNode& root, const std::string& path) {
+    const Parameter<Model>& schema = *table_.find(joined(path, "schema"));
     const std::string expected(schema.names[0]);
     for (const auto& [key, value] : root.entries) {
         if (key->kind != YamlNode::Kind::scalar || key->text != "schema") {
@@ -93,7 +79,8 @@ bool TreeReader::has_supported_schema(const YamlNode& root, const std::string& p
     return true;
 }
 
-void TreeReader::read_keys(Group group) {
+template <class Model>
+void TreeReader<Model>::read_keys(Group group) {
     find_entries(group);
     for (const std::string& name : group.meant) {
         if (!group.entries.contains(name)) {
@@ -101,7 +88,7 @@ void TreeReader::read_keys(Group group) {
         }
     }
     check_alternatives(group);
-    for (const Parameter<Problem>* parameter : problem_parameters().children(group.path)) {
+    for (const Parameter<Model>* parameter : table_.children(group.path)) {
         const std::string name(last_name(parameter->path));
         if (group.entries.contains(name)) {
             read_parameter(group, *parameter);
@@ -111,14 +98,15 @@ void TreeReader::read_keys(Group group) {
     }
 }
 
-void TreeReader::find_entries(Group& group) {
+template <class Model>
+void TreeReader<Model>::find_entries(Group& group) {
     for (std::size_t i = 0; i < group.node.entries.size() && !is_full(); ++i) {
         const YamlNode& key = *group.node.entries[i].first;
         if (key.kind != YamlNode::Kind::scalar) {
             report(key.mark, "a key of " + shown(group.key) + " is no word: expected 'name: value'");
             continue;
         }
-        if (problem_parameters().find(joined(group.path, key.text)) == nullptr) {
+        if (table_.find(joined(group.path, key.text)) == nullptr) {
             report_unknown(group, key.text, key.mark);
             continue;
         }
@@ -131,9 +119,10 @@ void TreeReader::find_entries(Group& group) {
     }
 }
 
-void TreeReader::report_unknown(Group& group, const std::string& name, const Mark& mark) {
+template <class Model>
+void TreeReader<Model>::report_unknown(Group& group, const std::string& name, const Mark& mark) {
     std::vector<std::string_view> valid;
-    for (const Parameter<Problem>* child : problem_parameters().children(group.path)) {
+    for (const Parameter<Model>* child : table_.children(group.path)) {
         valid.push_back(last_name(child->path));
     }
     const KeyRemedy remedy = remedy_for_key(name, valid);
@@ -143,17 +132,21 @@ void TreeReader::report_unknown(Group& group, const std::string& name, const Mar
     group.meant.insert(group.meant.end(), remedy.meant.begin(), remedy.meant.end());
 }
 
-void TreeReader::check_alternatives(const Group& group) {
-    const std::vector<std::string_view> names = alternatives_of(group.path);
-    if (names.empty()) {
-        return;
-    }
+template <class Model>
+void TreeReader<Model>::check_alternatives(const Group& group) {
+    std::vector<std::string_view> names;
     std::vector<std::size_t> given;
-    for (const Parameter<Problem>* child : problem_parameters().children(group.path)) {
-        const auto entry = group.entries.find(last_name(child->path));
-        if (child->exclusive && entry != group.entries.end()) {
+    for (const Parameter<Model>* child : table_.children(group.path)) {
+        if (!child->exclusive) {
+            continue;
+        }
+        names.push_back(last_name(child->path));
+        if (const auto entry = group.entries.find(names.back()); entry != group.entries.end()) {
             given.push_back(entry->second);
         }
+    }
+    if (names.empty()) {
+        return;
     }
     std::sort(given.begin(), given.end());
     if (given.empty() && group.meant.empty()) {
@@ -168,14 +161,15 @@ void TreeReader::check_alternatives(const Group& group) {
     }
 }
 
-void TreeReader::read_parameter(const Group& group, const Parameter<Problem>& parameter) {
+template <class Model>
+void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model>& parameter) {
     const std::string name(last_name(parameter.path));
     const auto& [key_node, value] = group.node.entries[group.entries.at(name)];
     const std::string key = joined(group.key, name);
     if (is_full()) {
         return;
     }
-    if (parameter.applies && !parameter.applies(problem_, group.index)) {
+    if (parameter.applies && !parameter.applies(model_, group.index)) {
         fault(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
         return;
     }
@@ -198,28 +192,32 @@ void TreeReader::read_parameter(const Group& group, const Parameter<Problem>& pa
     }
 }
 
-void TreeReader::read_group(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
-                            const Mark& key_mark, std::size_t index) {
+template <class Model>
+void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
+                                   const Mark& key_mark, std::size_t index) {
     const bool is_text = node.kind == YamlNode::Kind::scalar;
     if (node.kind == YamlNode::Kind::map) {
-        parameter.resize(problem_, index, 1);
+        parameter.resize(model_, index, 1);
         read_keys({parameter.path, key, index, key_mark, node, {}, {}});
     } else if (is_text && parameter.can_be_none && node.text == "none") {
-        parameter.resize(problem_, index, 0);
+        parameter.resize(model_, index, 0);
     } else if (is_text && parameter.can_be_file && !node.text.empty()) {
         read_document(path_from_here(node.text), parameter.path, node.mark);
+    } else if (node.kind == YamlNode::Kind::list && parameter.can_be_integers) {
+        read_single(parameter, node, key, index);
     } else {
         fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter));
     }
 }
 
-void TreeReader::read_list(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key) {
+template <class Model>
+void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key) {
     if (node.kind != YamlNode::Kind::list) {
         const std::string remedy = node.kind == YamlNode::Kind::null ? "; write [] for none" : "";
         fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
         return;
     }
-    parameter.resize(problem_, 0, node.items.size());
+    parameter.resize(model_, 0, node.items.size());
     for (std::size_t i = 0; i < node.items.size() && !is_full(); ++i) {
         const YamlNode& item = *node.items[i];
         const std::string item_key = key + "[" + std::to_string(i) + "]";
@@ -232,14 +230,19 @@ void TreeReader::read_list(const Parameter<Problem>& parameter, const YamlNode& 
     }
 }
 
-void TreeReader::read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
-                             std::size_t index) {
+template <class Model>
+void TreeReader<Model>::read_single(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
+                                    std::size_t index) {
     try {
         Value value = read_value(parameter, node);
         if (parameter.kind == ParameterKind::file && std::holds_alternative<std::string>(value)) {
             value = path_from_here(std::get<std::string>(value)).string();
+        } else if (parameter.kind == ParameterKind::files) {
+            for (std::string& path : std::get<std::vector<std::string>>(value)) {
+                path = path_from_here(path).string();
+            }
         }
-        parameter.set(problem_, index, value);
+        parameter.set(model_, index, value);
     } catch (const YamlError& error) {
         fault(key, error.mark, error.what());
     } catch (const InputError& error) {
@@ -250,11 +253,13 @@ void TreeReader::read_single(const Parameter<Problem>& parameter, const YamlNode
 }
 
 /// A path in the file that is read now, which it is relative to. Symbolic links forbid to shorten it.
-std::filesystem::path TreeReader::path_from_here(const std::string& path) const {
+template <class Model>
+std::filesystem::path TreeReader<Model>::path_from_here(const std::string& path) const {
     return files_[file_].path.parent_path() / path;
 }
 
-void TreeReader::fault(const std::string& key, const Mark& mark, const std::string& message) {
+template <class Model>
+void TreeReader<Model>::fault(const std::string& key, const Mark& mark, const std::string& message) {
     if (is_full()) {
         return;
     }
@@ -263,14 +268,16 @@ void TreeReader::fault(const std::string& key, const Mark& mark, const std::stri
     report(mark, subject.empty() ? message : subject + " " + message);
 }
 
-void TreeReader::report(const Mark& mark, const std::string& message) {
+template <class Model>
+void TreeReader<Model>::report(const Mark& mark, const std::string& message) {
     if (!is_full()) {
         found_.push_back({{file_, mark}, message});
     }
 }
 
 /// A key as the file that is read now would write it.
-std::string TreeReader::shown(const std::string& key) const {
+template <class Model>
+std::string TreeReader<Model>::shown(const std::string& key) const {
     const std::string& root = files_[file_].root;
     if (root.empty() || !key.starts_with(root)) {
         return key;
@@ -278,7 +285,8 @@ std::string TreeReader::shown(const std::string& key) const {
     return key.size() == root.size() ? "" : key.substr(root.size() + 1);
 }
 
-TreeReader::Place TreeReader::place_of(std::string_view key) const {
+template <class Model>
+typename TreeReader<Model>::Place TreeReader<Model>::place_of(std::string_view key) const {
     while (!key.empty()) {
         const auto found = places_.find(key);
         if (found != places_.end()) {
@@ -290,7 +298,8 @@ TreeReader::Place TreeReader::place_of(std::string_view key) const {
     return {0, {}};
 }
 
-void TreeReader::add(const std::vector<Fault>& faults) {
+template <class Model>
+void TreeReader<Model>::add(const std::vector<Fault>& faults) {
     for (const Fault& later : faults) {
         const Place place = place_of(later.key);
         file_ = place.file;
@@ -299,7 +308,8 @@ void TreeReader::add(const std::vector<Fault>& faults) {
     file_ = 0;
 }
 
-std::vector<LocatedFault> TreeReader::faults() const {
+template <class Model>
+std::vector<LocatedFault> TreeReader<Model>::faults() const {
     std::vector<Found> ordered = found_;
     std::stable_sort(ordered.begin(), ordered.end(), [](const Found& a, const Found& b) {
         return std::tie(a.place.file, a.place.mark.line, a.place.mark.column) <
@@ -313,5 +323,8 @@ std::vector<LocatedFault> TreeReader::faults() const {
     }
     return located;
 }
+
+template class TreeReader<Problem>;
+template class TreeReader<Campaign>;
 
 }  // namespace downwash::problems

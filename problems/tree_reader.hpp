@@ -7,23 +7,27 @@
 #include <vector>
 
 #include "downwash/base/checks.hpp"
-#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/base/parameter_table.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/yaml_document.hpp"
 
 namespace downwash::problems {
 
-/// Fills a problem from YAML trees along the parameter table and remembers where every key stands.
+/// Fills a model from YAML trees along its parameter table and remembers where every key stands.
+/// Made for Problem and Campaign.
+template <class Model>
 class TreeReader {
  public:
-    /// Reads a whole problem, and its robot where that is. Faults are collected, never thrown.
-    void read_problem_file(const std::filesystem::path& file);
-    /// Reads a robot file into the problem's robot.
-    void read_robot_file(const std::filesystem::path& file);
+    /// @pre the table outlives this reader
+    explicit TreeReader(const ParameterTable<Model>& table) : table_(table) {}
 
-    [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
-    void adjust(const std::function<void(Problem&)>& change) { change(problem_); }
-    /// Keys of which the problem has no trustworthy value.
+    /// Reads a file, and those that it refers to. Faults are collected, never thrown.
+    /// @param group key of the group that the file holds ("robot"); empty for the whole model
+    void read(const std::filesystem::path& file, const std::string& group = "") { read_document(file, group, {}); }
+
+    [[nodiscard]] const Model& model() const noexcept { return model_; }
+    void adjust(const std::function<void(Model&)>& change) { change(model_); }
+    /// Keys of which the model has no trustworthy value.
     [[nodiscard]] const FaultyKeys& faulty_keys() const noexcept { return faulty_; }
     /// More faults are not worth reading.
     [[nodiscard]] bool is_full() const noexcept;
@@ -40,7 +44,7 @@ class TreeReader {
     /// A group that is being read.
     struct Group {
         std::string path;   ///< in the table; "path[]" within a list
-        std::string key;    ///< in the problem
+        std::string key;    ///< in the model
         std::size_t index;  ///< of the list element that it is in
         Mark mark;
         const YamlNode& node;
@@ -54,11 +58,11 @@ class TreeReader {
     void find_entries(Group& group);
     void report_unknown(Group& group, const std::string& name, const Mark& mark);
     void check_alternatives(const Group& group);
-    void read_parameter(const Group& group, const Parameter<Problem>& parameter);
-    void read_group(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+    void read_parameter(const Group& group, const Parameter<Model>& parameter);
+    void read_group(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
                     const Mark& key_mark, std::size_t index);
-    void read_list(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key);
-    void read_single(const Parameter<Problem>& parameter, const YamlNode& node, const std::string& key,
+    void read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key);
+    void read_single(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
                      std::size_t index);
 
     [[nodiscard]] std::filesystem::path path_from_here(const std::string& path) const;
@@ -68,7 +72,8 @@ class TreeReader {
     [[nodiscard]] std::string shown(const std::string& key) const;
     [[nodiscard]] Place place_of(std::string_view key) const;
 
-    Problem problem_;
+    const ParameterTable<Model>& table_;
+    Model model_;
     FaultyKeys faulty_;
     struct File {
         std::filesystem::path path;

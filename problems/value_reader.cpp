@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "downwash/base/text.hpp"
 #include "downwash/problems/number_text.hpp"
@@ -69,20 +70,26 @@ const std::string& read_text(const ParameterInfo& info, const YamlNode& node) {
     return node.text;
 }
 
-std::vector<double> read_numbers(const ParameterInfo& info, const YamlNode& node, std::size_t count) {
+/// The elements of a list, each read by `read_element`.
+template <class Read>
+auto read_elements(const ParameterInfo& info, const YamlNode& node, const Read& read_element) {
     if (node.kind != YamlNode::Kind::list) {
         refuse(info, node);
     }
-    if (node.items.size() != count) {
+    std::vector<std::remove_cvref_t<decltype(read_element(info, node))>> elements;
+    for (const YamlNode::Pointer& item : node.items) {
+        elements.push_back(read_element(info, *item));
+    }
+    return elements;
+}
+
+std::vector<double> read_numbers(const ParameterInfo& info, const YamlNode& node, std::size_t count) {
+    if (node.kind == YamlNode::Kind::list && node.items.size() != count) {
         throw YamlError(node.mark, "has " + std::to_string(node.items.size()) +
                                        (node.items.size() == 1 ? " element" : " elements") + ": expected " +
                                        expectation(info));
     }
-    std::vector<double> numbers;
-    for (const YamlNode::Pointer& item : node.items) {
-        numbers.push_back(read_number(info, *item));
-    }
-    return numbers;
+    return read_elements(info, node, read_number);
 }
 
 std::vector<Vector3> read_points(const ParameterInfo& info, const YamlNode& node) {
@@ -117,7 +124,16 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
             return read_numbers(info, node, info.elements.size());
         case ParameterKind::points:
             return read_points(info, node);
+        case ParameterKind::samples:
+            return read_elements(info, node, read_number);
+        case ParameterKind::choices:
+        case ParameterKind::files:
+            return read_elements(info, node, read_text);
         case ParameterKind::group:
+            if (info.can_be_integers) {
+                return read_elements(info, node, read_integer);
+            }
+            break;
         case ParameterKind::list:
             break;
     }

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "../aero_map/scenes.hpp"
-#include "../wilson.hpp"
+#include "downwash/bench/statistics.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -215,8 +215,8 @@ class Campaign {
         if (n == 0) {
             return "none";
         }
-        const auto [low, high] = wilson(hits, n);
-        return fmt::format("{}/{} [{:.1f}, {:.1f} %]", hits, n, 100 * low, 100 * high);
+        const Share found = share_of(hits, n);
+        return fmt::format("{}/{} [{:.1f}, {:.1f} %]", hits, n, 100 * found.low, 100 * found.high);
     }
     static void print_row(const Count& c, const std::string& disturbance) {
         fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n", c.problem, c.robot, disturbance, share(c.grew, c.unstable),

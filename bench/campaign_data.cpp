@@ -1,0 +1,38 @@
+#include "downwash/bench/campaign_data.hpp"
+
+#include <array>
+
+#include "downwash/base/text.hpp"
+
+namespace downwash::bench {
+
+std::string Experiment::name() const {
+    return problem + ", " + std::string(downwash::name_of(objective));
+}
+
+std::string PlannerSetup::name() const {
+    return std::string(downwash::name_of(variant)) + " " + algorithm +
+           (margin_m ? ", margin " + to_text(*margin_m) + " m" : "");
+}
+
+std::string_view name_of(RunStatus status) {
+    constexpr std::array<std::string_view, run_status_count> names{"none", "approximate", "solved", "impossible",
+                                                                   "error"};
+    return names[static_cast<std::size_t>(status)];
+}
+
+std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
+    std::string text;
+    for (std::size_t i = 0; i < seeds.size();) {
+        std::size_t end = i + 1;
+        while (end < seeds.size() && seeds[end] == seeds[end - 1] + 1 && seeds[end] != 0) {
+            ++end;
+        }
+        text += (text.empty() ? "" : " ") + std::to_string(seeds[i]);
+        text += end - i > 1 ? "-" + std::to_string(seeds[end - 1]) : "";
+        i = end;
+    }
+    return text;
+}
+
+}  // namespace downwash::bench

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/campaign.hpp"
+
+namespace downwash::bench {
+
+/// What all planners of a campaign are compared on: a problem under an objective.
+struct Experiment {
+    std::string problem;
+    Objective objective = Objective::energy;
+
+    [[nodiscard]] std::string name() const;  ///< "bridge_inspection, energy"
+    bool operator==(const Experiment&) const = default;
+};
+
+/// One way to plan.
+struct PlannerSetup {
+    Variant variant = Variant::mp_arm_ada;
+    std::string algorithm;
+    std::optional<double> margin_m;  ///< empty: the problem's own
+
+    [[nodiscard]] std::string name() const;  ///< "mp-arm-ada rrt-star, margin 0.1 m"
+    bool operator==(const PlannerSetup&) const = default;
+};
+
+/// Everything that is going to run, and what the figures depend on.
+struct CampaignPlan {
+    /// What a file of results is begun with and may only be continued with: limits, hashes of problems, program,
+    /// machine.
+    std::vector<std::pair<std::string, std::string>> settings;
+    std::vector<Experiment> experiments;
+    std::vector<PlannerSetup> planners;
+    std::vector<std::uint32_t> seeds;
+    std::vector<CampaignExpectation> expectations;
+    std::vector<std::string> left_out;   ///< combinations that do not exist, and why
+    std::optional<double> time_limit_s;  ///< of one search; empty: none
+    bool stop_at_first_solution = false;
+
+    [[nodiscard]] std::size_t run_count() const { return experiments.size() * planners.size() * seeds.size(); }
+};
+
+/// What a run came to.
+enum class RunStatus : std::uint8_t {
+    none,         ///< no plan within the limits
+    approximate,  ///< a plan that does not reach the goal
+    solved,
+    impossible,  ///< the problem cannot be planned with this setup: a start within the margin, ...
+    error,       ///< the program failed
+};
+inline constexpr std::size_t run_status_count = 5;
+
+/// "none", "approximate", "solved", "impossible", "error".
+[[nodiscard]] std::string_view name_of(RunStatus status);
+
+/// The flight of a reported plan with direct aerodynamics, hold included.
+struct FlightFigures {
+    Outcome outcome = Outcome::ok;
+    double cost = 0;
+    double energy_j = 0;
+    double duration_s = 0;
+    double length_m = 0;
+    double min_clearance_m = 0;  ///< infinity without obstacles
+    double goal_error_m = 0;
+};
+
+/// One search and the flight of its plan.
+struct Run {
+    std::size_t experiment = 0;  ///< in the campaign's plan
+    std::size_t planner = 0;
+    std::uint32_t seed = 0;
+    RunStatus status = RunStatus::none;
+    double wall_s = 0;                       ///< from the parsed problem with its map to the answer, flight included
+    std::optional<double> first_solution_s;  ///< from the start of planning to the first accepted plan
+    std::optional<double> cost;              ///< the planner's own figure
+    std::uint64_t iterations = 0;
+    std::uint64_t edges_simulated = 0;
+    std::uint64_t states_checked = 0;
+    double simulated_s = 0;
+    std::uint64_t discarded = 0;  ///< aware plans whose direct flight failed, so that they were not reported
+    std::vector<Improvement> improvements;
+    std::map<std::string, std::uint64_t> refusals;
+    std::optional<FlightFigures> flight;  ///< of a solved run
+    std::string fault;                    ///< why it is impossible or failed
+
+    [[nodiscard]] bool has_failed_flight() const {
+        return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;
+    }
+    [[nodiscard]] bool holds() const { return status == RunStatus::solved && flight && flight->outcome == Outcome::ok; }
+};
+
+/// A campaign as far as it has come.
+struct CampaignResults {
+    CampaignPlan plan;
+    std::vector<Run> runs;
+};
+
+/// "1-200 300": seeds that follow each other as one range.
+[[nodiscard]] std::string seeds_text(const std::vector<std::uint32_t>& seeds);
+
+}  // namespace downwash::bench

@@ -1,0 +1,304 @@
+#include "downwash/bench/campaign_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "downwash/base/text.hpp"
+
+namespace downwash::bench {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// The runs of one planner on one experiment by place of their seeds; nullptr where a seed is still to be run.
+using Row = std::vector<const Run*>;
+
+Spread spread_of(const std::vector<double>& values) {
+    return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75), quantile(values, 0.95)};
+}
+
+/// A figure of every attempted seed.
+template <class Figure>
+std::vector<double> figures_of(const Row& row, const Figure& figure) {
+    std::vector<double> values;
+    for (const Run* run : row) {
+        if (run != nullptr) {
+            values.push_back(figure(*run));
+        }
+    }
+    return values;
+}
+
+template <class Test>
+Share share_in(const Row& row, const Test& test) {
+    const std::vector<double> hits = figures_of(row, [&](const Run& run) { return test(run) ? 1.0 : 0.0; });
+    return share_of(static_cast<std::size_t>(std::count(hits.begin(), hits.end(), 1.0)), hits.size());
+}
+
+double first_solution_s(const Run& run) {
+    return run.status == RunStatus::solved ? run.first_solution_s.value_or(infinite) : infinite;
+}
+
+double flown_cost(const Run& run) {
+    return run.holds() ? run.flight->cost : infinite;
+}
+
+double cost_at(const Run& run, double time_s) {
+    double cost = infinite;
+    for (const Improvement& improvement : run.improvements) {
+        if (improvement.wall_s <= time_s) {
+            cost = improvement.cost;
+        }
+    }
+    return cost;
+}
+
+/// Why a run has no flight that held; empty when it has.
+std::string cause_of(const Run& run) {
+    if (run.holds()) {
+        return "";
+    }
+    if (run.status == RunStatus::solved) {
+        return run.flight ? std::string(downwash::name_of(run.flight->outcome)) : "not flown";
+    }
+    return std::string(name_of(run.status));
+}
+
+/// The cause and, where there is one, what the program said.
+std::string full_cause_of(const Run& run) {
+    const std::string cause = cause_of(run);
+    return run.fault.empty() ? cause : cause + ": " + run.fault;
+}
+
+std::vector<std::pair<std::string, std::size_t>> failures_by_cause(const Row& row) {
+    std::map<std::string, std::size_t> counts;
+    for (const Run* run : row) {
+        if (run != nullptr && !run->holds()) {
+            ++counts[cause_of(*run)];
+        }
+    }
+    std::vector<std::pair<std::string, std::size_t>> ordered(counts.begin(), counts.end());
+    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    return ordered;
+}
+
+double least_clearance_m(const Row& row) {
+    double least = std::numeric_limits<double>::quiet_NaN();
+    for (const Run* run : row) {
+        if (run != nullptr && run->flight) {
+            least = std::fmin(least, run->flight->min_clearance_m);
+        }
+    }
+    return least;
+}
+
+std::vector<CostAt> cost_over_time(const CampaignPlan& plan, const Row& row) {
+    std::vector<CostAt> costs;
+    for (const double time_s : cost_moments_s) {
+        if (!plan.stop_at_first_solution && time_s <= plan.time_limit_s.value_or(infinite)) {
+            costs.push_back({time_s, spread_of(figures_of(row, [&](const Run& run) { return cost_at(run, time_s); }))});
+        }
+    }
+    return costs;
+}
+
+CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_t planner, const Row& row) {
+    CellFigures cell;
+    cell.experiment = experiment;
+    cell.planner = planner;
+    cell.missing = static_cast<std::size_t>(std::count(row.begin(), row.end(), nullptr));
+    cell.solved = share_in(row, [](const Run& run) { return run.status == RunStatus::solved; });
+    cell.failed_flights = share_in(row, [](const Run& run) { return run.has_failed_flight(); });
+    cell.held = share_in(row, [](const Run& run) { return run.holds(); });
+    cell.failures_by_cause = failures_by_cause(row);
+    cell.first_solution_s = spread_of(figures_of(row, first_solution_s));
+    cell.answer_s = spread_of(figures_of(row, [](const Run& run) { return run.wall_s; }));
+    cell.flown_cost = spread_of(figures_of(row, flown_cost));
+    cell.least_clearance_m = least_clearance_m(row);
+    for (const Run* run : row) {
+        cell.discarded += run != nullptr ? run->discarded : 0;
+    }
+    cell.cost_over_time = cost_over_time(plan, row);
+    return cell;
+}
+
+template <class Figure>
+PlannerComparison comparison(std::size_t experiment, std::pair<std::size_t, std::size_t> planners, const char* measure,
+                             const Row& first, const Row& second, const Figure& figure) {
+    std::vector<double> a, b;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        if (first[i] != nullptr && second[i] != nullptr) {
+            a.push_back(figure(*first[i]));
+            b.push_back(figure(*second[i]));
+        }
+    }
+    return {experiment, planners.first, planners.second, measure, compare_pairs(a, b)};
+}
+
+/// Every two planners with the same margin.
+void compare_planners(const std::vector<Row>& rows, CampaignReport& report) {
+    const std::vector<PlannerSetup>& planners = report.plan.planners;
+    for (std::size_t e = 0; e < report.plan.experiments.size(); ++e) {
+        for (std::size_t p = 0; p < planners.size(); ++p) {
+            for (std::size_t q = p + 1; q < planners.size(); ++q) {
+                if (planners[p].margin_m != planners[q].margin_m) {
+                    continue;
+                }
+                const Row& first = rows[e * planners.size() + p];
+                const Row& second = rows[e * planners.size() + q];
+                report.comparisons.push_back(
+                    comparison(e, {p, q}, "first solution [s]", first, second, first_solution_s));
+                if (!report.plan.stop_at_first_solution) {
+                    report.comparisons.push_back(comparison(e, {p, q}, "flown cost", first, second, flown_cost));
+                }
+            }
+        }
+    }
+}
+
+void list_failures(const std::vector<Row>& rows, CampaignReport& report) {
+    for (std::size_t cell = 0; cell < rows.size(); ++cell) {
+        const std::size_t begin = report.failures.size();
+        for (const Run* run : rows[cell]) {
+            if (run == nullptr || run->holds()) {
+                continue;
+            }
+            const std::string cause = full_cause_of(*run);
+            const auto same = std::find_if(report.failures.begin() + static_cast<std::ptrdiff_t>(begin),
+                                           report.failures.end(), [&](const auto& f) { return f.cause == cause; });
+            if (same == report.failures.end()) {
+                report.failures.push_back(
+                    {report.cells[cell].experiment, report.cells[cell].planner, cause, {run->seed}});
+            } else {
+                same->seeds.push_back(run->seed);
+            }
+        }
+    }
+}
+
+/// The least of the margins from which on every cell of that margin and above, of the given experiments, saw no flight
+/// fail.
+std::optional<double> safe_margin(const CampaignReport& report, const std::vector<std::size_t>& planners,
+                                  std::optional<std::size_t> experiment) {
+    std::map<double, bool> is_safe;  // by margin
+    for (const CellFigures& cell : report.cells) {
+        const bool counts = !experiment || cell.experiment == *experiment;
+        if (counts && std::count(planners.begin(), planners.end(), cell.planner) > 0) {
+            const auto [safe, is_new] = is_safe.emplace(*report.plan.planners[cell.planner].margin_m, true);
+            safe->second = safe->second && cell.failed_flights.hits == 0 && cell.missing == 0;
+        }
+    }
+    std::optional<double> least;
+    for (auto margin = is_safe.rbegin(); margin != is_safe.rend() && margin->second; ++margin) {
+        least = margin->first;
+    }
+    return least;
+}
+
+void find_margins(CampaignReport& report) {
+    const std::vector<PlannerSetup>& planners = report.plan.planners;
+    std::vector<std::pair<Variant, std::string>> kinds;
+    for (const PlannerSetup& planner : planners) {
+        const std::pair kind(planner.variant, planner.algorithm);
+        if (planner.margin_m && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+            kinds.push_back(kind);
+        }
+    }
+    for (const auto& kind : kinds) {
+        std::vector<std::size_t> of_kind;
+        for (std::size_t p = 0; p < planners.size(); ++p) {
+            if (planners[p].variant == kind.first && planners[p].algorithm == kind.second) {
+                of_kind.push_back(p);
+            }
+        }
+        if (of_kind.size() < 2) {
+            continue;
+        }
+        MarginFinding finding{kind.first, kind.second, safe_margin(report, of_kind, {}), {}, {}};
+        for (std::size_t e = 0; e < report.plan.experiments.size(); ++e) {
+            finding.safe_margin_of_experiment_m.push_back(safe_margin(report, of_kind, e));
+            for (const CellFigures& cell : report.cells) {
+                if (finding.safe_margin_m && cell.experiment == e &&
+                    std::count(of_kind.begin(), of_kind.end(), cell.planner) > 0 &&
+                    planners[cell.planner].margin_m == finding.safe_margin_m) {
+                    finding.solved_when_safe.push_back(cell.solved);
+                }
+            }
+        }
+        report.margins.push_back(std::move(finding));
+    }
+}
+
+std::string count_text(const Share& share) {
+    return std::to_string(share.hits) + "/" + std::to_string(share.attempts);
+}
+
+std::string seconds_text(double seconds) {
+    return std::isfinite(seconds) ? to_text(seconds, 3) + " s" : "none";
+}
+
+void judge(CampaignReport& report) {
+    for (const CampaignExpectation& bar : report.plan.expectations) {
+        for (const CellFigures& cell : report.cells) {
+            if (report.plan.planners[cell.planner].variant != bar.variant) {
+                continue;
+            }
+            const auto add = [&](const std::string& what, const std::string& found, bool is_kept) {
+                report.bars.push_back({cell.experiment, cell.planner, what, found, is_kept && cell.missing == 0});
+            };
+            if (bar.solved_ratio) {
+                const auto least = *bar.solved_ratio * static_cast<double>(cell.solved.attempts);
+                add("solved share at least " + to_text(*bar.solved_ratio), count_text(cell.solved),
+                    static_cast<double>(cell.solved.hits) >= least * (1 - 1e-12));
+            }
+            if (bar.failed_flights) {
+                add("failed flights at most " + std::to_string(*bar.failed_flights), count_text(cell.failed_flights),
+                    cell.failed_flights.hits <= *bar.failed_flights);
+            }
+            if (bar.first_solution_median_s) {
+                add("median first solution within " + seconds_text(*bar.first_solution_median_s),
+                    seconds_text(cell.first_solution_s.median),
+                    cell.first_solution_s.median <= *bar.first_solution_median_s);
+            }
+            if (bar.first_solution_95_s) {
+                add("95 % of first solutions within " + seconds_text(*bar.first_solution_95_s),
+                    seconds_text(cell.first_solution_s.most), cell.first_solution_s.most <= *bar.first_solution_95_s);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+bool CampaignReport::keeps_its_bars() const {
+    return std::all_of(bars.begin(), bars.end(), [](const BarResult& bar) { return bar.is_kept; });
+}
+
+CampaignReport report_of(const CampaignResults& results) {
+    CampaignReport report;
+    report.plan = results.plan;
+    report.done = results.runs.size();
+    const std::size_t planners = report.plan.planners.size();
+    std::map<std::uint32_t, std::size_t> place_of_seed;
+    for (const std::uint32_t seed : report.plan.seeds) {
+        place_of_seed.emplace(seed, place_of_seed.size());
+    }
+    std::vector<Row> rows(report.plan.experiments.size() * planners, Row(report.plan.seeds.size(), nullptr));
+    for (const Run& run : results.runs) {
+        if (const auto place = place_of_seed.find(run.seed); place != place_of_seed.end()) {
+            rows.at(run.experiment * planners + run.planner).at(place->second) = &run;
+        }
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        report.cells.push_back(cell_of(report.plan, i / planners, i % planners, rows[i]));
+    }
+    compare_planners(rows, report);
+    list_failures(rows, report);
+    find_margins(report);
+    judge(report);
+    return report;
+}
+
+}  // namespace downwash::bench

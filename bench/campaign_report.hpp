@@ -1,0 +1,98 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/statistics.hpp"
+
+namespace downwash::bench {
+
+/// Quantiles over all attempted seeds, those without a value counting as infinite. NaN without seeds.
+struct Spread {
+    double low_quartile = 0, median = 0, high_quartile = 0, most = 0;  ///< `most`: the 95 % quantile
+};
+
+/// The planner's best cost so far at a moment of the search.
+struct CostAt {
+    double time_s = 0;
+    Spread cost;
+};
+
+/// One planner on one experiment, over every seed that was attempted.
+struct CellFigures {
+    std::size_t experiment = 0, planner = 0;  ///< in the campaign's plan
+    std::size_t missing = 0;                  ///< seeds that are still to be run
+    Share solved;
+    Share failed_flights;  ///< solved, and the plan's flight with direct aerodynamics was not `ok`
+    Share held;            ///< solved, and it was
+    std::vector<std::pair<std::string, std::size_t>> failures_by_cause;  ///< outcomes and statuses, most frequent first
+    Spread first_solution_s;
+    Spread answer_s;               ///< wall time of the whole run
+    Spread flown_cost;             ///< of the flights that held
+    double least_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
+    std::uint64_t discarded = 0;
+    std::vector<CostAt> cost_over_time;  ///< empty where searches stop at the first solution
+};
+
+/// Two planners on equal seeds.
+struct PlannerComparison {
+    std::size_t experiment = 0, first = 0, second = 0;
+    std::string measure;  ///< "first solution [s]", "flown cost"
+    Pairing pairing;
+};
+
+/// Seeds of one planner and experiment that have no flight that held, for one cause.
+struct FailureGroup {
+    std::size_t experiment = 0, planner = 0;
+    std::string cause;
+    std::vector<std::uint32_t> seeds;
+};
+
+/// How a variant and algorithm fare under margins that grow.
+struct MarginFinding {
+    Variant variant = Variant::mp_arm;
+    std::string algorithm;
+    /// The least margin from which on no flight failed, whatever the problem; empty when there is none.
+    std::optional<double> safe_margin_m;
+    /// Solved shares at that margin by experiment; empty without one.
+    std::vector<Share> solved_when_safe;
+    /// The same for each experiment on its own.
+    std::vector<std::optional<double>> safe_margin_of_experiment_m;
+};
+
+/// A bar that the campaign sets, on one experiment and planner.
+struct BarResult {
+    std::size_t experiment = 0, planner = 0;
+    std::string bar;    ///< "solved at least 0.98"
+    std::string found;  ///< "197/200"
+    bool is_kept = false;
+};
+
+/// What a campaign came to, in figures.
+struct CampaignReport {
+    CampaignPlan plan;
+    std::size_t done = 0;
+    std::vector<CellFigures> cells;  ///< experiments outermost
+    std::vector<PlannerComparison> comparisons;
+    std::vector<MarginFinding> margins;  ///< empty unless the campaign sweeps margins
+    std::vector<FailureGroup> failures;
+    std::vector<BarResult> bars;
+
+    /// Whether every bar is kept; false too while runs are missing and there is a bar.
+    [[nodiscard]] bool keeps_its_bars() const;
+};
+
+/// Moments at which costs are compared [s].
+inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 3, 10};
+
+[[nodiscard]] CampaignReport report_of(const CampaignResults& results);
+
+/// The report as a Markdown document.
+[[nodiscard]] std::string markdown_of(const CampaignReport& report);
+
+/// The same figures as JSON, null for what is infinite or missing.
+[[nodiscard]] std::string json_of(const CampaignReport& report);
+
+}  // namespace downwash::bench

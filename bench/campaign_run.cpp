@@ -1,0 +1,252 @@
+#include "downwash/bench/campaign_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "downwash/base/parallel.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/base/version.hpp"
+#include "downwash/bench/campaign_store.hpp"
+#include "downwash/bench/machine.hpp"
+#include "downwash/problems/problem_writer.hpp"
+
+namespace downwash::bench {
+namespace {
+
+template <class Values, class Text>
+std::string listed(const Values& values, const Text& text) {
+    std::string list;
+    for (const auto& value : values) {
+        list += (list.empty() ? "" : " ") + std::string(text(value));
+    }
+    return list;
+}
+
+std::string bar_text(const CampaignExpectation& bar) {
+    std::string text(downwash::name_of(bar.variant));
+    const auto add = [&](const char* name, const std::optional<double>& value) {
+        text += value ? std::string(" ") + name + " " + to_text(*value) : "";
+    };
+    add("solved_ratio", bar.solved_ratio);
+    add("failed_flights", bar.failed_flights ? std::optional(static_cast<double>(*bar.failed_flights)) : std::nullopt);
+    add("first_solution_median_s", bar.first_solution_median_s);
+    add("first_solution_95_s", bar.first_solution_95_s);
+    return text;
+}
+
+int job_count(const Campaign& campaign) {
+    return static_cast<int>(campaign.jobs.value_or(std::min(processor_count(), 256U)));
+}
+
+std::optional<double> time_limit_of(const Campaign& campaign) {
+    return campaign.max_iterations ? campaign.time_limit_s
+                                   : std::optional(campaign.time_limit_s.value_or(default_time_limit_s));
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign& read) {
+    const Campaign& c = read.campaign;
+    const auto number_or_none = [](const std::optional<double>& value) { return value ? to_text(*value) : "none"; };
+    std::vector<std::pair<std::string, std::string>> settings{
+        {"campaign", c.name},
+        {"description", c.description.empty() ? "none" : c.description},
+        {"version", std::string(version())},
+        {"commit", std::string(source_commit())},
+        {"host", host_name()},
+        {"processor", processor()},
+        {"jobs", std::to_string(job_count(c))},
+        {"time_limit_s", number_or_none(time_limit_of(c))},
+        {"max_iterations", c.max_iterations ? std::to_string(*c.max_iterations) : "none"},
+        {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
+        {"variants", listed(c.variants, [](Variant v) { return downwash::name_of(v); })},
+        {"algorithms", listed(c.algorithms, [](const std::string& a) { return a; })},
+        {"objectives", listed(c.objectives, [](Objective o) { return downwash::name_of(o); })},
+        {"margins_m", c.margins_m ? listed(*c.margins_m, [](double m) { return to_text(m); }) : "each problem's own"},
+        {"seeds", seeds_text(c.seeds.all())}};
+    for (const Problem& problem : read.problems) {
+        settings.emplace_back("problem " + problem.name, problem_sha256(problem));
+    }
+    for (std::size_t i = 0; i < c.expect.size(); ++i) {
+        settings.emplace_back("expectation " + std::to_string(i + 1), bar_text(c.expect[i]));
+    }
+    return settings;
+}
+
+void apply(const Experiment& experiment, const PlannerSetup& planner, Problem& problem) {
+    problem.planner.variant = planner.variant;
+    problem.planner.algorithm = planner.algorithm;
+    problem.planner.objective = experiment.objective;
+    if (planner.margin_m) {
+        problem.planner.safety_margin_m = *planner.margin_m;
+    }
+}
+
+/// Why a variant cannot be planned with an algorithm; empty when it can.
+std::string fault_of_combination(Problem problem, const PlannerSetup& planner) {
+    apply({problem.name, Objective::energy}, planner, problem);
+    for (const Fault& fault : problem_faults(problem)) {
+        if (fault.key == "planner.algorithm" || fault.key == "planner.variant") {
+            return planner.name() + ": " + fault.key + " " + fault.message;
+        }
+    }
+    return "";
+}
+
+/// One run that is still to be done.
+struct Task {
+    std::size_t experiment, planner;
+    std::uint32_t seed;
+};
+
+/// Seeds outermost, so that a campaign that was interrupted has as many of everything.
+std::vector<Task> missing_runs(const CampaignPlan& plan, const CampaignStore& store) {
+    std::vector<Task> tasks;
+    for (const std::uint32_t seed : plan.seeds) {
+        for (std::size_t e = 0; e < plan.experiments.size(); ++e) {
+            for (std::size_t p = 0; p < plan.planners.size(); ++p) {
+                if (!store.has(e, p, seed)) {
+                    tasks.push_back({e, p, seed});
+                }
+            }
+        }
+    }
+    return tasks;
+}
+
+void fill(Run& run, const Solution& solution) {
+    const SearchRecord& record = solution.planning;
+    run.status = static_cast<RunStatus>(solution.status);
+    run.first_solution_s = record.first_solution_wall_s;
+    run.iterations = record.iterations;
+    run.edges_simulated = record.edges_simulated;
+    run.states_checked = record.states_checked;
+    run.simulated_s = record.simulated_s;
+    run.improvements = record.improvements;
+    run.refusals = record.rejected;
+    if (const auto discarded = record.rejected.find("direct_flight"); discarded != record.rejected.end()) {
+        run.discarded = discarded->second;
+    }
+    if (solution.status != Status::solved) {
+        return;
+    }
+    run.cost = solution.cost;
+    const Execution& flight = solution.execution.value();
+    run.flight = FlightFigures{flight.outcome,  solution.execution_cost, flight.energy_j,    flight.duration_s,
+                               flight.length_m, flight.min_clearance_m,  flight.goal_error_m};
+}
+
+static_assert(static_cast<int>(RunStatus::none) == static_cast<int>(Status::none));
+static_assert(static_cast<int>(RunStatus::approximate) == static_cast<int>(Status::approximate));
+static_assert(static_cast<int>(RunStatus::solved) == static_cast<int>(Status::solved));
+
+}  // namespace
+
+CampaignPlan plan_of(const ReadCampaign& read) {
+    const Campaign& c = read.campaign;
+    CampaignPlan plan;
+    plan.settings = settings_of(read);
+    for (const Problem& problem : read.problems) {
+        for (const Objective objective : c.objectives) {
+            plan.experiments.push_back({problem.name, objective});
+        }
+    }
+    for (const Variant variant : c.variants) {
+        for (const std::string& algorithm : c.algorithms) {
+            if (std::string fault = fault_of_combination(read.problems.at(0), {variant, algorithm, {}});
+                !fault.empty()) {
+                plan.left_out.push_back(std::move(fault));
+                continue;
+            }
+            if (!c.margins_m) {
+                plan.planners.push_back({variant, algorithm, {}});
+                continue;
+            }
+            for (const double margin_m : *c.margins_m) {
+                plan.planners.push_back({variant, algorithm, margin_m});
+            }
+        }
+    }
+    if (plan.planners.empty()) {
+        throw CampaignError("no variant of the campaign can be planned with any of its algorithms: " +
+                            plan.left_out.front());
+    }
+    plan.seeds = c.seeds.all();
+    plan.expectations = c.expect;
+    plan.time_limit_s = time_limit_of(c);
+    plan.stop_at_first_solution = c.stop_at_first_solution;
+    return plan;
+}
+
+Run attempt(Problem problem, const Experiment& experiment, const PlannerSetup& planner, std::uint32_t seed,
+            const SolveOptions& how) {
+    apply(experiment, planner, problem);
+    problem.planner.seed = seed;
+    Run run;
+    run.seed = seed;
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        fill(run, solve(problem, how));
+    } catch (const InputError& error) {
+        run.status = RunStatus::impossible;
+        run.fault = error.what();
+    } catch (const std::exception& error) {
+        run.status = RunStatus::error;
+        run.fault = error.what();
+    }
+    run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return run;
+}
+
+CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions& options) {
+    const CampaignPlan plan = plan_of(read);
+    CampaignStore store(options.out, plan, options.resumes);
+    const std::vector<Task> tasks = missing_runs(plan, store);
+    const int jobs = job_count(read.campaign);
+
+    std::vector<Problem> problems = read.problems;
+    std::vector<std::shared_ptr<const AeroMap>> maps;
+    for (Problem& problem : problems) {
+        problem.planner.time_limit_s = plan.time_limit_s;
+        problem.planner.max_iterations = read.campaign.max_iterations;
+        const bool needs_map = problem.aero.enabled && !tasks.empty() && !options.stop.stop_requested() &&
+                               std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
+                                   return planner.variant == Variant::mp_arm_ada;
+                               });
+        maps.push_back(needs_map ? make_flight_model(problem)->make_map(problem.bounds, jobs, {}, options.map_cache)
+                                 : nullptr);
+    }
+
+    std::mutex writing;
+    const std::size_t objectives = read.campaign.objectives.size();
+    const auto do_task = [&](std::size_t i) {
+        if (options.stop.stop_requested()) {
+            return;
+        }
+        const Task& task = tasks[i];
+        const std::size_t problem = task.experiment / objectives;
+        SolveOptions how;
+        how.stop = options.stop;
+        how.stop_at_first_solution = plan.stop_at_first_solution;
+        how.map = maps[problem];
+        Run run =
+            attempt(problems[problem], plan.experiments[task.experiment], plan.planners[task.planner], task.seed, how);
+        run.experiment = task.experiment;
+        run.planner = task.planner;
+        const std::scoped_lock lock(writing);
+        if (!options.stop.stop_requested()) {
+            store.add(run);
+        }
+    };
+    const double earlier = static_cast<double>(store.size());
+    run_parallel(tasks.size(), jobs, do_task, [&](double share) {
+        if (options.on_progress) {
+            options.on_progress((earlier + share * static_cast<double>(tasks.size())) /
+                                static_cast<double>(plan.run_count()));
+        }
+    });
+    return {plan.run_count(), store.size()};
+}
+
+}  // namespace downwash::bench

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <tuple>
+
+#include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/database.hpp"
+
+namespace downwash::bench {
+
+/// A folder's results cannot be begun, continued or read; what() says why and what to do.
+struct CampaignError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The name of the file that holds a campaign's results within its folder.
+inline constexpr const char* results_file = "campaign.db";
+
+/// The results of a campaign on disk: one SQLite file with the tables of OMPL's Planner Arena (experiments,
+/// plannerConfigs, enums, runs, progress) and our own. A run that was added is there whatever happens next.
+class CampaignStore {
+ public:
+    /// Begins the results of a campaign in a folder, or goes on with those that are there.
+    /// @param resumes allows to go on; without it results that are there already are refused
+    /// @throws CampaignError when they were begun with other settings, or another program is running the campaign
+    CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes);
+    ~CampaignStore();
+    CampaignStore(const CampaignStore&) = delete;
+    CampaignStore& operator=(const CampaignStore&) = delete;
+
+    /// Whether that run is there already.
+    [[nodiscard]] bool has(std::size_t experiment, std::size_t planner, std::uint32_t seed) const {
+        return done_.contains({experiment, planner, seed});
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return done_.size(); }
+
+    /// Adds a run and commits it. @throws DatabaseError when it cannot be written
+    void add(const Run& run);
+
+ private:
+    /// Holds a folder for this process.
+    class FolderLock {
+     public:
+        explicit FolderLock(const std::filesystem::path& folder);
+        ~FolderLock();
+        FolderLock(const FolderLock&) = delete;
+        FolderLock& operator=(const FolderLock&) = delete;
+
+     private:
+        int descriptor_;
+    };
+
+    FolderLock lock_;
+    Database database_;
+    std::set<std::tuple<std::size_t, std::size_t, std::uint32_t>> done_;
+};
+
+/// Reads what a campaign has left in a folder, finished or not.
+/// @throws CampaignError, DatabaseError
+[[nodiscard]] CampaignResults read_results(const std::filesystem::path& folder);
+
+}  // namespace downwash::bench

@@ -1,0 +1,128 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "downwash/bench/campaign_report.hpp"
+
+namespace downwash::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json share_json(const Share& share) {
+    return {{"hits", share.hits}, {"attempts", share.attempts}, {"low", share.low}, {"high", share.high}};
+}
+
+Json spread_json(const Spread& spread) {
+    return {{"25", number(spread.low_quartile)},
+            {"50", number(spread.median)},
+            {"75", number(spread.high_quartile)},
+            {"95", number(spread.most)}};
+}
+
+template <class T>
+Json optional_json(const std::optional<T>& value) {
+    return value ? Json(*value) : Json();
+}
+
+Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
+    Json causes = Json::object();
+    for (const auto& [cause, count] : cell.failures_by_cause) {
+        causes[cause] = count;
+    }
+    Json costs = Json::array();
+    for (const CostAt& at : cell.cost_over_time) {
+        costs.push_back({{"time_s", at.time_s}, {"cost", spread_json(at.cost)}});
+    }
+    const PlannerSetup& planner = plan.planners[cell.planner];
+    return {{"problem", plan.experiments[cell.experiment].problem},
+            {"objective", downwash::name_of(plan.experiments[cell.experiment].objective)},
+            {"planner", planner.name()},
+            {"variant", downwash::name_of(planner.variant)},
+            {"algorithm", planner.algorithm},
+            {"margin_m", optional_json(planner.margin_m)},
+            {"missing", cell.missing},
+            {"solved", share_json(cell.solved)},
+            {"failed_flights", share_json(cell.failed_flights)},
+            {"held", share_json(cell.held)},
+            {"failures_by_cause", causes},
+            {"first_solution_s", spread_json(cell.first_solution_s)},
+            {"whole_run_s", spread_json(cell.answer_s)},
+            {"flown_cost", spread_json(cell.flown_cost)},
+            {"least_clearance_m", number(cell.least_clearance_m)},
+            {"discarded", cell.discarded},
+            {"cost_over_time", costs}};
+}
+
+Json comparison_json(const CampaignPlan& plan, const PlannerComparison& comparison) {
+    const Pairing& pairs = comparison.pairing;
+    return {{"experiment", plan.experiments[comparison.experiment].name()},
+            {"first", plan.planners[comparison.first].name()},
+            {"second", plan.planners[comparison.second].name()},
+            {"measure", comparison.measure},
+            {"first_smaller", pairs.first_smaller},
+            {"second_smaller", pairs.second_smaller},
+            {"equal", pairs.equal},
+            {"sign_test_p", pairs.sign_test_p},
+            {"pairs", pairs.finite},
+            {"median_difference", number(pairs.median_difference)},
+            {"signed_rank_p", pairs.finite == 0 ? Json() : Json(pairs.signed_rank_p)}};
+}
+
+Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
+    Json problems = Json::array();
+    for (std::size_t e = 0; e < plan.experiments.size(); ++e) {
+        problems.push_back({{"experiment", plan.experiments[e].name()},
+                            {"safe_margin_m", optional_json(finding.safe_margin_of_experiment_m[e])},
+                            {"solved_when_safe_everywhere",
+                             e < finding.solved_when_safe.size() ? share_json(finding.solved_when_safe[e]) : Json()}});
+    }
+    return {{"variant", downwash::name_of(finding.variant)},
+            {"algorithm", finding.algorithm},
+            {"safe_margin_m", optional_json(finding.safe_margin_m)},
+            {"experiments", problems}};
+}
+
+}  // namespace
+
+std::string json_of(const CampaignReport& report) {
+    const CampaignPlan& plan = report.plan;
+    Json document;
+    for (const auto& [name, value] : plan.settings) {
+        document["settings"][name] = value;
+    }
+    document["runs_planned"] = plan.run_count();
+    document["runs_done"] = report.done;
+    document["left_out"] = plan.left_out;
+    for (const char* list : {"cells", "comparisons", "margins", "failures", "bars"}) {
+        document[list] = Json::array();
+    }
+    for (const CellFigures& cell : report.cells) {
+        document["cells"].push_back(cell_json(plan, cell));
+    }
+    for (const PlannerComparison& comparison : report.comparisons) {
+        document["comparisons"].push_back(comparison_json(plan, comparison));
+    }
+    for (const MarginFinding& finding : report.margins) {
+        document["margins"].push_back(margin_json(plan, finding));
+    }
+    for (const FailureGroup& failure : report.failures) {
+        document["failures"].push_back({{"experiment", plan.experiments[failure.experiment].name()},
+                                        {"planner", plan.planners[failure.planner].name()},
+                                        {"cause", failure.cause},
+                                        {"seeds", failure.seeds}});
+    }
+    for (const BarResult& bar : report.bars) {
+        document["bars"].push_back({{"experiment", plan.experiments[bar.experiment].name()},
+                                    {"planner", plan.planners[bar.planner].name()},
+                                    {"bar", bar.bar},
+                                    {"found", bar.found},
+                                    {"kept", bar.is_kept}});
+    }
+    return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace downwash::bench

@@ -1,0 +1,162 @@
+#include "downwash/problems/campaign.hpp"
+
+#include <utility>
+
+#include "downwash/base/parameter_factories.hpp"
+#include "downwash/planner/solve.hpp"
+
+namespace downwash {
+namespace {
+
+using Rows = std::vector<Parameter<Campaign>>;
+
+std::vector<std::pair<Variant, std::string_view>> named_variants() {
+    std::vector<std::pair<Variant, std::string_view>> named;
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        named.emplace_back(variant, name_of(variant));
+    }
+    return named;
+}
+
+std::vector<std::pair<Objective, std::string_view>> named_objectives() {
+    std::vector<std::pair<Objective, std::string_view>> named;
+    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+        named.emplace_back(objective, name_of(objective));
+    }
+    return named;
+}
+
+std::vector<std::string_view> algorithm_names() {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        names.push_back(algorithm.name);
+    }
+    return names;
+}
+
+void add_what_runs(Rows& rows) {
+    rows.push_back(parameters::files<Campaign>(
+                       "problems", "problem files", [](auto& c) -> auto& { return c.problems; })
+                       .is_required());
+    rows.push_back(parameters::choices<Campaign>(
+        "variants", "what the planner knows of the physics", named_variants(),
+        [](auto& c) -> auto& { return c.variants; }));
+    rows.push_back(parameters::choices<Campaign>(
+        "algorithms", "tree planners", algorithm_names(), [](auto& c) -> auto& { return c.algorithms; }));
+    rows.push_back(parameters::choices<Campaign>(
+        "objectives", "what plans should keep small", named_objectives(),
+        [](auto& c) -> auto& { return c.objectives; }));
+    rows.push_back(
+        parameters::samples<Campaign>(
+            "margins_m", "safety margins; null: each problem's own", [](auto& c) -> auto& { return c.margins_m; })
+            .at_least(0)
+            .at_most(100));
+}
+
+void add_seeds(Rows& rows) {
+    constexpr double highest = 4294967295.0;
+    auto seeds = parameters::group<Campaign>("seeds", "seeds that every search is run with").at_least(0);
+    seeds.range.high = highest;
+    seeds.can_be_integers = true;
+    seeds.set = [](Campaign& c, std::size_t, const Value& value) {
+        c.seeds.list = std::get<std::vector<std::uint64_t>>(value);
+    };
+    rows.push_back(std::move(seeds));
+    rows.push_back(parameters::integer<Campaign>(
+                       "seeds.first", "the first one", [](auto& c) -> auto& { return c.seeds.first; })
+                       .at_least(0)
+                       .at_most(highest));
+    rows.push_back(parameters::integer<Campaign>(
+                       "seeds.count", "how many follow each other", [](auto& c) -> auto& { return c.seeds.count; })
+                       .at_least(1)
+                       .at_most(static_cast<double>(most_campaign_runs)));
+}
+
+void add_limits(Rows& rows) {
+    rows.push_back(parameters::number<Campaign>(
+                       "time_limit_s", "wall time of one search; null: 10 s, or none where max_iterations is set",
+                       [](auto& c) -> auto& { return c.time_limit_s; })
+                       .above(0)
+                       .at_most(1e6));
+    rows.push_back(parameters::integer<Campaign>(
+                       "max_iterations", "limit of one search", [](auto& c) -> auto& { return c.max_iterations; })
+                       .at_least(1)
+                       .at_most(1e15));
+    rows.push_back(parameters::flag<Campaign>(
+        "stop_at_first_solution", "end a search with the first plan that is accepted",
+        [](auto& c) -> auto& { return c.stop_at_first_solution; }));
+    rows.push_back(parameters::integer<Campaign>(
+                       "jobs", "searches that run at a time, one thread each; null: one per processor",
+                       [](auto& c) -> auto& { return c.jobs; })
+                       .at_least(1)
+                       .at_most(256));
+}
+
+void add_expectations(Rows& rows) {
+    rows.push_back(parameters::list<Campaign>(
+        "expect", "bars that the report holds a variant to, on every problem",
+        [](auto& c) -> auto& { return c.expect; }));
+    const auto bar = [](auto& c, std::size_t i) -> auto& {
+        return c.expect[i];
+    };
+    rows.push_back(parameters::choice<Campaign>(
+                       "expect[].variant", "one that the campaign runs",
+                       named_variants(), [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).variant; })
+                       .is_required());
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].solved_ratio", "least share of seeds that are solved",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).solved_ratio; })
+                       .at_least(0)
+                       .at_most(1));
+    rows.push_back(parameters::integer<Campaign>(
+                       "expect[].failed_flights", "most seeds whose reported plan fails in its flight",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).failed_flights; })
+                       .at_least(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].first_solution_median_s", "longest median time to a first solution",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).first_solution_median_s; })
+                       .above(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].first_solution_95_s", "longest time to a first solution in 95 % of the seeds",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).first_solution_95_s; })
+                       .above(0));
+}
+
+Rows all_rows() {
+    Rows rows;
+    rows.push_back(
+        parameters::constant<Campaign>("schema", "format and version of a campaign file", "downwash/campaign/v1")
+            .is_required());
+    rows.push_back(parameters::identifier<Campaign>(
+        "name", "name of the campaign; it becomes part of a path", [](auto& c) -> auto& { return c.name; }));
+    rows.push_back(parameters::text<Campaign>(
+        "description", "what the campaign is about", [](auto& c) -> auto& { return c.description; }));
+    add_what_runs(rows);
+    add_seeds(rows);
+    add_limits(rows);
+    add_expectations(rows);
+    return rows;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> CampaignSeeds::all() const {
+    std::vector<std::uint32_t> seeds;
+    if (!list.empty()) {
+        for (const std::uint64_t seed : list) {
+            seeds.push_back(static_cast<std::uint32_t>(seed));
+        }
+        return seeds;
+    }
+    for (std::uint64_t i = 0; i < count; ++i) {
+        seeds.push_back(static_cast<std::uint32_t>(first + i));
+    }
+    return seeds;
+}
+
+const ParameterTable<Campaign>& campaign_parameters() {
+    static const ParameterTable<Campaign> table(all_rows());
+    return table;
+}
+
+}  // namespace downwash

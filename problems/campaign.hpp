@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/parameter_table.hpp"
+#include "downwash/planner/problem.hpp"
+
+namespace downwash {
+
+/// Seeds of a campaign: those of a list or, without one, `count` seeds from `first` on.
+struct CampaignSeeds {
+    std::vector<std::uint64_t> list;
+    std::uint64_t first = 1;
+    std::uint64_t count = 10;
+
+    /// Every seed once, in the order in which they are run.
+    [[nodiscard]] DOWNWASH_EXPORT std::vector<std::uint32_t> all() const;
+};
+
+/// What a variant has to reach on every problem, or the campaign's report says that it failed.
+struct CampaignExpectation {
+    Variant variant = Variant::mp_arm_ada;
+    std::optional<double> solved_ratio;             ///< at least, of the attempted seeds
+    std::optional<std::uint64_t> failed_flights;    ///< at most
+    std::optional<double> first_solution_median_s;  ///< at most, seeds without a solution counting as infinite
+    std::optional<double> first_solution_95_s;      ///< at most, of the 95 % quantile
+};
+
+/// Problems x objectives x variants x algorithms x margins x seeds, each of which is one run.
+struct Campaign {
+    std::string name = "campaign";  ///< [A-Za-z0-9_-]{1,64}
+    std::string description;
+    std::vector<std::string> problems;  ///< files, as seen from where the program runs
+    std::vector<Variant> variants{Variant::mp_arm_ada};
+    std::vector<std::string> algorithms{"rrt-star"};
+    std::vector<Objective> objectives{Objective::energy};
+    std::optional<std::vector<double>> margins_m;  ///< safety margins [m]; empty: each problem's own
+    CampaignSeeds seeds;
+    /// Wall time of one search [s]. Empty: default_time_limit_s, or none where max_iterations is set.
+    std::optional<double> time_limit_s;
+    std::optional<std::uint64_t> max_iterations;
+    bool stop_at_first_solution = false;
+    std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor
+    std::vector<CampaignExpectation> expect;
+};
+
+/// More runs are no campaign but a mistake.
+inline constexpr std::uint64_t most_campaign_runs = 1000000;
+
+/// Every key of a campaign file, as problem_parameters() has those of problems.
+[[nodiscard]] DOWNWASH_EXPORT const ParameterTable<Campaign>& campaign_parameters();
+
+}  // namespace downwash

@@ -1,0 +1,87 @@
+#include "downwash/problems/campaign_reader.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/tree_reader.hpp"
+
+namespace downwash {
+namespace {
+
+std::uint64_t run_count(const Campaign& c) {
+    const std::uint64_t seeds = c.seeds.list.empty() ? c.seeds.count : c.seeds.list.size();
+    double product = static_cast<double>(seeds);
+    for (const std::size_t factor : {c.problems.size(), c.variants.size(), c.algorithms.size(), c.objectives.size(),
+                                     c.margins_m ? c.margins_m->size() : 1}) {
+        product *= static_cast<double>(factor);
+    }
+    return product < 1e18 ? static_cast<std::uint64_t>(product) : std::numeric_limits<std::uint64_t>::max();
+}
+
+/// Rules over several values of a campaign.
+std::vector<Fault> campaign_faults(const Campaign& c) {
+    std::vector<Fault> faults;
+    if (c.seeds.list.empty() && c.seeds.first + c.seeds.count - 1 > std::numeric_limits<std::uint32_t>::max()) {
+        faults.push_back({"seeds", "go beyond 4294967295, the highest seed: expected a smaller first or count"});
+    }
+    if (run_count(c) > most_campaign_runs) {
+        faults.push_back(
+            {"seeds", "make more than " + std::to_string(most_campaign_runs) +
+                          " runs with all problems, variants, algorithms, objectives and margins: expected "
+                          "fewer of one of them"});
+    }
+    for (std::size_t i = 0; i < c.expect.size(); ++i) {
+        if (std::find(c.variants.begin(), c.variants.end(), c.expect[i].variant) == c.variants.end()) {
+            faults.push_back({"expect[" + std::to_string(i) + "].variant",
+                              "is " + std::string(name_of(c.expect[i].variant)) +
+                                  ", which is not run: expected one of the campaign's variants"});
+        }
+    }
+    return faults;
+}
+
+/// Reads the problems; two of one name could not be told apart in results.
+/// @param located collects faults that have their place in a problem's file
+std::vector<Fault> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
+                                 std::vector<LocatedFault>& located) {
+    std::vector<Fault> faults;
+    for (const std::string& path : campaign.problems) {
+        try {
+            Problem problem = read_problem(path);
+            if (std::any_of(problems.begin(), problems.end(),
+                            [&](const Problem& other) { return other.name == problem.name; })) {
+                faults.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
+                                                  ": expected every problem once, with a name of its own"});
+            }
+            problems.push_back(std::move(problem));
+        } catch (const ProblemFileError& error) {
+            located.insert(located.end(), error.faults().begin(), error.faults().end());
+        }
+    }
+    return faults;
+}
+
+}  // namespace
+
+ReadCampaign read_campaign(const std::filesystem::path& file) {
+    problems::TreeReader<Campaign> reader(campaign_parameters());
+    reader.read(file);
+    ReadCampaign read{reader.model(), {}};
+    std::vector<LocatedFault> in_problems;
+    if (reader.faults().empty()) {
+        reader.add(campaign_faults(read.campaign));
+        reader.add(read_problems(read.campaign, read.problems, in_problems));
+    }
+    std::vector<LocatedFault> faults = reader.faults();
+    faults.insert(faults.end(), in_problems.begin(), in_problems.end());
+    if (!faults.empty()) {
+        throw ProblemFileError(std::move(faults));
+    }
+    return read;
+}
+
+}  // namespace downwash

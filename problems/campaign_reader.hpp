@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/problem.hpp"
+#include "downwash/problems/campaign.hpp"
+
+namespace downwash {
+
+/// A campaign and the problems that it names, in the same order.
+struct ReadCampaign {
+    Campaign campaign;
+    std::vector<Problem> problems;
+};
+
+/// Reads a campaign file and its problems, whose paths are relative to it. The result is sound: problems have names of
+/// their own, and what is expected is run.
+/// @throws ProblemFileError with every fault that can be found in one reading, those of the problems included
+[[nodiscard]] DOWNWASH_EXPORT ReadCampaign read_campaign(const std::filesystem::path& file);
+
+}  // namespace downwash

@@ -1,0 +1,152 @@
+#include "downwash/problems/campaign_reader.hpp"
+#include "test_files.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+constexpr std::string_view good_campaign = R"(schema: downwash/campaign/v1
+name: trial
+problems: [problem.yaml]
+variants: [mp-arm, mp-arm-ada]
+objectives: [energy, time]
+margins_m: [0.05, 0.2]
+seeds: {first: 3, count: 2}
+time_limit_s: 0.5
+expect: [{variant: mp-arm-ada, solved_ratio: 0.9, failed_flights: 0}]
+)";
+
+struct CampaignFolder {
+    TestFolder folder;
+
+    CampaignFolder() {
+        folder.write("problem.yaml", good_problem);
+        folder.write("robot.yaml", good_robot);
+    }
+
+    [[nodiscard]] ReadCampaign read(std::string_view text) const {
+        folder.write("campaign.yaml", text);
+        return read_campaign(folder / "campaign.yaml");
+    }
+
+    /// Faults after one change to the sound campaign, without the folder's path.
+    [[nodiscard]] std::string faults_after(std::string_view from, std::string_view to) const {
+        try {
+            static_cast<void>(read(edited(good_campaign, from, to)));
+        } catch (const ProblemFileError& error) {
+            std::string text = error.what();
+            const std::string path = (folder / "").string();
+            for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path)) {
+                text.erase(at, path.size());
+            }
+            return text;
+        }
+        return "";
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a campaign is read with its problems, whose paths are relative to it") {
+    const CampaignFolder folder;
+    const auto [campaign, problems] = folder.read(good_campaign);
+    CHECK(campaign.name == "trial");
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].name == "test");
+    CHECK(campaign.variants == std::vector{Variant::mp_arm, Variant::mp_arm_ada});
+    CHECK(campaign.objectives == std::vector{Objective::energy, Objective::time});
+    CHECK(campaign.algorithms == std::vector<std::string>{"rrt-star"});
+    CHECK(campaign.margins_m == std::vector{0.05, 0.2});
+    CHECK(campaign.seeds.all() == std::vector<std::uint32_t>{3, 4});
+    CHECK(campaign.time_limit_s == 0.5);
+    CHECK_FALSE(campaign.jobs.has_value());
+    REQUIRE(campaign.expect.size() == 1);
+    CHECK(campaign.expect[0].solved_ratio == 0.9);
+    CHECK(campaign.expect[0].failed_flights == 0U);
+    CHECK_FALSE(campaign.expect[0].first_solution_95_s.has_value());
+}
+
+TEST_CASE("the seeds of a campaign may be a list") {
+    const CampaignFolder folder;
+    CHECK(folder.read(edited(good_campaign, "{first: 3, count: 2}", "[7, 1, 4294967295]")).campaign.seeds.all() ==
+          std::vector<std::uint32_t>{7, 1, 4294967295U});
+}
+
+TEST_CASE("what cannot be run in a campaign is refused with its place and a remedy") {
+    struct Edit {
+        std::string_view from, to, faults;
+    };
+    const Edit edit = GENERATE(
+        Edit{"campaign/v1", "campaign/v2",
+             "campaign.yaml:1:9: schema is 'downwash/campaign/v2': expected downwash/campaign/v1, no other is read"},
+        Edit{"margins_m", "margin_m",
+             "campaign.yaml:6:1: unknown key 'margin_m' at the top: did you mean 'margins_m'?"},
+        Edit{"[mp-arm, mp-arm-ada]", "[mp-arm, mp-arm-adda]",
+             "campaign.yaml:4:11: variants has 'mp-arm-adda': expected a list of mp-arm, mp-arm-da or mp-arm-ada; did "
+             "you mean 'mp-arm-ada'?"},
+        Edit{"[mp-arm, mp-arm-ada]", "mp-arm",
+             "campaign.yaml:4:11: variants is 'mp-arm': expected a list of mp-arm, mp-arm-da or mp-arm-ada"},
+        Edit{"[energy, time]", "[]",
+             "campaign.yaml:5:13: objectives is empty: expected a list of energy, time, length or clearance"},
+        Edit{"[energy, time]", "[time, time]",
+             "campaign.yaml:5:13: objectives has 'time' twice: expected a list of energy, time, length or clearance"},
+        Edit{"[0.05, 0.2]", "[0.05, -1]",
+             "campaign.yaml:6:12: margins_m is -1: expected a list of different numbers in m from 0 to 100, or null"},
+        Edit{"{first: 3, count: 2}", "[1, 2.5]",
+             "campaign.yaml:7:12: seeds is '2.5': expected a group of keys or a list of whole numbers from 0 to "
+             "4294967295"},
+        Edit{"{first: 3, count: 2}", "[5, 6, 5]",
+             "campaign.yaml:7:8: seeds has 5 twice: expected a group of keys or a list of whole numbers from 0 to "
+             "4294967295"},
+        Edit{"first: 3", "first: 4294967295",
+             "campaign.yaml:7:1: seeds go beyond 4294967295, the highest seed: expected a smaller first or count"},
+        Edit{"count: 2", "count: 200000",
+             "campaign.yaml:7:1: seeds make more than 1000000 runs with all problems, variants, algorithms, "
+             "objectives and margins: expected fewer of one of them"},
+        Edit{"variant: mp-arm-ada", "variant: mp-arm-da",
+             "campaign.yaml:9:20: expect[0].variant is mp-arm-da, which is not run: expected one of the campaign's "
+             "variants"},
+        Edit{"[problem.yaml]", "[problem.yaml, ./problem.yaml]",
+             "campaign.yaml:3:11: problems name './problem.yaml', which has the name of another, test: expected every "
+             "problem once, with a name of its own"},
+        Edit{"[problem.yaml]", "[none.yaml]", "none.yaml:1:1: cannot be read: there is no such file"});
+    const CampaignFolder folder;
+    CAPTURE(edit.to);
+    CHECK(folder.faults_after(edit.from, edit.to) == edit.faults);
+}
+
+TEST_CASE("faults of a campaign's problems are reported where they stand") {
+    const CampaignFolder folder;
+    folder.folder.write("problem.yaml", edited(good_problem, "seed: 1", "sead: 1"));
+    CHECK(folder.faults_after("trial", "other") ==
+          "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?");
+}
+
+TEST_CASE("every parameter of a campaign is described and has a sound default unless it must be given") {
+    for (const Parameter<Campaign>& row : campaign_parameters().rows()) {
+        CAPTURE(row.path);
+        CHECK_FALSE(row.description.empty());
+        if (row.get && !row.required && row.path.find("[]") == std::string::npos) {
+            CHECK_FALSE(value_fault(row, row.get(Campaign{}, 0)).has_value());
+        }
+    }
+}
+
+TEST_CASE("the shipped campaigns are sound, and the one of all problems forgets none") {
+    const std::filesystem::path folder = DOWNWASH_CAMPAIGNS;
+    std::size_t campaigns = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".yaml") {
+            CAPTURE(entry.path());
+            CHECK_NOTHROW(read_campaign(entry.path()));
+            ++campaigns;
+        }
+    }
+    CHECK(campaigns >= 5);
+    std::size_t shipped = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(DOWNWASH_PROBLEMS)) {
+        shipped += entry.path().extension() == ".yaml" ? 1 : 0;
+    }
+    CHECK(read_campaign(folder / "all.yaml").problems.size() == shipped);
+}
