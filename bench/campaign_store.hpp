@@ -6,16 +6,9 @@
 
 #include "downwash/bench/campaign_data.hpp"
 #include "downwash/bench/database.hpp"
+#include "downwash/bench/results_layout.hpp"
 
 namespace downwash::bench {
-
-/// A folder's results cannot be begun, continued or read; what() says why and what to do.
-struct CampaignError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-/// The name of the file that holds a campaign's results within its folder.
-inline constexpr const char* results_file = "campaign.db";
 
 /// The results of a campaign on disk: one SQLite file with the tables of OMPL's Planner Arena (experiments,
 /// plannerConfigs, enums, runs, progress) and our own. A run that was added is there whatever happens next.

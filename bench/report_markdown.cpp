@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "downwash/bench/campaign_report.hpp"
+#include "downwash/bench/results_layout.hpp"
 
 namespace downwash::bench {
 namespace {
@@ -64,12 +65,8 @@ class Document {
     }
 
     [[nodiscard]] std::string setting(std::string_view name) const {
-        for (const auto& [known, value] : plan_.settings) {
-            if (known == name) {
-                return value;
-            }
-        }
-        return "unknown";
+        const std::string value = bench::setting(plan_, name);
+        return value.empty() ? "unknown" : value;
     }
 
     /// "| problem | planner |" of a row.

@@ -1,0 +1,180 @@
+#include "downwash/bench/campaign_report.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+using namespace downwash;
+using namespace downwash::bench;
+
+namespace {
+
+Run run_of(std::size_t planner, std::uint32_t seed, RunStatus status, double first_s = 0.1, double cost = 100,
+           Outcome outcome = Outcome::ok) {
+    Run run;
+    run.planner = planner;
+    run.seed = seed;
+    run.status = status;
+    run.wall_s = first_s + 0.2;
+    if (status == RunStatus::solved) {
+        run.first_solution_s = first_s;
+        run.cost = cost;
+        run.improvements = {{first_s, 10, cost + 50}, {first_s + 0.3, 40, cost}};
+        run.flight = FlightFigures{outcome, cost + 1, 0, 0, 0, 0.06, 0};
+    }
+    return run;
+}
+
+/// One problem, two planners, four seeds: the first solves all, the second three with one collision.
+CampaignResults some_results() {
+    CampaignResults results;
+    results.plan.settings = {{"campaign", "trial"}};
+    results.plan.experiments = {{"bridge", Objective::energy}};
+    results.plan.planners = {{Variant::mp_arm_ada, "rrt-star", {}}, {Variant::mp_arm, "rrt-star", {}}};
+    results.plan.seeds = {1, 2, 3, 7};
+    results.plan.time_limit_s = 1;
+    results.runs = {run_of(0, 1, RunStatus::solved, 0.1, 100),
+                    run_of(0, 2, RunStatus::solved, 0.2, 110),
+                    run_of(0, 3, RunStatus::solved, 0.3, 120),
+                    run_of(0, 7, RunStatus::solved, 0.4, 130),
+                    run_of(1, 1, RunStatus::solved, 0.01, 90),
+                    run_of(1, 2, RunStatus::none),
+                    run_of(1, 3, RunStatus::solved, 0.02, 95, Outcome::collision),
+                    run_of(1, 7, RunStatus::solved, 0.03, 97)};
+    return results;
+}
+
+}  // namespace
+
+TEST_CASE("every seed is in the denominator, and what has no value is infinite") {
+    const CampaignReport report = report_of(some_results());
+    REQUIRE(report.cells.size() == 2);
+    const CellFigures& aware = report.cells[0];
+    CHECK(aware.solved.hits == 4);
+    CHECK(aware.first_solution_s.median == Approx(0.25));
+    CHECK(aware.flown_cost.median == Approx(116));
+    CHECK(aware.least_clearance_m == 0.06);
+    const CellFigures& geometric = report.cells[1];
+    CHECK(geometric.solved.hits == 3);
+    CHECK(geometric.solved.attempts == 4);
+    CHECK(geometric.failed_flights.hits == 1);
+    CHECK(geometric.failed_flights.attempts == 4);
+    CHECK(geometric.held.hits == 2);
+    CHECK(geometric.first_solution_s.median == Approx(0.025));
+    CHECK(std::isinf(geometric.first_solution_s.most));
+    CHECK(std::isinf(geometric.flown_cost.median));  // 91, 98, infinite, infinite
+}
+
+TEST_CASE("costs over time are those of the best plan so far, as far as the limit allows") {
+    const CampaignReport report = report_of(some_results());
+    const auto& costs = report.cells[0].cost_over_time;
+    REQUIRE(costs.size() == 3);  // 0.1, 0.3 and 1 s
+    CHECK(costs[0].time_s == 0.1);
+    CHECK(std::isinf(costs[0].cost.median));     // one of four has a plan
+    CHECK(costs[1].cost.median == Approx(165));  // 150, 160, 170, infinite
+    CHECK(costs[2].cost.median == Approx(115));
+}
+
+TEST_CASE("failures are listed by cause with their seeds") {
+    CampaignResults results = some_results();
+    results.runs[5].status = RunStatus::impossible;
+    results.runs[5].fault = "start: is in collision";
+    const CampaignReport report = report_of(results);
+    REQUIRE(report.failures.size() == 2);
+    CHECK(report.failures[0].cause == "impossible: start: is in collision");
+    CHECK(report.failures[0].seeds == std::vector<std::uint32_t>{2});
+    CHECK(report.failures[1].cause == "collision");
+    CHECK(report.failures[1].planner == 1);
+    const std::string markdown = markdown_of(report);
+    CHECK(markdown.find("2 of 8 runs have no flight that held.") != std::string::npos);
+    CHECK(markdown.find("- bridge, energy, mp-arm rrt-star: collision: seeds 3\n") != std::string::npos);
+}
+
+TEST_CASE("planners are compared on equal seeds") {
+    const CampaignReport report = report_of(some_results());
+    REQUIRE(report.comparisons.size() == 2);
+    CHECK(report.comparisons[0].measure == "first solution [s]");
+    CHECK(report.comparisons[0].pairing.first_smaller == 1);  // the seed that the second does not solve
+    CHECK(report.comparisons[0].pairing.second_smaller == 3);
+    CHECK(report.comparisons[0].pairing.median_difference == Approx(0.28));
+    CHECK(report.comparisons[1].measure == "flown cost");
+    CHECK(report.comparisons[1].pairing.finite == 2);
+    CHECK(report.comparisons[1].pairing.median_difference == Approx((10 + 33) / 2.0));
+}
+
+TEST_CASE("an unfinished campaign says so and keeps no bar") {
+    CampaignResults results = some_results();
+    results.plan.expectations = {{Variant::mp_arm_ada, 1.0, 0, 0.25, 0.39}};
+    const CampaignReport whole = report_of(results);
+    CHECK(whole.keeps_its_bars());
+    CHECK(whole.bars.size() == 4);
+
+    results.runs.erase(results.runs.begin());
+    const CampaignReport part = report_of(results);
+    CHECK(part.cells[0].missing == 1);
+    CHECK(part.cells[0].solved.attempts == 3);
+    CHECK_FALSE(part.keeps_its_bars());
+    CHECK(markdown_of(part).find("7 of 8 runs done: **the campaign is not finished**") != std::string::npos);
+}
+
+TEST_CASE("each bar is missed on its own") {
+    const auto [bar, found] = GENERATE(std::pair(CampaignExpectation{Variant::mp_arm, 0.8, {}, {}, {}}, "3/4"),
+                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, 0, {}, {}}, "1/4"),
+                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, {}, 0.024, {}}, "0.025 s"),
+                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, {}, {}, 100.0}, "none"));
+    CampaignResults results = some_results();
+    results.plan.expectations = {bar};
+    const CampaignReport report = report_of(results);
+    REQUIRE(report.bars.size() == 1);
+    CHECK(report.bars[0].found == found);
+    CHECK_FALSE(report.bars[0].is_kept);
+    CHECK_FALSE(report.keeps_its_bars());
+}
+
+TEST_CASE("the safe margin is the least from which on no flight fails, and what it costs is told") {
+    CampaignResults results;
+    results.plan.experiments = {{"easy", Objective::energy}, {"hard", Objective::energy}};
+    for (const double margin_m : {0.05, 0.1, 0.2, 0.4}) {
+        results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
+    }
+    results.plan.seeds = {1};
+    // easy collides at 0.05 and, by chance not at 0.1, again at 0.2; hard collides up to 0.1 and cannot be solved at
+    // 0.4.
+    const Outcome hit = Outcome::collision;
+    for (const auto& [planner, easy, hard] :
+         {std::tuple(0U, hit, hit), std::tuple(1U, Outcome::ok, hit), std::tuple(2U, hit, Outcome::ok)}) {
+        results.runs.push_back(run_of(planner, 1, RunStatus::solved, 0.1, 100, easy));
+        results.runs.push_back(run_of(planner, 1, RunStatus::solved, 0.1, 100, hard));
+        results.runs.back().experiment = 1;
+    }
+    results.runs.push_back(run_of(3, 1, RunStatus::solved));
+    results.runs.push_back(run_of(3, 1, RunStatus::impossible));
+    results.runs.back().experiment = 1;
+
+    const CampaignReport report = report_of(results);
+    REQUIRE(report.margins.size() == 1);
+    const MarginFinding& finding = report.margins[0];
+    CHECK(finding.safe_margin_m == 0.4);
+    CHECK(finding.safe_margin_of_experiment_m == std::vector<std::optional<double>>{0.4, 0.2});
+    REQUIRE(finding.solved_when_safe.size() == 2);
+    CHECK(finding.solved_when_safe[0].hits == 1);
+    CHECK(finding.solved_when_safe[1].hits == 0);
+    CHECK(markdown_of(report).find("| hard, energy | 0.2 m | 0/1 [0.0, 79.3 %] | **no longer reached** |") !=
+          std::string::npos);
+    CHECK(report.comparisons.empty());  // planners of different margins are no pair
+}
+
+TEST_CASE("the report is the same in JSON, null for what is infinite") {
+    const auto json = nlohmann::json::parse(json_of(report_of(some_results())));
+    CHECK(json.at("runs_done") == 8);
+    CHECK(json.at("cells").at(1).at("solved").at("hits") == 3);
+    CHECK(json.at("cells").at(1).at("first_solution_s").at("95").is_null());
+    CHECK(json.at("cells").at(0).at("first_solution_s").at("50") == Approx(0.25));
+    CHECK(json.at("failures").at(1).at("seeds") == nlohmann::json{3});
+}
+
+TEST_CASE("seeds that follow each other are told as a range") {
+    CHECK(seeds_text({1, 2, 3, 7}) == "1-3 7");
+    CHECK(seeds_text({5}) == "5");
+    CHECK(seeds_text({4294967295U, 0}) == "4294967295 0");
+}

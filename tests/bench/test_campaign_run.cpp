@@ -1,0 +1,247 @@
+#include "downwash/bench/campaign_run.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "../support/scratch_folder.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/bench/campaign_store.hpp"
+
+using namespace downwash;
+using namespace downwash::bench;
+using downwash::test::ScratchFolder;
+
+namespace {
+
+/// A ceiling, two variants, a few seeds and a few iterations.
+ReadCampaign small_campaign(std::uint64_t seeds = 2) {
+    ReadCampaign read;
+    read.problems = {test::ceiling_problem()};
+    read.campaign.name = "trial";
+    read.campaign.problems = {"ceiling.yaml"};
+    read.campaign.variants = {Variant::mp_arm, Variant::mp_arm_da};
+    read.campaign.seeds.count = seeds;
+    read.campaign.max_iterations = 150;
+    return read;
+}
+
+CampaignProgress run_into(const ScratchFolder& folder, const ReadCampaign& read, bool resumes = false,
+                          const std::stop_token& stop = {}) {
+    CampaignRunOptions options;
+    options.out = folder.path() / "results";
+    options.resumes = resumes;
+    options.stop = stop;
+    return run_campaign(read, options);
+}
+
+CampaignResults results_in(const ScratchFolder& folder) {
+    return read_results(folder.path() / "results");
+}
+
+/// What does not depend on time, in the order of planners and seeds.
+std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> repeatable(
+    const CampaignResults& results) {
+    std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> figures;
+    for (const Run& run : results.runs) {
+        figures.emplace_back(run.planner, run.seed, run.status, run.cost.value_or(-1),
+                             run.flight ? run.flight->cost : -1);
+    }
+    std::sort(figures.begin(), figures.end());
+    return figures;
+}
+
+/// The first value of the first row that SQLite answers.
+std::string answer(const ScratchFolder& folder, const std::string& question) {
+    sqlite3* database = nullptr;
+    REQUIRE(sqlite3_open((folder.path() / "results" / results_file).c_str(), &database) == SQLITE_OK);
+    std::string text;
+    const auto keep = [](void* kept, int, char** values, char**) {
+        *static_cast<std::string*>(kept) = values[0] != nullptr ? values[0] : "NULL";
+        return 1;
+    };
+    const int result = sqlite3_exec(database, question.c_str(), keep, &text, nullptr);
+    CHECK((result == SQLITE_OK || result == SQLITE_ABORT));
+    sqlite3_close(database);
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a campaign runs everything with every seed, whatever the number of threads") {
+    const ScratchFolder alone, together;
+    ReadCampaign read = small_campaign(3);
+    read.campaign.jobs = 1;
+    const CampaignProgress progress = run_into(alone, read);
+    CHECK(progress.planned == 6);
+    CHECK(progress.done == 6);
+    read.campaign.jobs = 3;
+    run_into(together, read);
+    const CampaignResults results = results_in(alone);
+    CHECK(repeatable(results) == repeatable(results_in(together)));
+    CHECK(results.plan.seeds == std::vector<std::uint32_t>{1, 2, 3});
+    for (const Run& run : results.runs) {
+        CHECK(run.status == RunStatus::solved);
+        CHECK(run.flight.has_value());
+        CHECK(run.first_solution_s <= run.wall_s);
+        REQUIRE_FALSE(run.improvements.empty());
+        CHECK(run.improvements.back().cost == run.cost);
+        CHECK(run.iterations > 0);
+    }
+}
+
+TEST_CASE("what is read from a file of results is what was written") {
+    const ScratchFolder folder;
+    const CampaignPlan plan = plan_of(small_campaign());
+    Run written;
+    written.planner = 1;
+    written.seed = 2;
+    written.status = RunStatus::solved;
+    written.wall_s = 0.1 + 0.2;
+    written.first_solution_s = 1.0 / 3;
+    written.cost = 1e-7 / 3;
+    written.iterations = 1234567890123;
+    written.edges_simulated = 5;
+    written.states_checked = 6;
+    written.simulated_s = 7.5;
+    written.discarded = 8;
+    written.improvements = {{0.25, 3, 12.5}, {0.5, 9, 1.0 / 7}};
+    written.refusals = {{"collision", 11}, {"bounds", 12}};
+    written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
+    written.fault = "a 'quoted'; fault";
+    {
+        CampaignStore store(folder.path() / "results", plan, false);
+        store.add(written);
+        CHECK(store.has(0, 1, 2));
+        CHECK_FALSE(store.has(0, 1, 1));
+    }
+    const CampaignResults results = results_in(folder);
+    CHECK(results.plan.settings == plan.settings);
+    CHECK(results.plan.experiments == plan.experiments);
+    CHECK(results.plan.planners == plan.planners);
+    REQUIRE(results.runs.size() == 1);
+    const Run& read = results.runs[0];
+    CHECK(read.planner == 1);
+    CHECK(read.seed == 2);
+    CHECK(read.wall_s == written.wall_s);
+    CHECK(read.first_solution_s == written.first_solution_s);
+    CHECK(read.cost == written.cost);
+    CHECK(read.iterations == written.iterations);
+    CHECK(read.discarded == 8);
+    REQUIRE(read.improvements.size() == 2);
+    CHECK(read.improvements[1].cost == 1.0 / 7);
+    CHECK(read.refusals == written.refusals);
+    REQUIRE(read.flight.has_value());
+    CHECK(read.flight->outcome == Outcome::left_flyable_area);
+    CHECK(read.flight->min_clearance_m == HUGE_VAL);
+    CHECK(read.fault == written.fault);
+}
+
+TEST_CASE("the file has the tables and columns that Planner Arena reads") {
+    const ScratchFolder folder;
+    run_into(folder, small_campaign());
+    CHECK(answer(folder, "SELECT name || ' ' || timelimit IS NULL || ' ' || runcount FROM experiments") != "");
+    CHECK(answer(folder, "SELECT count(*) FROM plannerConfigs WHERE name = 'mp-arm rrt-star'") == "1");
+    CHECK(answer(folder, "SELECT description FROM enums WHERE name = 'status' AND value = 2") == "solved");
+    CHECK(answer(folder,
+                 "SELECT count(*) FROM runs JOIN experiments ON experimentid = experiments.id JOIN "
+                 "plannerConfigs ON plannerid = plannerConfigs.id WHERE time > 0 AND solved = 1") == "4");
+    CHECK(answer(folder, "SELECT count(DISTINCT runid) FROM progress WHERE best_cost > 0 AND time > 0") == "4");
+    CHECK(answer(folder, "PRAGMA integrity_check") == "ok");
+}
+
+TEST_CASE("a campaign that was stopped goes on where it was and ends as if it never had been") {
+    const ScratchFolder whole, parts;
+    const ReadCampaign read = small_campaign(3);
+    run_into(whole, read);
+
+    std::stop_source stop;
+    CampaignRunOptions options;
+    options.out = parts.path() / "results";
+    options.stop = stop.get_token();
+    options.on_progress = [&](double share) {
+        if (share > 0.3) {
+            stop.request_stop();
+        }
+    };
+    const CampaignProgress first = run_campaign(read, options);
+    CHECK(first.done >= 1);
+    CHECK(first.done < first.planned);
+    const std::string first_key = answer(parts, "SELECT min(id) || ' ' || time FROM runs");
+
+    const CampaignProgress second = run_into(parts, read, true);
+    CHECK(second.done == second.planned);
+    CHECK(answer(parts, "SELECT min(id) || ' ' || time FROM runs") == first_key);  // not run again
+    CHECK(repeatable(results_in(parts)) == repeatable(results_in(whole)));
+}
+
+TEST_CASE("results are neither overwritten nor mixed with those of other settings") {
+    const ScratchFolder folder;
+    const ReadCampaign read = small_campaign();
+    run_into(folder, read);
+    CHECK_THROWS_WITH(run_into(folder, read), Catch::Contains("holds runs already; --resume goes on with them"));
+
+    ReadCampaign other = read;
+    other.campaign.max_iterations = 151;
+    other.problems[0].goal.hold_s = 6;
+    CHECK_THROWS_WITH(run_into(folder, other, true), Catch::Contains("was begun with max_iterations 150, not 151") &&
+                                                         Catch::Contains("was begun with problem ceiling ") &&
+                                                         Catch::Contains("choose another folder with --out"));
+    CHECK(results_in(folder).runs.size() == 4);
+}
+
+TEST_CASE("two programs do not run one campaign into one folder") {
+    const ScratchFolder folder;
+    const ReadCampaign read = small_campaign();
+    const CampaignStore running(folder.path() / "results", plan_of(read), false);
+    CHECK_THROWS_WITH(run_into(folder, read, true), Catch::Contains("another program is running the campaign"));
+}
+
+TEST_CASE("what is no file of results is refused") {
+    const ScratchFolder folder;
+    std::filesystem::create_directories(folder.path() / "results");
+    CHECK_THROWS_WITH(results_in(folder), Catch::Contains("does not exist"));
+    std::ofstream(folder.path() / "results" / results_file) << "SQLite format 3, but not really";
+    CHECK_THROWS_AS(results_in(folder), std::runtime_error);
+    CHECK_THROWS_AS(run_into(folder, small_campaign(), true), std::runtime_error);
+    std::filesystem::remove(folder.path() / "results" / results_file);
+    CHECK(answer(folder, "CREATE TABLE other (x)") == "");
+    CHECK_THROWS_WITH(results_in(folder), Catch::Contains("holds no results of a campaign"));
+}
+
+TEST_CASE("a file of results that was tampered with is refused, not believed") {
+    const std::string change = GENERATE("UPDATE runs SET status = 99", "UPDATE runs SET plannerid = NULL",
+                                        "UPDATE flights SET outcome = 'fine'", "UPDATE experiments SET objective = 'x'",
+                                        "UPDATE runs SET time = 'soon'");
+    const ScratchFolder folder;
+    run_into(folder, small_campaign(1));
+    CHECK(answer(folder, change) == "");
+    CAPTURE(change);
+    CHECK_THROWS_AS(results_in(folder), DatabaseError);
+}
+
+TEST_CASE("a margin that makes a problem impossible is a run that failed, with the reason") {
+    const ScratchFolder folder;
+    ReadCampaign read = small_campaign(1);
+    read.campaign.variants = {Variant::mp_arm};
+    read.campaign.margins_m = {0.05, 3};
+    CHECK(run_into(folder, read).done == 2);
+    for (const Run& run : results_in(folder).runs) {
+        const bool is_wide = run.planner == 1;
+        CHECK(run.status == (is_wide ? RunStatus::impossible : RunStatus::solved));
+        CHECK((run.fault.find("nearer than planner.safety_margin_m, 3") != std::string::npos) == is_wide);
+    }
+}
+
+TEST_CASE("a plan says which combinations do not exist, and an impossible one is no campaign") {
+    ReadCampaign read = small_campaign();
+    read.campaign.algorithms = {"rrt-star", "no-such"};
+    const CampaignPlan plan = plan_of(read);
+    CHECK(plan.planners.size() == 2);
+    REQUIRE(plan.left_out.size() == 2);
+    CHECK(plan.left_out[0].starts_with("mp-arm no-such: planner.algorithm is 'no-such'"));
+    read.campaign.algorithms = {"no-such"};
+    CHECK_THROWS_AS(plan_of(read), CampaignError);
+}
