@@ -5,7 +5,7 @@
 
 namespace downwash::bench {
 
-/// The commit that this program was built from, as `git describe --always --dirty` says; "unknown" where there is no
+/// The commit that this program was built from, with "-dirty" where tracked files differed; "unknown" where there is no
 /// repository.
 [[nodiscard]] std::string_view source_commit();
 
