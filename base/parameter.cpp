@@ -221,7 +221,7 @@ std::string expectation(const ParameterInfo& info) {
         case ParameterKind::samples:
             return "a list of different numbers" + in_unit + range + or_null;
         case ParameterKind::choices:
-            return "a list of " + joined_names(info.names);
+            return "a list of " + joined_names(info.names) + or_null;
         case ParameterKind::files:
             return "a list of paths of files";
     }

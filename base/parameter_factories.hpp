@@ -112,32 +112,46 @@ Parameter<Model> choices(std::string_view path, std::string_view description,
     return parameter;
 }
 
-/// A list of enumerations whose values have names.
+/// A list of enumerations whose values have names; the vector may be optional.
 template <class Model, class Enumeration, class Member>
 Parameter<Model> choices(std::string_view path, std::string_view description,
                          std::vector<std::pair<Enumeration, std::string_view>> named, Member member) {
+    using Type = MemberType<Model, Member>;
     auto parameter = row<Model>(ParameterKind::choices, path, description);
+    parameter.nullable = IsOptional<Type>::value;
     for (const auto& entry : named) {
         parameter.names.push_back(entry.second);
     }
     parameter.get = [member, named](const Model& model, std::size_t i) {
-        std::vector<std::string> names;
-        for (const Enumeration value : at(member, model, i)) {
-            const auto found =
-                std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.first == value; });
-            names.emplace_back(found == named.end() ? std::string_view() : found->second);
+        const auto names_of = [&](const std::vector<Enumeration>& values) {
+            std::vector<std::string> names;
+            for (const Enumeration value : values) {
+                const auto found =
+                    std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.first == value; });
+                names.emplace_back(found == named.end() ? std::string_view() : found->second);
+            }
+            return names;
+        };
+        if constexpr (IsOptional<Type>::value) {
+            const auto& held = at(member, model, i);
+            return held ? Value(names_of(*held)) : Value();
+        } else {
+            return Value(names_of(at(member, model, i)));
         }
-        return Value(std::move(names));
     };
     parameter.set = [member, named](Model& model, std::size_t i, const Value& value) {
-        auto& values = at(member, model, i);
-        values.clear();
-        for (const std::string& name : std::get<std::vector<std::string>>(value)) {
-            for (const auto& entry : named) {
-                if (entry.second == name) {
-                    values.push_back(entry.first);
+        Type& held = at(member, model, i);
+        held = Type();
+        if (const auto* given = std::get_if<std::vector<std::string>>(&value)) {
+            std::vector<Enumeration> values;
+            for (const std::string& name : *given) {
+                const auto found =
+                    std::find_if(named.begin(), named.end(), [&](const auto& e) { return e.second == name; });
+                if (found != named.end()) {
+                    values.push_back(found->first);
                 }
             }
+            held = std::move(values);
         }
     };
     return parameter;

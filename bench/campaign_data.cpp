@@ -7,7 +7,7 @@
 namespace downwash::bench {
 
 std::string Experiment::name() const {
-    return problem + ", " + std::string(downwash::name_of(objective));
+    return problem + ", " + objective;
 }
 
 std::string PlannerSetup::name() const {

@@ -15,7 +15,7 @@ namespace downwash::bench {
 /// What all planners of a campaign are compared on: a problem under an objective.
 struct Experiment {
     std::string problem;
-    Objective objective = Objective::energy;
+    std::string objective;  ///< "energy", or a sum for people: "energy + 50 time"
 
     [[nodiscard]] std::string name() const;  ///< "bridge_inspection, energy"
     bool operator==(const Experiment&) const = default;

@@ -62,7 +62,8 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
         {"variants", listed(c.variants, [](Variant v) { return downwash::name_of(v); })},
         {"algorithms", listed(c.algorithms, [](const std::string& a) { return a; })},
-        {"objectives", listed(c.objectives, [](Objective o) { return downwash::name_of(o); })},
+        {"objectives",
+         c.objectives ? listed(*c.objectives, [](Objective o) { return downwash::name_of(o); }) : "each problem's own"},
         {"margins_m", c.margins_m ? listed(*c.margins_m, [](double m) { return to_text(m); }) : "each problem's own"},
         {"seeds", seeds_text(c.seeds.all())}};
     for (const Problem& problem : read.problems) {
@@ -74,10 +75,17 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
     return settings;
 }
 
-void apply(const Experiment& experiment, const PlannerSetup& planner, Problem& problem) {
+/// What a problem is planned for in a campaign: objectives that the campaign sets, or its own.
+std::vector<CostFunction> objectives_of(const Campaign& campaign, const Problem& problem) {
+    if (!campaign.objectives) {
+        return {problem.planner.objective};
+    }
+    return {campaign.objectives->begin(), campaign.objectives->end()};
+}
+
+void apply(const PlannerSetup& planner, Problem& problem) {
     problem.planner.variant = planner.variant;
     problem.planner.algorithm = planner.algorithm;
-    problem.planner.objective = experiment.objective;
     if (planner.margin_m) {
         problem.planner.safety_margin_m = *planner.margin_m;
     }
@@ -85,7 +93,7 @@ void apply(const Experiment& experiment, const PlannerSetup& planner, Problem& p
 
 /// Why a variant cannot be planned with an algorithm; empty when it can.
 std::string fault_of_combination(Problem problem, const PlannerSetup& planner) {
-    apply({problem.name, Objective::energy}, planner, problem);
+    apply(planner, problem);
     for (const Fault& fault : problem_faults(problem)) {
         if (fault.key == "planner.algorithm" || fault.key == "planner.variant") {
             return planner.name() + ": " + fault.key + " " + fault.message;
@@ -148,8 +156,8 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     CampaignPlan plan;
     plan.settings = settings_of(read);
     for (const Problem& problem : read.problems) {
-        for (const Objective objective : c.objectives) {
-            plan.experiments.push_back({problem.name, objective});
+        for (const CostFunction& objective : objectives_of(c, problem)) {
+            plan.experiments.push_back({problem.name, text_of(objective)});
         }
     }
     for (const Variant variant : c.variants) {
@@ -179,9 +187,8 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     return plan;
 }
 
-Run attempt(Problem problem, const Experiment& experiment, const PlannerSetup& planner, std::uint32_t seed,
-            const SolveOptions& how) {
-    apply(experiment, planner, problem);
+Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how) {
+    apply(planner, problem);
     problem.planner.seed = seed;
     Run run;
     run.seed = seed;
@@ -205,33 +212,36 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     const std::vector<Task> tasks = missing_runs(plan, store);
     const int jobs = job_count(read.campaign);
 
-    std::vector<Problem> problems = read.problems;
+    std::vector<Problem> problems;  // one for each experiment
     std::vector<std::shared_ptr<const AeroMap>> maps;
-    for (Problem& problem : problems) {
+    const bool needs_maps =
+        !tasks.empty() && std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
+            return planner.variant == Variant::mp_arm_ada;
+        });
+    for (Problem problem : read.problems) {
         problem.planner.time_limit_s = plan.time_limit_s;
         problem.planner.max_iterations = read.campaign.max_iterations;
-        const bool needs_map = problem.aero.enabled && !tasks.empty() && !options.stop.stop_requested() &&
-                               std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
-                                   return planner.variant == Variant::mp_arm_ada;
-                               });
-        maps.push_back(needs_map ? make_flight_model(problem)->make_map(problem.bounds, jobs, {}, options.map_cache)
-                                 : nullptr);
+        const auto map = needs_maps && problem.aero.enabled && !options.stop.stop_requested()
+                             ? make_flight_model(problem)->make_map(problem.bounds, jobs, {}, options.map_cache)
+                             : nullptr;
+        for (const CostFunction& objective : objectives_of(read.campaign, problem)) {
+            problem.planner.objective = objective;
+            problems.push_back(problem);
+            maps.push_back(map);
+        }
     }
 
     std::mutex writing;
-    const std::size_t objectives = read.campaign.objectives.size();
     const auto do_task = [&](std::size_t i) {
         if (options.stop.stop_requested()) {
             return;
         }
         const Task& task = tasks[i];
-        const std::size_t problem = task.experiment / objectives;
         SolveOptions how;
         how.stop = options.stop;
         how.stop_at_first_solution = plan.stop_at_first_solution;
-        how.map = maps[problem];
-        Run run =
-            attempt(problems[problem], plan.experiments[task.experiment], plan.planners[task.planner], task.seed, how);
+        how.map = maps[task.experiment];
+        Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how);
         run.experiment = task.experiment;
         run.planner = task.planner;
         const std::scoped_lock lock(writing);

@@ -37,7 +37,6 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
 
 /// One run: the search and the flight of what it found. Whatever goes wrong is in the result, never thrown.
 /// @param how the map to use, the stop token, and whether to stop at the first solution
-[[nodiscard]] Run attempt(Problem problem, const Experiment& experiment, const PlannerSetup& planner,
-                          std::uint32_t seed, const SolveOptions& how);
+[[nodiscard]] Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how);
 
 }  // namespace downwash::bench

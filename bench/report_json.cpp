@@ -39,7 +39,7 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
     }
     const PlannerSetup& planner = plan.planners[cell.planner];
     return {{"problem", plan.experiments[cell.experiment].problem},
-            {"objective", downwash::name_of(plan.experiments[cell.experiment].objective)},
+            {"objective", plan.experiments[cell.experiment].objective},
             {"planner", planner.name()},
             {"variant", downwash::name_of(planner.variant)},
             {"algorithm", planner.algorithm},

@@ -88,7 +88,7 @@ void write_what_runs(const Database& database, const CampaignPlan& plan) {
             .bind(std::to_string(plan.seeds.at(0)))
             .bind(all_settings(plan))
             .bind(experiment.problem)
-            .bind(downwash::name_of(experiment.objective))
+            .bind(experiment.objective)
             .run();
     }
     for (const PlannerSetup& planner : plan.planners) {
@@ -167,8 +167,7 @@ CampaignPlan read_plan(const Database& database) {
         plan.settings.emplace_back(ask.text(0), ask.text(1));
     }
     for (Statement ask = database.prepare("SELECT problem, objective FROM experiments ORDER BY id"); ask.step();) {
-        plan.experiments.push_back({ask.text(0), named(ask.text(1), {Objective::energy, Objective::time,
-                                                                     Objective::length, Objective::clearance})});
+        plan.experiments.push_back({ask.text(0), ask.text(1)});
     }
     for (Statement ask = database.prepare("SELECT variant, algorithm, margin_m FROM plannerConfigs ORDER BY id");
          ask.step();) {

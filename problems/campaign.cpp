@@ -20,7 +20,7 @@ std::vector<std::pair<Variant, std::string_view>> named_variants() {
 
 std::vector<std::pair<Objective, std::string_view>> named_objectives() {
     std::vector<std::pair<Objective, std::string_view>> named;
-    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+    for (const Objective objective : all_objectives) {
         named.emplace_back(objective, name_of(objective));
     }
     return named;
@@ -44,7 +44,7 @@ void add_what_runs(Rows& rows) {
     rows.push_back(parameters::choices<Campaign>(
         "algorithms", "tree planners", algorithm_names(), [](auto& c) -> auto& { return c.algorithms; }));
     rows.push_back(parameters::choices<Campaign>(
-        "objectives", "what plans should keep small", named_objectives(),
+        "objectives", "what plans should keep small; null: each problem's own objective", named_objectives(),
         [](auto& c) -> auto& { return c.objectives; }));
     rows.push_back(
         parameters::samples<Campaign>(

@@ -37,8 +37,8 @@ struct Campaign {
     std::vector<std::string> problems;  ///< files, as seen from where the program runs
     std::vector<Variant> variants{Variant::mp_arm_ada};
     std::vector<std::string> algorithms{"rrt-star"};
-    std::vector<Objective> objectives{Objective::energy};
-    std::optional<std::vector<double>> margins_m;  ///< safety margins [m]; empty: each problem's own
+    std::optional<std::vector<Objective>> objectives;  ///< empty: each problem's own, which may be a sum
+    std::optional<std::vector<double>> margins_m;      ///< safety margins [m]; empty: each problem's own
     CampaignSeeds seeds;
     /// Wall time of one search [s]. Empty: default_time_limit_s, or none where max_iterations is set.
     std::optional<double> time_limit_s;

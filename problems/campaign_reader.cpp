@@ -15,8 +15,8 @@ namespace {
 std::uint64_t run_count(const Campaign& c) {
     const std::uint64_t seeds = c.seeds.list.empty() ? c.seeds.count : c.seeds.list.size();
     double product = static_cast<double>(seeds);
-    for (const std::size_t factor : {c.problems.size(), c.variants.size(), c.algorithms.size(), c.objectives.size(),
-                                     c.margins_m ? c.margins_m->size() : 1}) {
+    for (const std::size_t factor : {c.problems.size(), c.variants.size(), c.algorithms.size(),
+                                     c.objectives ? c.objectives->size() : 1, c.margins_m ? c.margins_m->size() : 1}) {
         product *= static_cast<double>(factor);
     }
     return product < 1e18 ? static_cast<std::uint64_t>(product) : std::numeric_limits<std::uint64_t>::max();

@@ -29,7 +29,7 @@ Run run_of(std::size_t planner, std::uint32_t seed, RunStatus status, double fir
 CampaignResults some_results() {
     CampaignResults results;
     results.plan.settings = {{"campaign", "trial"}};
-    results.plan.experiments = {{"bridge", Objective::energy}};
+    results.plan.experiments = {{"bridge", "energy"}};
     results.plan.planners = {{Variant::mp_arm_ada, "rrt-star", {}}, {Variant::mp_arm, "rrt-star", {}}};
     results.plan.seeds = {1, 2, 3, 7};
     results.plan.time_limit_s = 1;
@@ -133,7 +133,7 @@ TEST_CASE("each bar is missed on its own") {
 
 TEST_CASE("the safe margin is the least from which on no flight fails, and what it costs is told") {
     CampaignResults results;
-    results.plan.experiments = {{"easy", Objective::energy}, {"hard", Objective::energy}};
+    results.plan.experiments = {{"easy", "energy"}, {"hard", "energy"}};
     for (const double margin_m : {0.05, 0.1, 0.2, 0.4}) {
         results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
     }

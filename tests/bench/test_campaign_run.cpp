@@ -213,8 +213,8 @@ TEST_CASE("what is no file of results is refused") {
 
 TEST_CASE("a file of results that was tampered with is refused, not believed") {
     const std::string change = GENERATE("UPDATE runs SET status = 99", "UPDATE runs SET plannerid = NULL",
-                                        "UPDATE flights SET outcome = 'fine'", "UPDATE experiments SET objective = 'x'",
-                                        "UPDATE runs SET time = 'soon'");
+                                        "UPDATE flights SET outcome = 'fine'",
+                                        "UPDATE plannerConfigs SET variant = 'x'", "UPDATE runs SET time = 'soon'");
     const ScratchFolder folder;
     run_into(folder, small_campaign(1));
     CHECK(answer(folder, change) == "");
@@ -232,6 +232,23 @@ TEST_CASE("a margin that makes a problem impossible is a run that failed, with t
         const bool is_wide = run.planner == 1;
         CHECK(run.status == (is_wide ? RunStatus::impossible : RunStatus::solved));
         CHECK((run.fault.find("nearer than planner.safety_margin_m, 3") != std::string::npos) == is_wide);
+    }
+}
+
+TEST_CASE("experiments are problems under the campaign's objectives, or under their own") {
+    ReadCampaign read = small_campaign();
+    read.problems[0].planner.objective.weight(Objective::time) = 50;
+    CHECK(plan_of(read).experiments == std::vector<Experiment>{{"ceiling", "energy + 50 time"}});
+    read.campaign.objectives = {Objective::time, Objective::length};
+    CHECK(plan_of(read).experiments == std::vector<Experiment>{{"ceiling", "time"}, {"ceiling", "length"}});
+
+    const ScratchFolder folder;
+    read.campaign.variants = {Variant::mp_arm};
+    read.campaign.seeds.count = 1;
+    run_into(folder, read);
+    for (const Run& run : results_in(folder).runs) {
+        REQUIRE(run.flight.has_value());
+        CHECK(run.flight->cost == (run.experiment == 0 ? run.flight->duration_s : run.flight->length_m));
     }
 }
 

@@ -55,7 +55,7 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].name == "test");
     CHECK(campaign.variants == std::vector{Variant::mp_arm, Variant::mp_arm_ada});
-    CHECK(campaign.objectives == std::vector{Objective::energy, Objective::time});
+    CHECK(campaign.objectives.value() == std::vector{Objective::energy, Objective::time});
     CHECK(campaign.algorithms == std::vector<std::string>{"rrt-star"});
     CHECK(campaign.margins_m == std::vector{0.05, 0.2});
     CHECK(campaign.seeds.all() == std::vector<std::uint32_t>{3, 4});
@@ -88,9 +88,10 @@ TEST_CASE("what cannot be run in a campaign is refused with its place and a reme
         Edit{"[mp-arm, mp-arm-ada]", "mp-arm",
              "campaign.yaml:4:11: variants is 'mp-arm': expected a list of mp-arm, mp-arm-da or mp-arm-ada"},
         Edit{"[energy, time]", "[]",
-             "campaign.yaml:5:13: objectives is empty: expected a list of energy, time, length or clearance"},
+             "campaign.yaml:5:13: objectives is empty: expected a list of energy, time, length or clearance, or null"},
         Edit{"[energy, time]", "[time, time]",
-             "campaign.yaml:5:13: objectives has 'time' twice: expected a list of energy, time, length or clearance"},
+             "campaign.yaml:5:13: objectives has 'time' twice: expected a list of energy, time, length or clearance, "
+             "or null"},
         Edit{"[0.05, 0.2]", "[0.05, -1]",
              "campaign.yaml:6:12: margins_m is -1: expected a list of different numbers in m from 0 to 100, or null"},
         Edit{"{first: 3, count: 2}", "[1, 2.5]",
