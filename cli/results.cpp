@@ -1,4 +1,5 @@
 #include "downwash/cli/results.hpp"
+#include "downwash/base/angles.hpp"
 
 #include <fmt/core.h>
 
@@ -134,6 +135,15 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
               record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     table.add("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     table.add("refused", refusals(record));
+    if (record.nearest_approach_m) {
+        table.add("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
+    }
+    if (record.obstruction) {
+        const Obstruction& o = *record.obstruction;
+        table.add("stopped by",
+                  fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m before the goal region", o.cause,
+                              o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
+    }
     table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, effective.yaml}");
     return verdict + "\n\n" + table.text();
 }

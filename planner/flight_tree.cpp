@@ -86,11 +86,7 @@ std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) 
         flights_.count_rejection("too_long");
         return std::nullopt;
     }
-    if (const FlightFault fault = flights_.reference_fault(segment); fault != FlightFault::none) {
-        flights_.count_rejection(fault);
-        return std::nullopt;
-    }
-    return segment;
+    return flights_.is_worth_flying(segment) ? std::optional(segment) : std::nullopt;
 }
 
 std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FlightJob& job) const {

@@ -43,6 +43,8 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] const std::optional<Candidate>& incumbent() const noexcept { return incumbent_; }
     /// The node whose reference comes nearest to the goal.
     [[nodiscard]] const FlightNode& nearest_to_goal() const noexcept { return *nearest_to_goal_; }
+    /// How near that is [m]; 0 within the goal region.
+    [[nodiscard]] double nearest_distance_m() const noexcept { return nearest_distance_m_; }
 
  private:
     /// A sample on its way to become a node.

@@ -197,7 +197,7 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
     for (std::size_t i = 0; i < segments; ++i) {
         if (i >= change.first && i <= last) {
             const ReferenceSegment segment = flights_.fastest_segment(change.points[i], change.points[i + 1]);
-            if (!keeps_limits(segment, flights_.limits()) || flights_.reference_fault(segment) != FlightFault::none) {
+            if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment)) {
                 return std::nullopt;
             }
             change.ticks.push_back(segment.ticks());

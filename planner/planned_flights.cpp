@@ -71,7 +71,24 @@ void PlannedFlights::count_rejection(FlightFault fault) {
     }
 }
 
-FlightFault PlannedFlights::reference_fault(const ReferenceSegment& segment) {
+bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
+    const double* to = segment.to().position;
+    return space_.is_near_goal({to[0], to[1], to[2]});
+}
+
+void PlannedFlights::refuse(const ReferenceSegment& segment, FlightFault fault, const Configuration& at) {
+    count_rejection(fault);
+    if (fault == FlightFault::interrupted || !leads_to_goal(segment)) {
+        return;
+    }
+    const double distance_m = space_.goal_distance_m(at);
+    std::optional<Obstruction>& nearest = statistics_.obstruction;
+    if (!nearest || distance_m < nearest->goal_distance_m) {
+        nearest = {cause_of(fault), {at.x_m, at.z_m, at.arm_rad}, distance_m};
+    }
+}
+
+bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     constexpr double spacing_m = 0.1;
     const ReferencePoint& a = segment.from();
     const ReferencePoint& b = segment.to();
@@ -82,15 +99,30 @@ FlightFault PlannedFlights::reference_fault(const ReferenceSegment& segment) {
     // Ends that move may lead beyond the line between them.
     const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
     const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
-    for (std::int64_t i = samples; i >= 1; --i) {  // from the new end, where obstacles are likelier
+    const auto at = [&](std::int64_t i) {
         const ReferencePoint p = segment.at_tick(segment.ticks() * i / samples);
+        return Configuration{p.position[0], p.position[1], p.position[2]};
+    };
+    FlightFault fault = FlightFault::none;
+    for (std::int64_t i = samples; i >= 1 && fault == FlightFault::none;
+         --i) {  // the new end first: likelier to collide
         ++statistics_.states_checked;
-        const FlightFault fault = space_.fault_at({p.position[0], p.position[1], p.position[2]});
-        if (fault != FlightFault::none) {
-            return fault;
-        }
+        fault = space_.fault_at(at(i));
     }
-    return FlightFault::none;
+    if (fault == FlightFault::none) {
+        return true;
+    }
+    if (!leads_to_goal(segment)) {
+        count_rejection(fault);
+        return false;
+    }
+    // Of a way to the goal the place matters where a flight would have been stopped.
+    std::int64_t first = 1;
+    while (space_.fault_at(at(first)) == FlightFault::none) {
+        ++first;
+    }
+    refuse(segment, space_.fault_at(at(first)), at(first));
+    return false;
 }
 
 void PlannedFlights::fly(std::span<FlightJob> jobs) {
@@ -101,8 +133,9 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
             statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
             statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
         }
-        if (job.fault() != FlightFault::none) {
-            count_rejection(job.fault());
+        if (const FlightLeg* leg = job.refused_leg()) {
+            const double* q = leg->end.plant.q;
+            refuse(leg->segment, leg->flight.fault, {q[0], q[1], q[3]});
         }
     }
 }

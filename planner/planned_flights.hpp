@@ -2,11 +2,13 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/search_space.hpp"
+#include "downwash/planner/solution.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 
 namespace downwash::planning {
@@ -18,6 +20,7 @@ struct FlightStatistics {
     std::uint64_t states_checked = 0;
     std::map<std::string, std::uint64_t> rejected;
     std::uint64_t rejections = 0;
+    std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were refused, the one that came nearest
 };
 
 /// How the flights of one search are flown, judged, paid for and counted.
@@ -29,9 +32,9 @@ class PlannedFlights {
     PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
                    std::function<bool()> is_over = {}, int threads = 1);
 
-    /// What forbids a reference before anything is flown: the level vehicle on it collides or leaves the bounds. A
-    /// flight follows its reference to a few centimetres, so that such a one is not worth flying.
-    [[nodiscard]] FlightFault reference_fault(const ReferenceSegment& segment);
+    /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
+    /// its reference to a few centimetres. Counts the refusal if it is not.
+    [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment);
 
     /// Flies jobs, and counts ticks and refusals.
     void fly(std::span<FlightJob> jobs);
@@ -52,10 +55,14 @@ class PlannedFlights {
     [[nodiscard]] const AeroMap* map() const noexcept { return map_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     void count_rejection(const std::string& cause);
-    /// Counts a refusal; an interrupted flight is none.
+    /// An interrupted flight is none.
     void count_rejection(FlightFault fault);
 
  private:
+    [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
+    /// Counts a refusal at a place of a segment.
+    void refuse(const ReferenceSegment& segment, FlightFault fault, const Configuration& at);
+
     const Problem& problem_;
     const FlightModel& model_;
     const SearchSpace& space_;

@@ -49,6 +49,14 @@ struct Improvement {
     double cost = 0;
 };
 
+/// What stood between a search and its goal: of the ways into the goal region that were refused, holds included, the
+/// one that came nearest.
+struct Obstruction {
+    std::string cause;           ///< as in SearchRecord::rejected
+    Waypoint at;                 ///< where it was refused
+    double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
+};
+
 /// How a search went.
 struct SearchRecord {
     double wall_s = 0;                            ///< of the search, direct flights of better plans included
@@ -61,6 +69,10 @@ struct SearchRecord {
     std::uint64_t states_checked = 0;  ///< collision queries of single states
     std::vector<Improvement> improvements;
     std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
+    /// Of a search by flights that found no plan: how near to the goal region the vehicle was brought [m], and what
+    /// stopped it there.
+    std::optional<double> nearest_approach_m;
+    std::optional<Obstruction> obstruction;
 };
 
 /// The answer to a problem.

@@ -201,7 +201,11 @@ void search_by_flights(FlightSearch& common) {
         solution.status = Status::solved;
         solution.plan = planner.incumbent()->plan;
         solution.cost = planner.incumbent()->cost;
-    } else if (planner.nearest_to_goal().parent != nullptr) {
+        return;
+    }
+    solution.planning.nearest_approach_m = planner.nearest_distance_m();
+    solution.planning.obstruction = common.flights.statistics().obstruction;
+    if (planner.nearest_to_goal().parent != nullptr) {
         solution.status = Status::approximate;
         solution.plan = tree.plan_to(planner.nearest_to_goal());
         solution.cost = planner.nearest_to_goal().cost;

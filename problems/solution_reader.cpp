@@ -165,6 +165,7 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
             reader.read_count({&value, rejected->key + "." + cause}, record.rejected[cause]);
         }
     }
+    // nearest_approach_m and obstruction explain a search without a plan, and there is nothing to read in its file.
 }
 
 void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {

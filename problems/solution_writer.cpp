@@ -18,6 +18,17 @@ Json number(const std::optional<double>& value) {
     return value ? number(*value) : Json();
 }
 
+Json obstruction_json(const std::optional<Obstruction>& obstruction) {
+    if (!obstruction) {
+        return {};
+    }
+    return {{"cause", obstruction->cause},
+            {"x_m", number(obstruction->at.x_m)},
+            {"z_m", number(obstruction->at.z_m)},
+            {"arm_rad", number(obstruction->at.arm_rad)},
+            {"goal_distance_m", number(obstruction->goal_distance_m)}};
+}
+
 Json planning_json(const SearchRecord& record) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
@@ -34,7 +45,9 @@ Json planning_json(const SearchRecord& record) {
             {"simulated_s", number(record.simulated_s)},
             {"states_checked", record.states_checked},
             {"improvements", std::move(improvements)},
-            {"rejected", record.rejected}};
+            {"rejected", record.rejected},
+            {"nearest_approach_m", number(record.nearest_approach_m)},
+            {"obstruction", obstruction_json(record.obstruction)}};
 }
 
 Json knot_json(const ReferenceKnot& knot, double tick_s) {

@@ -286,13 +286,10 @@ class Lane {
 
 }  // namespace
 
-FlightFault FlightJob::fault() const noexcept {
-    for (const FlightLeg& leg : legs) {
-        if (leg.flight.fault != FlightFault::none) {
-            return leg.flight.fault;
-        }
-    }
-    return FlightFault::none;
+const FlightLeg* FlightJob::refused_leg() const noexcept {
+    const auto refused = std::find_if(legs.begin(), legs.end(),
+                                      [](const FlightLeg& leg) { return leg.flight.fault != FlightFault::none; });
+    return refused != legs.end() ? &*refused : nullptr;
 }
 
 Instructions best_instructions() noexcept {

@@ -25,8 +25,12 @@ struct FlightJob {
     /// otherwise the flight is refused as goal_missed. 0: no goal.
     std::int64_t judged_ticks = 0;
 
+    /// The leg on which the flight ended early; nullptr when it did not.
+    [[nodiscard]] DOWNWASH_EXPORT const FlightLeg* refused_leg() const noexcept;
     /// Why the flight ended early.
-    [[nodiscard]] DOWNWASH_EXPORT FlightFault fault() const noexcept;
+    [[nodiscard]] FlightFault fault() const noexcept {
+        return refused_leg() != nullptr ? refused_leg()->flight.fault : FlightFault::none;
+    }
     /// The vehicle at the end of an accepted flight.
     [[nodiscard]] const FlightState& end() const noexcept { return legs.back().end; }
 };

@@ -318,3 +318,31 @@ TEST_CASE("refusals are counted by cause") {
     }
     CHECK(solution.planning.rejected.at("collision") > 0);
 }
+
+TEST_CASE("a search without a plan says how near it came and what stopped it") {
+    const Solution walled = solve(test::walled_problem());
+    CHECK(walled.status != Status::solved);
+    REQUIRE(walled.planning.nearest_approach_m);
+    CHECK(*walled.planning.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
+    REQUIRE(walled.planning.obstruction);
+    CHECK(walled.planning.obstruction->cause == "collision");
+    CHECK(walled.planning.obstruction->at.x_m < 0.75);  // touching the wall from the side of the start
+
+    // Right under the ceiling the vehicle arrives and cannot hold.
+    Problem problem = test::ceiling_problem();
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = 0;
+    problem.goal.configuration->z_m = 5 - 0.06 - 0.16;
+    problem.goal.configuration->tolerance_m = 0.02;
+    problem.planner.safety_margin_m = 0.01;
+    const Solution sucked_in = solve(problem);
+    CHECK(sucked_in.status != Status::solved);
+    REQUIRE(sucked_in.planning.obstruction);
+    CHECK(sucked_in.planning.obstruction->goal_distance_m < 0.5);
+
+    const Solution solved = solve(test::ceiling_problem());
+    REQUIRE(solved.status == Status::solved);
+    CHECK_FALSE(solved.planning.nearest_approach_m);
+    CHECK_FALSE(solved.planning.obstruction);
+}
