@@ -1,7 +1,6 @@
 #include "downwash/planner/plan_refiner.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "downwash/planner/solve.hpp"
@@ -11,9 +10,7 @@ namespace {
 
 constexpr int changes_side_by_side = 8;
 
-/// Largest changes; a track begins with them and ends with a hundredth.
-constexpr double largest_shift_m = 1.0;
-constexpr double largest_speed_change = 0.5;  ///< share of the limit of motion
+/// Changes begin with the largest and shrink to this share of them.
 constexpr double least_step = 0.01;
 
 /// A plan that did not get better for so many waves is given up, or, as the champion, begun anew with large steps.
@@ -22,22 +19,10 @@ constexpr int most_failures = 60;
 /// A plan so much dearer than the champion is not worth working on.
 constexpr double most_cost_ratio = 1.5;
 
-constexpr double shortest_split_s = 1.0;
-
-Configuration configuration_of(const ReferencePoint& point) {
-    return {point.position[0], point.position[1], point.position[2]};
-}
-
-double distance_m(const ReferencePoint& a, const ReferencePoint& b) {
-    const double dx = b.position[0] - a.position[0];
-    const double dz = b.position[1] - a.position[1];
-    return std::sqrt(dx * dx + dz * dz);
-}
-
 }  // namespace
 
 PlanRefiner::PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random)
-    : problem_(problem), space_(space), flights_(flights), random_(random) {}
+    : problem_(problem), flights_(flights), changes_(problem, space, random) {}
 
 const FlownPlan* PlanRefiner::champion() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
@@ -47,11 +32,6 @@ void PlanRefiner::drop_champion() {
     if (!tracks_.empty()) {
         tracks_.erase(tracks_.begin());
     }
-}
-
-double PlanRefiner::noise(double size) {
-    // A sum of uniform numbers: bell-shaped, bounded, and the same on every machine.
-    return size * (random_.uniform(-1, 1) + random_.uniform(-1, 1) + random_.uniform(-1, 1)) / 3;
 }
 
 FlightJob PlanRefiner::job_for(const FlownPlan& base, const Change& change) const {
@@ -104,98 +84,18 @@ void PlanRefiner::take(const Plan& plan) {
     }
 }
 
-/// Changes a plan's points; returns the first segment that differs, and in `last` the last one. No change: last <
-/// first.
-std::size_t PlanRefiner::mutate(std::vector<ReferencePoint>& points, const Track& track, std::size_t& last) {
-    const MotionLimits& motion = problem_.motion;
-    const double shift_m = largest_shift_m * track.step;
-    const double most_speed_change = largest_speed_change * track.step;
-    const std::size_t segments = points.size() - 1;
-    const auto shift = [&](ReferencePoint& p) {
-        p.position[0] += noise(shift_m);
-        p.position[1] += noise(shift_m);
-        p.position[2] += noise(shift_m / space_.arm_weight_m());
-    };
-    const auto change_speed = [&](ReferencePoint& p) {
-        p.velocity[0] += noise(most_speed_change * motion.max_speed_m_s);
-        p.velocity[1] += noise(most_speed_change * motion.max_speed_m_s);
-        p.velocity[2] += noise(most_speed_change * motion.max_arm_rate_rad_s);
-        p.acceleration[0] += noise(most_speed_change * motion.max_acceleration_m_s2);
-        p.acceleration[1] += noise(most_speed_change * motion.max_acceleration_m_s2);
-        p.acceleration[2] += noise(most_speed_change * motion.max_arm_acceleration_rad_s2);
-    };
-    const double kind = random_.uniform(0, 1);
-    if (segments < 2 || kind < 0.1) {
-        if (kind < 0.05) {  // another place at the goal
-            last = segments - 1;
-            const auto goal = space_.sample_goal_near(configuration_of(points.back()), shift_m, random_);
-            if (!goal) {
-                last = 0;
-                return 1;
-            }
-            const Configuration to = space_.seen_from(configuration_of(points[segments - 1]), *goal);
-            points.back() = at_rest(to);
-            return segments - 1;
-        }
-        // A new corner on the way, moved and passed at another speed.
-        const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(segments)));
-        const double tick_s = flights_.model().tick().tick_s;
-        const std::int64_t ticks = track.plan.ticks[i];
-        if (static_cast<double>(ticks) * tick_s < shortest_split_s) {
-            last = 0;
-            return 1;
-        }
-        const double where = random_.uniform(0.2, 0.8);
-        ReferencePoint middle = ReferenceSegment(points[i], points[i + 1], ticks, tick_s)
-                                    .at_tick(static_cast<std::int64_t>(where * static_cast<double>(ticks)));
-        shift(middle);
-        change_speed(middle);
-        points.insert(points.begin() + static_cast<std::ptrdiff_t>(i) + 1, middle);
-        last = i + 1;
-        return i;
-    }
-    const std::size_t corner = 1 + static_cast<std::size_t>(random_.uniform(0, static_cast<double>(segments - 1)));
-    last = corner;
-    if (kind < 0.2) {  // leave it out
-        points.erase(points.begin() + static_cast<std::ptrdiff_t>(corner));
-        last = corner - 1;
-        return corner - 1;
-    }
-    ReferencePoint& p = points[corner];
-    if (kind < 0.35) {  // fly through it, towards where the corners beside it lead
-        const ReferencePoint& before = points[corner - 1];
-        const ReferencePoint& after = points[corner + 1];
-        const double length_m = std::max(distance_m(before, after), 1e-3);
-        const double speed_m_s = random_.uniform(0, 1) * motion.max_speed_m_s;
-        for (int axis = 0; axis < 3; ++axis) {
-            p.velocity[axis] = speed_m_s / length_m * (after.position[axis] - before.position[axis]);
-            p.acceleration[axis] = 0;
-        }
-        p.velocity[2] = std::clamp(p.velocity[2], -motion.max_arm_rate_rad_s, motion.max_arm_rate_rad_s);
-        return corner - 1;
-    }
-    if (kind < 0.85) {
-        shift(p);
-    }
-    if (kind > 0.5) {
-        change_speed(p);
-    }
-    return corner - 1;
-}
-
 std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
-    Change change{track.plan.points, {}, 0};
-    std::size_t last = 0;
-    change.first = mutate(change.points, track, last);
-    if (last < change.first) {
+    auto drawn = changes_.draw(track.plan.points, track.plan.ticks, track.step);
+    if (!drawn) {
         return std::nullopt;
     }
+    Change change{std::move(drawn->points), {}, drawn->first_segment};
     // Segments that do not change keep their ticks; their numbers may have shifted by a corner more or less.
     const std::size_t segments = change.points.size() - 1;
     const std::size_t old_segments = track.plan.ticks.size();
     std::int64_t total = 0;
     for (std::size_t i = 0; i < segments; ++i) {
-        if (i >= change.first && i <= last) {
+        if (i >= drawn->first_segment && i <= drawn->last_segment) {
             const ReferenceSegment segment = flights_.fastest_segment(change.points[i], change.points[i + 1]);
             if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment)) {
                 return std::nullopt;

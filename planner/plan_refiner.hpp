@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/planner/plan_changes.hpp"
 #include "downwash/planner/planned_flights.hpp"
 #include "downwash/planner/random.hpp"
 #include "downwash/planner/solution.hpp"
@@ -55,15 +56,12 @@ class PlanRefiner {
     };
 
     [[nodiscard]] std::optional<Change> changed(const Track& track);
-    [[nodiscard]] std::size_t mutate(std::vector<ReferencePoint>& points, const Track& track, std::size_t& last);
     [[nodiscard]] FlightJob job_for(const FlownPlan& base, const Change& change) const;
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
-    [[nodiscard]] double noise(double size);
 
     const Problem& problem_;
-    const SearchSpace& space_;
     PlannedFlights& flights_;
-    Random& random_;
+    PlanChanges changes_;
     std::vector<Track> tracks_;  ///< the champion first
     std::size_t turn_ = 0;
 };
