@@ -23,13 +23,13 @@ void require_equal_settings(const Database& database, const CampaignPlan& plan, 
     for (Statement ask = database.prepare("SELECT name, value FROM campaign ORDER BY place"); ask.step();) {
         begun.emplace_back(ask.text(0), ask.text(1));
     }
-    for (const auto& [name, value] : plan.settings) {
-        const auto found =
-            std::find_if(begun.begin(), begun.end(), [&](const auto& other) { return other.first == name; });
-        if (found == begun.end()) {
-            differ(name, "none", value);
-        } else if (found->second != value) {
-            differ(name, found->second, value);
+    for (const auto& now : plan.settings) {
+        const auto then =
+            std::find_if(begun.begin(), begun.end(), [&](const auto& other) { return other.first == now.first; });
+        if (then == begun.end()) {
+            differ(now.first, "none", now.second);
+        } else if (then->second != now.second) {
+            differ(now.first, then->second, now.second);
         }
     }
     for (const auto& [name, value] : begun) {

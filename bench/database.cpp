@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <utility>
+
 namespace downwash::bench {
 namespace {
 
@@ -29,8 +31,8 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
     sqlite3_finalize(statement);
 }
 
-Statement::Statement(sqlite3* database, const std::string& file, std::string_view sql)
-    : database_(database), file_(file) {
+Statement::Statement(sqlite3* database, std::string file, std::string_view sql)
+    : database_(database), file_(std::move(file)) {
     sqlite3_stmt* prepared = nullptr;
     check(sqlite3_prepare_v2(database, sql.data(), static_cast<int>(sql.size()), &prepared, nullptr));
     statement_.reset(prepared);

@@ -49,7 +49,7 @@ class Statement {
     struct Finalize {
         void operator()(sqlite3_stmt* statement) const;
     };
-    Statement(sqlite3* database, const std::string& file, std::string_view sql);
+    Statement(sqlite3* database, std::string file, std::string_view sql);
     void check(int result) const;
 
     sqlite3* database_;

@@ -145,6 +145,9 @@ class Document {
     }
 
     static std::string cost_text(const Spread& cost) {
+        if (!std::isfinite(cost.low_quartile)) {
+            return "none";
+        }
         return fmt::format("{} [{}, {}]", number_text(cost.median), number_text(cost.low_quartile),
                            number_text(cost.high_quartile));
     }

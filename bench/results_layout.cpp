@@ -59,7 +59,7 @@ Variant variant_of(const std::string& name) {
 std::string all_settings(const CampaignPlan& plan) {
     std::string text;
     for (const auto& [name, value] : plan.settings) {
-        text += name + ": " + value + "\n";
+        text.append(name).append(": ").append(value).append("\n");
     }
     return text;
 }

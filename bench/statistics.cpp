@@ -87,6 +87,7 @@ double signed_rank_p(std::span<const double> differences) {
     }
     std::sort(nonzero.begin(), nonzero.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     std::vector<double> magnitudes;
+    magnitudes.reserve(nonzero.size());
     for (const double difference : nonzero) {
         magnitudes.push_back(std::abs(difference));
     }

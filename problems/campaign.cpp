@@ -20,6 +20,7 @@ std::vector<std::pair<Variant, std::string_view>> named_variants() {
 
 std::vector<std::pair<Objective, std::string_view>> named_objectives() {
     std::vector<std::pair<Objective, std::string_view>> named;
+    named.reserve(all_objectives.size());
     for (const Objective objective : all_objectives) {
         named.emplace_back(objective, name_of(objective));
     }
