@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "downwash/aeromap/factor_patches.hpp"
 #include "downwash/aeromap/layer_builder.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/base/parallel.hpp"
@@ -15,7 +16,7 @@
 namespace downwash {
 namespace {
 
-constexpr std::size_t rows_per_task = 8;
+constexpr std::size_t rows_per_task = FactorPatches::block_cells;
 
 bool is_range(double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low < high;

@@ -5,6 +5,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"
+#include "downwash/aeromap/factor_patches.hpp"
 #include "downwash/grids/factor_grid.hpp"
 
 // A map as bytes: the counts of layers, columns and rows; then of every layer the count of its nodes, the cells, their
@@ -111,14 +112,17 @@ bool AeroMap::is_sound(const Raster& raster) const {
            std::all_of(raster.nodes.begin(), raster.nodes.end(), is_factor);
 }
 
-/// Evaluates K anew at the lower corners of some cells where surfaces are felt. Whoever improves the models or the
+/// Evaluates K anew at the lower corners of some cells where surfaces are felt and nothing was
+/// interpolated. Whoever improves the models or the
 /// integration without a new map_format_version is found out here.
 bool AeroMap::agrees_with_effect(std::size_t layer) const {
     constexpr std::size_t samples = 64;
     const auto& [cells, flyability, nodes] = *rasters_[layer];
     std::vector<std::size_t> felt;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-        if (flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {
+        const bool is_exact =
+            cell % columns_ % FactorPatches::block_cells == 0 && cell / columns_ % FactorPatches::block_cells == 0;
+        if (is_exact && flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {
             felt.push_back(cell);
         }
     }

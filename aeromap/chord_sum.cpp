@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "downwash/aeromap/gauss_rule.hpp"
+#include "downwash/aeromap/chord_envelope.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
 #include "downwash/base/lane_math.hpp"
 
@@ -33,14 +33,6 @@ struct LocalFace {
     double v_low, v_high;
 };
 
-/// A straight piece of a surface along a chord.
-struct SurfaceStretch {
-    double low, high;
-    double gap_low, gap_high;
-
-    [[nodiscard]] double gap_at(double u) const { return gap_low + (gap_high - gap_low) * ((u - low) / (high - low)); }
-};
-
 /// A part that is curved, or cut by the rotor plane.
 struct Solid {
     std::size_t part;
@@ -60,9 +52,7 @@ class ChordSum {
           faces_(memory),
           local_faces_(memory),
           solids_(memory),
-          stretches_(memory),
-          cuts_(memory),
-          open_(memory) {
+          envelope_(query, background_m, memory) {
         double nearest_m = background_m;
         for (const std::size_t part : parts) {
             const Scene::Bounds bounds = query.scene.part_bounds(part);
@@ -160,7 +150,7 @@ class ChordSum {
 
     /// Integral of the excess over the background along one chord.
     double chord(double v, double half) {
-        stretches_.clear();
+        envelope_.clear();
         for (const LocalFace& face : local_faces_) {
             if (face.v_low < v && v < face.v_high) {
                 add_stretch(face, v, half);
@@ -169,7 +159,7 @@ class ChordSum {
         for (const Solid& solid : solids_) {
             add_stretches(solid, v, half);
         }
-        return swept();
+        return envelope_.excess();
     }
 
     void add_stretch(const LocalFace& face, double v, double half) {
@@ -210,7 +200,7 @@ class ChordSum {
             }
         }
         const auto gap_at = [&](double u) { return std::max(0.0, whole.gap_at(u)); };
-        stretches_.push_back({low, high, gap_at(low), gap_at(high)});
+        envelope_.add({low, high, gap_at(low), gap_at(high)});
     }
 
     void add_stretches(const Solid& solid, double v, double half) {
@@ -230,7 +220,7 @@ class ChordSum {
         if (solid.is_level) {
             const double gap = gap_at(middle);
             if (gap < background_m_) {
-                stretches_.push_back({low, high, gap, gap});
+                envelope_.add({low, high, gap, gap});
             }
             return;
         }
@@ -243,55 +233,11 @@ class ChordSum {
             const double to = middle + reach * 0.5 * t * (3 - t * t);
             const double gap_to = gap_at(to);
             if (gap_from < infinity && gap_to < infinity) {
-                stretches_.push_back({from, to, gap_from, gap_to});
+                envelope_.add({from, to, gap_from, gap_to});
             }
             from = to;
             gap_from = gap_to;
         }
-    }
-
-    /// Walks along the chord from cut to cut with the stretches that lie there.
-    double swept() {
-        std::sort(stretches_.begin(), stretches_.end(),
-                  [](const SurfaceStretch& a, const SurfaceStretch& b) { return a.low < b.low; });
-        cuts_.clear();
-        for (const SurfaceStretch& stretch : stretches_) {
-            cuts_.push_back(stretch.low);
-            cuts_.push_back(stretch.high);
-        }
-        std::sort(cuts_.begin(), cuts_.end());
-        open_.clear();
-        std::size_t next = 0;
-        double sum = 0;
-        for (std::size_t i = 1; i < cuts_.size(); ++i) {
-            const double low = cuts_[i - 1];
-            const double high = cuts_[i];
-            for (; next < stretches_.size() && stretches_[next].low <= low; ++next) {
-                open_.push_back(stretches_[next]);
-            }
-            open_.erase(std::remove_if(open_.begin(), open_.end(),
-                                       [&](const SurfaceStretch& stretch) { return stretch.high <= low; }),
-                        open_.end());
-            if (low < high && !open_.empty()) {
-                sum += piece(low, high);
-            }
-        }
-        return sum;
-    }
-
-    double piece(double low, double high) const {
-        const auto excess = [this](double u) {
-            double gap = background_m_;
-            for (const SurfaceStretch& stretch : open_) {
-                gap = std::min(gap, stretch.gap_at(u));
-            }
-            return query_.factor(gap) - background_;
-        };
-        const double width = (high - low) / query_.radius_m;
-        if (width < 0.02) {
-            return (high - low) * excess(0.5 * (low + high));
-        }
-        return width < 0.2 ? integrate(plain_2, low, high, excess) : integrate(plain_6, low, high, excess);
     }
 
     const DiscQuery& query_;
@@ -302,9 +248,7 @@ class ChordSum {
     std::pmr::vector<Scene::Face> faces_;
     std::pmr::vector<LocalFace> local_faces_;
     std::pmr::vector<Solid> solids_;
-    std::pmr::vector<SurfaceStretch> stretches_;
-    std::pmr::vector<double> cuts_;
-    std::pmr::vector<SurfaceStretch> open_;  ///< over the present piece
+    ChordEnvelope envelope_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/aeromap/disc_average.hpp"
 #include "downwash/aeromap/footprint.hpp"
 #include "downwash/base/fault.hpp"
@@ -63,6 +64,12 @@ SurfaceEffect on_rotor(const SurfaceEffect& effect) {
     return effect.model == EffectModel::multirotor_body ? SurfaceEffect(EffectModel::multirotor_images) : effect;
 }
 
+std::shared_ptr<const CurveMean> mean_of(const EffectCurve& curve) {
+    return curve.falls_with_distance() && !curve.is_none() && !curve.depends_on_wall()
+               ? std::make_shared<const CurveMean>(curve)
+               : nullptr;
+}
+
 /// Of the primitives; those of triangles and boxes of octrees are made when asked for.
 std::vector<Footprint> footprints_of(const Scene& scene) {
     std::vector<Footprint> footprints;
@@ -84,6 +91,8 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
       least_clearance_m_(settings.min_distance_radii * rotor_radius_m),
       ground_(on_rotor(settings.ground), settings.max_factor, neighbours),
       ceiling_(settings.ceiling, settings.max_factor, neighbours),
+      ground_mean_(mean_of(ground_)),
+      ceiling_mean_(mean_of(ceiling_)),
       footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {}
 
 DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
@@ -94,6 +103,8 @@ DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const Ae
     effect.least_clearance_m_ = -std::numeric_limits<double>::infinity();
     effect.ground_ = EffectCurve::fountain(settings.ground, settings.max_factor, neighbours);
     effect.ceiling_ = EffectCurve(EffectModel::none, settings.max_factor);
+    effect.ground_mean_ = mean_of(effect.ground_);
+    effect.ceiling_mean_ = nullptr;
     return effect;
 }
 
@@ -107,7 +118,8 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
         return {unknown, unknown, settings_.map->contains(hub_m) ? settings_.map->factor(hub_m) : 1.0};
     }
     const auto averaged = [&](Side side, const EffectCurve& curve) {
-        return disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_}, *footprints_);
+        const CurveMean* mean = (side == Side::below ? ground_mean_ : ceiling_mean_).get();
+        return disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_, mean}, *footprints_);
     };
     const auto one_sided = [&](Side side, const EffectCurve& curve) {
         if (curve.is_none()) {

@@ -10,6 +10,7 @@
 
 namespace downwash {
 
+class CurveMean;
 struct Footprint;
 
 /// The exact surface effect on one rotor at any point of the world: the reference that a map interpolates and that the
@@ -70,6 +71,7 @@ class DOWNWASH_EXPORT DirectEffect {
     double disc_radius_m_;
     double least_clearance_m_;
     EffectCurve ground_, ceiling_;
+    std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;  ///< null for curves that have none
     std::shared_ptr<const std::vector<Footprint>> footprints_;
 };
 

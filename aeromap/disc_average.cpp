@@ -9,7 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/aeromap/chord_envelope.hpp"
 #include "downwash/aeromap/chord_sum.hpp"
+#include "downwash/aeromap/facing_surface.hpp"
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
 #include "downwash/aeromap/plane_average.hpp"
@@ -22,6 +24,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = 3.14159265358979323846;
 /// Where obstacles change k by less, a relative error of one percent does no harm.
 constexpr double far_stake = 0.01;
+/// The nodes of Gauss' rule of two points.
+constexpr double gauss_2 = 0.57735026918962576;
 
 /// With more parts over the disc chord_sum takes their place.
 constexpr std::size_t most_with_crossings = 24;
@@ -29,15 +33,21 @@ constexpr std::size_t most_with_crossings = 24;
 /// A part of an obstacle that may be the first surface for some point of the disc.
 struct FacingPart {
     const Footprint* footprint;
-    double gap_m;   ///< nowhere smaller
-    double factor;  ///< at that gap: everywhere when the part is level
+    double gap_m;             ///< nowhere smaller
+    bool is_straight = true;  ///< along the chords
 };
 
-/// A candidate's shadow on one chord.
-struct ShadowedStretch {
-    double low, high;
-    const FacingPart* candidate;
-};
+/// Along the axis of the nearest cylinder that lies, else down the slope of the nearest part.
+ChordFrame frame_for(const DiscQuery& query, const std::pmr::vector<FacingPart>& nearest_first) {
+    for (const FacingPart& candidate : nearest_first) {
+        const ShadowOutline& outline = candidate.footprint->outline;
+        if (!candidate.footprint->is_level && !candidate.footprint->has_plane_faces && !outline.segments.empty()) {
+            return {query.hub_m[0], query.hub_m[1], query.radius_m, outline.slope_y, -outline.slope_x};
+        }
+    }
+    const ShadowOutline& first = nearest_first.front().footprint->outline;
+    return {query.hub_m[0], query.hub_m[1], query.radius_m, first.slope_x, first.slope_y};
+}
 
 /// Cuts the disc into chords, splits them where outlines begin, end or leave the disc, and takes the first surface
 /// along each.
@@ -47,20 +57,22 @@ class DiscQuadrature {
     DiscQuadrature(const DiscQuery& query, double background_m, std::pmr::vector<FacingPart>& candidates,
                    std::pmr::memory_resource* memory)
         : query_(query),
-          background_m_(background_m),
           background_(query.factor(background_m)),
           candidates_(candidates),
+          envelope_(query, background_m, memory),
           breaks_(memory),
-          stretches_(memory),
           cuts_(memory) {
         std::sort(candidates.begin(), candidates.end(),
                   [](const FacingPart& a, const FacingPart& b) { return a.gap_m < b.gap_m; });
-        const ShadowOutline& first = candidates.front().footprint->outline;
-        frame_ = {query.hub_m[0], query.hub_m[1], query.radius_m, first.slope_x, first.slope_y};
+        frame_ = frame_for(query, candidates);
+        for (FacingPart& candidate : candidates) {
+            candidate.is_straight = is_straight(*candidate.footprint, frame_);
+        }
         const double stake =
             query.curve.largest_difference(candidates.front().gap_m / query.unit_m, background_m / query.unit_m);
         is_far_ = stake < far_stake;
-        const double weight = is_far_ ? 0.12 : stake < 0.1 ? 0.5 : 1;
+        // Measured against 32 times as many chords: at most 1e-3 up to a stake of 1, and seldom more than 1e-4.
+        const double weight = is_far_ ? 0.1 : stake < 0.1 ? 0.35 : stake < 0.5 ? 0.85 : 1.3;
         const bool is_level = std::all_of(candidates.begin(), candidates.end(),
                                           [](const FacingPart& candidate) { return candidate.footprint->is_level; });
         is_polygonal_ = is_level && std::all_of(candidates.begin(), candidates.end(), [](const FacingPart& candidate) {
@@ -68,8 +80,8 @@ class DiscQuadrature {
                         });
         scale_ = (is_level ? 2 : 1) * weight / query.radius_m;  // level chords cost little
         breaks_.reserve(32);
-        stretches_.reserve(candidates.size());
-        cuts_.reserve(2 * candidates.size());
+        cuts_.reserve(16);
+        curve_pieces_ = is_far_ ? 1 : stake < 0.1 ? 2 : 4;
     }
 
     double average() {
@@ -130,112 +142,64 @@ class DiscQuadrature {
         const double half = std::sqrt(std::max(query_.radius_m * query_.radius_m - v * v, 0.0));
         const double x = frame_.x_of(0, v);
         const double y = frame_.y_of(0, v);
-        stretches_.clear();
+        envelope_.clear();
         for (const FacingPart& candidate : candidates_) {
             const Interval shadow =
                 query_.scene.shadow_on_line(candidate.footprint->part, x, y, frame_.du_x, frame_.du_y);
             const double low = std::max(shadow.low, -half);
             const double high = std::min(shadow.high, half);
-            if (low < high) {
-                stretches_.push_back({low, high, &candidate});
-            }
-        }
-        if (stretches_.empty()) {
-            return 0;
-        }
-        cuts_.clear();
-        for (const ShadowedStretch& stretch : stretches_) {
-            cuts_.push_back(stretch.low);
-            cuts_.push_back(stretch.high);
-            if (!is_far_ && !stretch.candidate->footprint->is_level) {
-                add_creases(frame_, query_.side, stretch.candidate->footprint->outline, v, {stretch.low, stretch.high},
-                            cuts_);
-            }
-        }
-        std::sort(cuts_.begin(), cuts_.end());
-        double sum = 0;
-        for (std::size_t i = 1; i < cuts_.size(); ++i) {
-            sum += piece(cuts_[i - 1], cuts_[i], v);
-        }
-        return sum;
-    }
-
-    /// A piece of a chord over which the same candidates lie.
-    double piece(double low, double high, double v) {
-        const double middle = 0.5 * (low + high);
-        for (const ShadowedStretch& stretch : stretches_) {  // nearest first
-            if (!(stretch.low < middle && middle < stretch.high)) {
+            if (!(low < high)) {
                 continue;
             }
-            if (!stretch.candidate->footprint->is_level) {
-                return curved_piece(low, high, v);
+            if (candidate.footprint->is_level) {
+                envelope_.add({low, high, candidate.gap_m, candidate.gap_m});
+            } else if (!add_plane_stretches(query_, frame_, *candidate.footprint, v, {low, high}, envelope_)) {
+                add_slopes(candidate, {low, high}, v);
             }
-            return (stretch.candidate->factor - background_) * (high - low);
         }
-        return 0;
+        return envelope_.excess();
     }
 
-    /// With a surface that is not level. The model's cap is a kink which the rule must not run across.
-    double curved_piece(double low, double high, double v) {
+    /// Between the creases of its surface.
+    void add_slopes(const FacingPart& candidate, const Interval& shadow, double v) {
+        cuts_.clear();
+        cuts_.push_back(shadow.low);
+        cuts_.push_back(shadow.high);
+        if (!is_far_) {
+            add_creases(frame_, query_.side, candidate.footprint->outline, v, shadow, cuts_);
+            std::sort(cuts_.begin(), cuts_.end());
+        }
+        for (std::size_t i = 1; i < cuts_.size(); ++i) {
+            if (cuts_[i - 1] < cuts_[i]) {
+                add_slopes(candidate, cuts_[i - 1], cuts_[i], v);
+            }
+        }
+    }
+
+    /// One straight piece where the surface is straight along the chord, else some, denser towards both ends, where
+    /// round surfaces turn upright. Each is the line through two points of the surface that has its mean gap.
+    void add_slopes(const FacingPart& candidate, double low, double high, double v) {
         const double middle = 0.5 * (low + high);
-        const auto gap = [&](double u) {
-            double least = background_m_;
-            for (const ShadowedStretch& stretch : stretches_) {
-                if (stretch.candidate->gap_m >= least) {
-                    break;
-                }
-                if (stretch.low < middle && middle < stretch.high) {
-                    least = std::min(least, gap_at(*stretch.candidate, frame_.x_of(u, v), frame_.y_of(u, v)));
-                }
+        const double reach = 0.5 * (high - low);
+        const bool is_ball = candidate.footprint->outline.segments.empty();  // bends both ways
+        const int pieces = candidate.is_straight ? 1 : is_ball ? 2 * curve_pieces_ : curve_pieces_;
+        double from = low;
+        for (int i = 1; i <= pieces; ++i) {
+            const double t = 2.0 * i / pieces - 1;
+            const double to = i < pieces ? middle + reach * 0.5 * t * (3 - t * t) : high;
+            const double center = 0.5 * (from + to);
+            const double aside = 0.5 * gauss_2 * (to - from);
+            const double one =
+                gap_at(query_, *candidate.footprint, frame_.x_of(center - aside, v), frame_.y_of(center - aside, v));
+            const double other =
+                gap_at(query_, *candidate.footprint, frame_.x_of(center + aside, v), frame_.y_of(center + aside, v));
+            if (one < infinity && other < infinity) {
+                const double mean = 0.5 * (one + other);
+                const double rise = (other - one) * (0.5 / gauss_2);
+                envelope_.add({from, to, std::max(0.0, mean - rise), std::max(0.0, mean + rise)});
             }
-            return least;
-        };
-        const auto excess = [&](double u) { return query_.factor(gap(u)) - background_; };
-        if (stretches_.front().candidate->gap_m >= query_.kink_m()) {
-            return integral(low, high, excess);
+            from = to;
         }
-        const double nearest = nearest_between(low, high, gap);
-        const double first = kink_between(low, nearest, gap);
-        const double second = kink_between(high, nearest, gap);
-        return integral(low, first, excess) + integral(first, second, excess) + integral(second, high, excess);
-    }
-
-    /// About where the gap is least in a piece.
-    template <class Gap>
-    static double nearest_between(double low, double high, const Gap& gap) {
-        double least = infinity;
-        double nearest = low;
-        for (const double part : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) {
-            const double u = low + part * (high - low);
-            const double there = gap(u);
-            if (there < least) {
-                least = there;
-                nearest = u;
-            }
-        }
-        return nearest;
-    }
-
-    /// Where the gap passes the kink on the way from an end of a piece to its nearest point; the end when it does not.
-    template <class Gap>
-    double kink_between(double end, double nearest, const Gap& gap) const {
-        const bool is_beyond = gap(nearest) > query_.kink_m();
-        if ((gap(end) > query_.kink_m()) == is_beyond) {
-            return end;
-        }
-        for (int halving = 0; halving < 8; ++halving) {
-            const double u = 0.5 * (end + nearest);
-            ((gap(u) > query_.kink_m()) == is_beyond ? nearest : end) = u;
-        }
-        return 0.5 * (end + nearest);
-    }
-
-    double gap_at(const FacingPart& candidate, double x, double y) const {
-        if (candidate.footprint->is_level) {
-            return candidate.gap_m;
-        }
-        const Interval extent = query_.scene.vertical_extent(candidate.footprint->part, x, y);
-        return extent.empty() ? infinity : query_.gap(extent.low, extent.high);
     }
 
     void collect_breaks() {
@@ -243,6 +207,9 @@ class DiscQuadrature {
         breaks_.push_back(query_.radius_m);
         for (const FacingPart& candidate : candidates_) {
             add_breaks(frame_, query_.side, candidate.footprint->outline, breaks_);
+            if (!candidate.footprint->is_level && candidate.gap_m < query_.kink_m()) {
+                add_kinks(query_, frame_, *candidate.footprint, breaks_);
+            }
         }
         if (is_polygonal_) {
             for (std::size_t i = 1; i < candidates_.size(); ++i) {
@@ -260,15 +227,15 @@ class DiscQuadrature {
     }
 
     const DiscQuery& query_;
-    double background_m_;
     double background_;
     bool is_far_ = false;
     bool is_polygonal_ = false;  ///< level faces with straight edges only
+    int curve_pieces_ = 1;       ///< that stand for a round surface along a chord
     double scale_ = 0;           ///< what makes a width one that matters
     const std::pmr::vector<FacingPart>& candidates_;
     ChordFrame frame_{};
+    ChordEnvelope envelope_;
     std::pmr::vector<double> breaks_;
-    std::pmr::vector<ShadowedStretch> stretches_;
     std::pmr::vector<double> cuts_;
 };
 
@@ -324,7 +291,7 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
         if (footprint.is_level && footprint.covers_disc(query.hub_m[0], query.hub_m[1], query.radius_m)) {
             cover_m = std::min(cover_m, gap);
         } else if (gap < infinity) {
-            candidates.push_back({&footprint, gap, 1});
+            candidates.push_back({&footprint, gap});
         }
     };
     std::for_each(primitives.begin(), primitives.end(), add_over_disc);
@@ -350,9 +317,6 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     }
     if (const auto cover = only_plane(query, candidates, cover_m)) {
         return plane_average(query, *cover);
-    }
-    for (FacingPart& candidate : candidates) {
-        candidate.factor = query.factor(candidate.gap_m);
     }
     return DiscQuadrature(query, cover_m, candidates, &memory).average();
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/scene/scene.hpp"
 
@@ -19,7 +20,8 @@ struct DiscQuery {
     double radius_m;  ///< of the disc
     Side side;
     const EffectCurve& curve;
-    double unit_m;  ///< what the curve's distances are measured in: the rotor radius
+    double unit_m;          ///< what the curve's distances are measured in: the rotor radius
+    const CurveMean* mean;  ///< of the curve; null when it has none
 
     /// Distance from the rotor plane to a stretch of a vertical line: 0 when the plane cuts it, infinite when the
     /// stretch lies on the other side.
@@ -30,6 +32,8 @@ struct DiscQuery {
     }
     /// The curve's factor at that distance.
     [[nodiscard]] double factor(double gap_m) const { return curve(gap_m / unit_m); }
+    /// The mean of the factor over a straight slope from one distance to another.
+    [[nodiscard]] double mean_factor(double one_m, double other_m) const;
     /// The distance at which the curve meets its cap, negative when it never does.
     [[nodiscard]] double kink_m() const { return unit_m * curve.cap_distance(); }
 };

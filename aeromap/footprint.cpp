@@ -1,15 +1,48 @@
 #include "downwash/aeromap/footprint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
 
 namespace downwash {
+namespace {
+
+/// Of the faces seen from above or from below; none of cylinders and spheres.
+std::vector<Footprint::Plane> planes_of(const Scene& scene, std::size_t part, bool is_from_above) {
+    std::array<std::byte, 1024> room;
+    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
+    std::pmr::vector<Scene::Face> faces(&memory);
+    scene.add_faces(part, is_from_above, faces);
+    std::vector<Footprint::Plane> planes;
+    for (const Scene::Face& face : faces) {
+        const Vector3& a = face.corners_m[0];
+        const Vector3& b = face.corners_m[1];
+        const Vector3& c = face.corners_m[2];
+        const double ux = b[0] - a[0];
+        const double uy = b[1] - a[1];
+        const double vx = c[0] - a[0];
+        const double vy = c[1] - a[1];
+        const double area = ux * vy - uy * vx;
+        const double gx = ((b[2] - a[2]) * vy - (c[2] - a[2]) * uy) / area;
+        const double gy = ((c[2] - a[2]) * ux - (b[2] - a[2]) * vx) / area;
+        planes.push_back({a[2] - gx * a[0] - gy * a[1], gx, gy});
+    }
+    return planes;
+}
+
+}  // namespace
 
 Footprint::Footprint(const Scene& scene, std::size_t which)
     : part(which),
       bounds(scene.part_bounds(which)),
       is_level(scene.is_level(which)),
-      outline(shadow_outline(scene, which)) {
+      outline(shadow_outline(scene, which)),
+      upper_planes(planes_of(scene, which, true)),
+      lower_planes(planes_of(scene, which, false)) {
+    has_plane_faces = !upper_planes.empty();
     if (!is_level) {
         return;
     }

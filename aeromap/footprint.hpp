@@ -22,8 +22,14 @@ struct Footprint {
 
     std::size_t part;
     Scene::Bounds bounds;
-    bool is_level;  ///< see Scene::is_level
+    bool is_level;                 ///< see Scene::is_level
+    bool has_plane_faces = false;  ///< a box or a triangle
     ShadowOutline outline;
+    /// A plane face as heights over the ground: z = z_m + gx x + gy y.
+    struct Plane {
+        double z_m, gx, gy;
+    };
+    std::vector<Plane> upper_planes, lower_planes;  ///< seen from above and from below; of parts with plane faces
 
  private:
     /// The points with nx x + ny y <= reach.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "downwash/aeromap/change_bound.hpp"
+#include "downwash/aeromap/factor_patches.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
@@ -27,14 +28,15 @@ class RowsBuilder {
           radius_m_(grid.effect.disc_radius_m()),
           least_clearance_m_(grid.effect.least_clearance_m()),
           first_(first),
-          last_(last) {
+          last_(last),
+          patches_(grid, first) {
         forget(lines_[2]);
         rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
-        everywhere_.factor = [this](double x, double z) { return grid_.effect.factor(hub(x, z)); };
+        everywhere_.factor = [this](double x, double z) { return patches_.factor(x, z); };
         everywhere_.shortest_turn_m = shortest_turn_m(grid.effect);
         partly_ = everywhere_;
         partly_.is_forbidden_around = [this](double x, double z, double reach) {
-            return clearance_m(x, z) + reach < least_clearance_m_;
+            return is_forbidden_around(x, z, reach);
         };
     }
 
@@ -44,6 +46,10 @@ class RowsBuilder {
             if (grid_.effect.settings().map && least_clearance_m_ >= 0) {
                 ask_given_map();
             }
+        }
+        if (grid_.effect.settings().enabled && std::isinf(everywhere_.shortest_turn_m)) {
+            patches_.fit(
+                [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, first_ + k, n); });
         }
         for (std::size_t k = first_; k < last_; ++k) {
             lines_[0].swap(lines_[2]);
@@ -65,6 +71,33 @@ class RowsBuilder {
     }
     CellFlyability& flyability(std::size_t i, std::size_t k) {
         return rows_.flyability[(k - first_) * grid_.columns + i];
+    }
+
+    /// Of the cells from (i, k) to before (i + n, k + n).
+    FactorPatches::Flyable flyable_cells(std::size_t i, std::size_t k, std::size_t n) {
+        bool are_all = true;
+        bool is_none = true;
+        for (std::size_t row = k; row < std::min(last_, k + n); ++row) {
+            for (std::size_t column = i; column < std::min(grid_.columns, i + n); ++column) {
+                are_all = are_all && flyability(column, row) == CellFlyability::flyable;
+                is_none = is_none && flyability(column, row) == CellFlyability::forbidden;
+            }
+        }
+        return is_none   ? FactorPatches::Flyable::none
+               : are_all ? FactorPatches::Flyable::all
+                         : FactorPatches::Flyable::some;
+    }
+
+    /// In the cell of mixed flyability that is looked at. The clearance of its middle often tells.
+    bool is_forbidden_around(double x, double z, double reach) const {
+        const double dx = x - middle_.x_m;
+        const double dz = z - middle_.z_m;
+        const double away = std::sqrt(dx * dx + dz * dz) + clearance_slack_m;
+        if (middle_.clearance_m + away + reach < least_clearance_m_) {
+            return true;
+        }
+        return middle_.clearance_m - away + reach < least_clearance_m_ &&
+               clearance_m(x, z) + reach < least_clearance_m_;
     }
 
     /// Moving the disc by d changes its clearance by at most d: one clearance decides a whole block of cells when it
@@ -133,6 +166,10 @@ class RowsBuilder {
             rows_.nodes.insert(rows_.nodes.end(), 4, 1.0F);
             return;
         }
+        if (flyable == CellFlyability::mixed) {
+            middle_ = {cell.x_low_m + 0.5 * cell.side_m, cell.z_low_m + 0.5 * cell.side_m, 0};
+            middle_.clearance_m = clearance_m(middle_.x_m, middle_.z_m);
+        }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
         const bool is_quiet =
             !grid_.effect.settings().enabled || largest_change(grid_.effect, hubs_in(cell)) <= quiet_change;
@@ -166,7 +203,7 @@ class RowsBuilder {
         if (known == unknown) {
             const double x = grid_.x_low_m + (static_cast<double>(i) + 0.5 * static_cast<double>(part)) * grid_.side_m;
             const double z = grid_.z_low_m + (static_cast<double>(k) + 0.5 * static_cast<double>(line)) * grid_.side_m;
-            known = grid_.effect.factor(hub(x, z));
+            known = everywhere_.factor(x, z);
         }
         return known;
     }
@@ -179,6 +216,11 @@ class RowsBuilder {
     std::size_t first_, last_;
     CellField everywhere_, partly_;
     CellRows rows_;
+    FactorPatches patches_;
+    struct Middle {
+        double x_m, z_m, clearance_m;
+    };
+    Middle middle_{};  ///< of the present cell, when it is mixed
     /// K along the lower border, the middle and the upper border of the present row of cells, as far as it was asked
     /// for.
     std::array<std::vector<double>, 3> lines_;

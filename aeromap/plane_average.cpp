@@ -15,6 +15,23 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// The average over a disc of what depends on the distance from a line through its middle: distances in radii, weights
+/// that add up to 1. Gauss and Chebyshev's rule of the second kind, exact for polynomials up to the 23rd power.
+const std::array<GaussNode, 12>& across_disc() {
+    static const std::array<GaussNode, 12> rule = [] {
+        std::array<GaussNode, 12> nodes{};
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const double parts = static_cast<double>(nodes.size() + 1);
+            double sine = 0;
+            double cosine = 0;
+            lane::sin_cos(pi * static_cast<double>(i + 1) / parts, sine, cosine);
+            nodes[i] = {cosine, 2 * sine * sine / parts};
+        }
+        return nodes;
+    }();
+    return rule;
+}
+
 /// Whether an edge reaches into the disc.
 bool reaches_into(const OutlineSegment& edge, double x, double y, double radius) {
     const double ax = edge.ax - x;
@@ -25,14 +42,6 @@ bool reaches_into(const OutlineSegment& edge, double x, double y, double radius)
     const double nearest_x = ax + part * dx;
     const double nearest_y = ay + part * dy;
     return nearest_x * nearest_x + nearest_y * nearest_y < radius * radius;
-}
-
-/// Not of cylinders and spheres.
-bool has_plane_faces(const DiscQuery& query, std::size_t part) {
-    std::array<std::byte, 1024> room;
-    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-    std::pmr::vector<Scene::Face> faces(&memory);
-    return query.scene.add_faces(part, query.side == Side::below, faces);
 }
 
 }  // namespace
@@ -46,8 +55,7 @@ std::optional<PlaneCover> plane_cover(const DiscQuery& query, const Footprint& f
     };
     const ShadowOutline& outline = footprint.outline;
     if (!outline.ellipses.empty() || outline.segments.empty() ||
-        std::any_of(outline.segments.begin(), outline.segments.end(), is_seen_in_disc) ||
-        !has_plane_faces(query, footprint.part)) {
+        std::any_of(outline.segments.begin(), outline.segments.end(), is_seen_in_disc) || !footprint.has_plane_faces) {
         return {};
     }
     // Without an edge in the disc all of it sees the face that its middle sees, or all of it none.
@@ -71,6 +79,15 @@ double plane_average(const DiscQuery& query, const PlaneCover& cover) {
     if (!(cover.gap_range_m > 0)) {
         return query.factor(cover.gap_m);
     }
+    // The model's cap is a kink which the rule must not run across.
+    const double kink = std::clamp((query.kink_m() - cover.gap_m) / cover.gap_range_m, -1.0, 1.0);
+    if (std::abs(kink) == 1) {
+        double sum = 0;
+        for (const GaussNode& node : across_disc()) {
+            sum += node.weight * query.factor(cover.gap_m + cover.gap_range_m * node.position);
+        }
+        return sum;
+    }
     // At a distance r sin t from the middle a chord is 2 r cos t long, and dv = r cos t dt.
     const auto weighted = [&](double t) {
         double sine = 0;
@@ -78,17 +95,9 @@ double plane_average(const DiscQuery& query, const PlaneCover& cover) {
         lane::sin_cos(t, sine, cosine);
         return query.factor(cover.gap_m + cover.gap_range_m * sine) * cosine * cosine;
     };
-    // The model's cap is a kink which the rule must not run across.
-    const double kink = std::clamp((query.kink_m() - cover.gap_m) / cover.gap_range_m, -1.0, 1.0);
     const double split = lane::atan2(kink, std::sqrt((1 - kink) * (1 + kink)));
-    double sum = 0;
-    if (split > -0.5 * pi) {
-        sum += integrate(plain_12, -0.5 * pi, split, weighted);
-    }
-    if (split < 0.5 * pi) {
-        sum += integrate(plain_12, split, 0.5 * pi, weighted);
-    }
-    return sum * (2 / pi);
+    return (integrate(plain_12, -0.5 * pi, split, weighted) + integrate(plain_12, split, 0.5 * pi, weighted)) *
+           (2 / pi);
 }
 
 }  // namespace downwash

@@ -1,5 +1,6 @@
 // The quadrature over the disc against closed forms and against counting rays.
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -81,6 +82,83 @@ TEST_CASE("A pipe under the rotor agrees with a million rays") {
             const Vector3 under{sideways, 0, -hub[2]};
             CHECK(effect.factors(hub).ground == Approx(test::by_rays(effect, hub).ground).margin(1e-3));
             CHECK(effect.factors(under).ceiling == Approx(test::by_rays(effect, under).ceiling).margin(1e-3));
+        }
+    }
+}
+
+TEST_CASE("Over a level pipe and a ball the average is an integral over one variable, across the cap too") {
+    const AeroSettings settings;
+    const EffectCurve curve(settings.ground, settings.max_factor);
+    // Over the pipe's axis the gap depends on the distance from it, over the ball's centre on that from the centre.
+    const auto average = [&curve](double body_radius, double gap, bool is_ball) {
+        constexpr int steps = 100000;
+        double sum = 0;
+        for (int i = 0; i < steps; ++i) {
+            const double w = radius * (i + 0.5) / steps;
+            const double weight = is_ball ? 2 * pi * w : 4 * std::sqrt(radius * radius - w * w);
+            const double below = body_radius * body_radius - w * w;
+            sum += below < 0 ? 0 : weight * (curve((gap + body_radius - std::sqrt(below)) / radius) - 1);
+        }
+        return 1 + sum * (radius / steps) / (pi * radius * radius);
+    };
+    for (const double body_radius : {0.05, 0.15, 0.21, 0.5, 2.0}) {
+        for (const double yaw : {0.0, 0.3, 1.1}) {
+            const DirectEffect pipe(scene_of({{"", Cylinder{body_radius, 9, {1, 0, 0}}, {}, {0, 0, yaw}}}), settings,
+                                    radius);
+            const DirectEffect ball(scene_of({{"", Sphere{body_radius}, {}, {}}}), settings, radius);
+            for (double gap = 0.3 * radius; gap < 3 * radius; gap *= 1.07) {
+                CAPTURE(body_radius, yaw, gap);
+                const Vector3 hub{0, 0, body_radius + gap};
+                const double on_pipe = average(body_radius, gap, false);
+                REQUIRE(pipe.factors(hub).ground == Approx(on_pipe).epsilon(0).margin(1.5e-3));
+                const double on_ball = average(body_radius, gap, true);
+                REQUIRE(ball.factors(hub).ground == Approx(on_ball).epsilon(0).margin(2e-3));
+            }
+        }
+    }
+}
+
+TEST_CASE("Whichever of a tilted block's faces lie over one chord, each counts as far as it reaches") {
+    test::Random random(23);
+    int compared = 0;
+    double worst = 0;
+    while (compared < 800) {
+        const Obstacle block{"",
+                             Box{{random.uniform(0.1, 0.5), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5)}},
+                             {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0},
+                             {random.uniform(-pi, pi), random.uniform(-pi, pi), random.uniform(-pi, pi)}};
+        const DirectEffect effect(scene_of({block}), {}, radius);
+        const Vector3 hub{0, 0, random.uniform(0.1, 0.6)};
+        if (!effect.is_flyable(hub) || effect.factors(hub).ground < 1.01) {
+            continue;
+        }
+        worst = std::max(worst, std::abs(effect.factors(hub).ground - test::by_rays(effect, hub, 150).ground));
+        ++compared;
+    }
+    CAPTURE(worst);
+    CHECK(worst < 3e-3);  // of which the rays' own error is half
+}
+
+TEST_CASE("Slopes that cross each other over the disc are seen as far as each is first") {
+    // Two wide planes that meet in a valley along y, gap c - s |x|: an integral over one variable again.
+    const AeroSettings settings;
+    const EffectCurve curve(settings.ground, settings.max_factor);
+    for (const double pitch : {0.1, 0.4, 0.8}) {
+        const double s = std::tan(pitch);
+        const double top = 1 / std::cos(pitch);
+        const DirectEffect effect(
+            scene_of({{"", Box{{20, 20, 2}}, {}, {0, pitch, 0}}, {"", Box{{20, 20, 2}}, {}, {0, -pitch, 0}}}), settings,
+            radius);
+        for (double gap = 0.3 * radius; gap < 3 * radius; gap *= 1.1) {
+            constexpr int steps = 20000;
+            double sum = 0;
+            for (int i = 0; i < steps; ++i) {
+                const double w = radius * (i + 0.5) / steps;
+                sum += 4 * std::sqrt(radius * radius - w * w) * curve((gap + s * (radius - w)) / radius);
+            }
+            const double expected = sum * (radius / steps) / (pi * radius * radius);
+            CAPTURE(pitch, gap);
+            REQUIRE(effect.factors({0, 0, top + gap + s * radius}).ground == Approx(expected).epsilon(0).margin(1e-3));
         }
     }
 }

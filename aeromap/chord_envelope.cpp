@@ -1,0 +1,94 @@
+#include "downwash/aeromap/chord_envelope.hpp"
+
+#include <algorithm>
+
+namespace downwash {
+namespace {
+
+/// Lines over one piece of a chord change places at most as often; more is rounding.
+constexpr int most_splits = 16;
+
+}  // namespace
+
+ChordEnvelope::ChordEnvelope(const DiscQuery& query, double background_m, std::pmr::memory_resource* memory)
+    : query_(query),
+      background_m_(background_m),
+      background_(query.factor(background_m)),
+      stretches_(memory),
+      cuts_(memory),
+      open_(memory) {}
+
+/// Walks along the chord from cut to cut with the stretches that lie there.
+double ChordEnvelope::excess() {
+    if (stretches_.empty()) {
+        return 0;
+    }
+    std::sort(stretches_.begin(), stretches_.end(),
+              [](const SurfaceStretch& a, const SurfaceStretch& b) { return a.low < b.low; });
+    cuts_.clear();
+    for (const SurfaceStretch& stretch : stretches_) {
+        cuts_.push_back(stretch.low);
+        cuts_.push_back(stretch.high);
+    }
+    std::sort(cuts_.begin(), cuts_.end());
+    open_.clear();
+    std::size_t next = 0;
+    double sum = 0;
+    for (std::size_t i = 1; i < cuts_.size(); ++i) {
+        const double low = cuts_[i - 1];
+        const double high = cuts_[i];
+        for (; next < stretches_.size() && stretches_[next].low <= low; ++next) {
+            open_.push_back(stretches_[next]);
+        }
+        open_.erase(std::remove_if(open_.begin(), open_.end(),
+                                   [&](const SurfaceStretch& stretch) { return stretch.high <= low; }),
+                    open_.end());
+        if (low < high && !open_.empty()) {
+            sum += between(low, high, first_at(low), first_at(high), most_splits);
+        }
+    }
+    return sum;
+}
+
+double ChordEnvelope::gap_of(std::size_t stretch, double u) const {
+    return stretch < open_.size() ? open_[stretch].gap_at(u) : background_m_;
+}
+
+ChordEnvelope::First ChordEnvelope::first_at(double u) const {
+    First first{open_.size(), background_m_};
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+        const double gap = open_[i].gap_at(u);
+        if (gap < first.gap) {
+            first = {i, gap};
+        }
+    }
+    return first;
+}
+
+/// A line that is first at both ends is first all the way; otherwise the two that are meet each other or a third one.
+double ChordEnvelope::between(double low, double high, First at_low, First at_high, int splits) const {
+    const double other_low = gap_of(at_high.stretch, low);
+    const double other_high = gap_of(at_low.stretch, high);
+    if (at_low.stretch == at_high.stretch || !(other_high > at_high.gap)) {
+        return straight(low, high, at_low.gap, other_high);
+    }
+    if (!(other_low > at_low.gap)) {
+        return straight(low, high, other_low, at_high.gap);
+    }
+    const double lead = other_low - at_low.gap;
+    const double lag = other_high - at_high.gap;
+    const double meeting = low + (high - low) * (lead / (lead + lag));
+    const double gap = gap_of(at_low.stretch, meeting);
+    const First first = splits > 0 ? first_at(meeting) : First{at_low.stretch, gap};
+    constexpr double negligible_m = 1e-12;
+    if (first.gap > gap - negligible_m) {
+        return straight(low, meeting, at_low.gap, gap) + straight(meeting, high, gap, at_high.gap);
+    }
+    return between(low, meeting, at_low, first, splits - 1) + between(meeting, high, first, at_high, splits - 1);
+}
+
+double ChordEnvelope::straight(double low, double high, double gap_low, double gap_high) const {
+    return (high - low) * (query_.mean_factor(gap_low, gap_high) - background_);
+}
+
+}  // namespace downwash

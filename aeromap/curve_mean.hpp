@@ -1,0 +1,35 @@
+#pragma once
+
+// Private to aeromap.
+
+#include <array>
+#include <vector>
+
+#include "downwash/effects/effect_curve.hpp"
+
+namespace downwash {
+
+/// Means of a curve that falls with distance over ranges of distance, from its tabulated integral: what a surface does
+/// along a line on which it is a straight slope. Immutable.
+class CurveMean {
+ public:
+    /// @pre curve.falls_with_distance() and not curve.depends_on_wall()
+    explicit CurveMean(const EffectCurve& curve);
+
+    /// Mean of k between two distances in radii, in either order; at least 0 and finite. Off by less than 1e-6 up to
+    /// `reach` beyond the cap and by less than 1e-4 where a range reaches farther.
+    [[nodiscard]] double operator()(double one, double other) const;
+
+ private:
+    struct Node {
+        double integral, factor;
+    };
+    [[nodiscard]] double integral_to(double distance) const noexcept;
+
+    EffectCurve curve_;
+    double start_;             ///< before it k is constant
+    double start_factor_;      ///< that constant
+    std::vector<Node> nodes_;  ///< of the integral from `start_` on, denser towards it
+};
+
+}  // namespace downwash

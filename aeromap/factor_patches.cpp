@@ -1,0 +1,148 @@
+#include "downwash/aeromap/factor_patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "downwash/aeromap/change_bound.hpp"
+#include "downwash/aeromap/triquadratic.hpp"
+
+namespace downwash {
+namespace {
+
+/// Of the parabolas at the points looked at.
+constexpr double allowed_error = 0.002;
+/// A block where K cannot differ more than this from 1 is not looked at closer.
+constexpr double quiet_change = 0.006;
+
+/// The finest division of a cell has 512 steps, and its probes look at their quarters.
+constexpr std::uint64_t cell_units = 4 * most_steps;
+constexpr std::uint64_t block_units = cell_units * FactorPatches::block_cells;
+constexpr std::uint64_t least_units = cell_units / 2;
+
+/// A few megabytes; some ten thousand are usual.
+constexpr std::size_t most_known = 1U << 17U;
+
+/// A node without parabolas. Block 0 is no quarter.
+constexpr std::int32_t direct = 0;
+
+/// The product of two parabolas through 3 x 3 values, at parts from 0 to 1 of the square's side.
+double biquadratic(const std::array<double, 9>& values, double x, double z) {
+    const auto along_x = parabola_weights(x);
+    const auto along_z = parabola_weights(z);
+    double sum = 0;
+    for (std::size_t row = 0; row < 3; ++row) {
+        const std::size_t n = 3 * row;
+        sum += along_z[row] * (along_x[0] * values[n] + along_x[1] * values[n + 1] + along_x[2] * values[n + 2]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+FactorPatches::FactorPatches(const LayerGrid& grid, std::size_t first) : grid_(grid), first_(first) {}
+
+void FactorPatches::fit(const FlyableCells& flyable) {
+    blocks_ = (grid_.columns + block_cells - 1) / block_cells;
+    nodes_.assign(blocks_, direct);
+    for (std::size_t i = 0; i < blocks_; ++i) {
+        fit(i, {i * block_units, 0, block_units}, false, flyable);
+    }
+}
+
+void FactorPatches::fit(std::size_t node, const Square& square, bool is_flyable, const FlyableCells& flyable) {
+    if (!is_flyable) {
+        const std::uint64_t cells = std::max(square.side / cell_units, std::uint64_t{1});
+        const Flyable answer = flyable(square.x / cell_units, square.z / cell_units, cells);
+        if (answer == Flyable::none || (answer == Flyable::some && cells == 1)) {
+            return;
+        }
+        is_flyable = answer == Flyable::all;
+    }
+    if (is_flyable) {
+        Values values{};
+        for (std::size_t n = 0; n < values.size(); ++n) {
+            values[n] = sample(square.x + n % 3 * (square.side / 2), square.z + n / 3 * (square.side / 2));
+        }
+        if (is_quiet(square) || is_met(square, values)) {
+            values_.push_back(values);
+            nodes_[node] = -static_cast<std::int32_t>(values_.size());
+            return;
+        }
+    }
+    if (square.side <= least_units) {
+        return;
+    }
+    const std::size_t quarters = nodes_.size();
+    nodes_[node] = static_cast<std::int32_t>(quarters);
+    nodes_.resize(quarters + 4, direct);
+    const std::uint64_t half = square.side / 2;
+    for (std::uint64_t quarter = 0; quarter < 4; ++quarter) {
+        fit(quarters + quarter, {square.x + quarter % 2 * half, square.z + quarter / 2 * half, half}, is_flyable,
+            flyable);
+    }
+}
+
+/// Looks at the middles of the quarters: farthest from all samples, and close to where a parabola misses most.
+bool FactorPatches::is_met(const Square& square, const Values& values) {
+    const auto is_close = [&](unsigned x, unsigned z) {
+        const double there = sample(square.x + x * (square.side / 4), square.z + z * (square.side / 4));
+        return std::abs(there - biquadratic(values, 0.25 * x, 0.25 * z)) <= allowed_error;
+    };
+    return is_close(1, 1) && is_close(3, 3) && is_close(3, 1) && is_close(1, 3);
+}
+
+bool FactorPatches::is_quiet(const Square& square) const {
+    const Vector3 from = hub_m(square.x, square.z);
+    const Vector3 to = hub_m(square.x + square.side, square.z + square.side);
+    return largest_change(grid_.effect, {{std::min(from[0], to[0]), std::min(from[1], to[1]), from[2]},
+                                         {std::max(from[0], to[0]), std::max(from[1], to[1]), to[2]}}) <= quiet_change;
+}
+
+double FactorPatches::factor(double x_m, double z_m) {
+    const double units_per_m = cell_units / grid_.side_m;
+    const double z_low_m = grid_.z_low_m + static_cast<double>(first_) * grid_.side_m;
+    const auto x = static_cast<std::uint64_t>(std::llround((x_m - grid_.x_low_m) * units_per_m));
+    const auto z = static_cast<std::uint64_t>(std::llround((z_m - z_low_m) * units_per_m));
+    const std::size_t block = x / block_units;
+    if (!(block < blocks_ && z < block_units)) {
+        return sample(x, z);
+    }
+    Square square{block * block_units, 0, block_units};
+    std::int32_t node = nodes_[block];
+    while (node > direct) {
+        square.side /= 2;
+        const bool is_right = x >= square.x + square.side;
+        const bool is_upper = z >= square.z + square.side;
+        square.x += is_right ? square.side : 0;
+        square.z += is_upper ? square.side : 0;
+        node = nodes_[static_cast<std::size_t>(node) + (is_right ? 1U : 0U) + (is_upper ? 2U : 0U)];
+    }
+    if (node == direct) {
+        return sample(x, z);
+    }
+    const auto part = [&square](std::uint64_t units) {
+        return static_cast<double>(units) / static_cast<double>(square.side);
+    };
+    return biquadratic(values_[static_cast<std::size_t>(-1 - node)], part(x - square.x), part(z - square.z));
+}
+
+double FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
+    if (known_.size() >= most_known) {
+        known_.clear();
+    }
+    const auto [known, is_new] = known_.try_emplace(x * (2 * block_units) + z);
+    if (is_new) {
+        known->second = grid_.effect.factor(hub_m(x, z));
+    }
+    return known->second;
+}
+
+/// At corners of cells as exactly there as the map's own arithmetic has them.
+Vector3 FactorPatches::hub_m(std::uint64_t x, std::uint64_t z) const {
+    const double columns = static_cast<double>(x) / cell_units;
+    const double rows = static_cast<double>(first_) + static_cast<double>(z) / cell_units;
+    return grid_.plane.to_world(grid_.x_low_m + columns * grid_.side_m, grid_.lateral_m,
+                                grid_.z_low_m + rows * grid_.side_m);
+}
+
+}  // namespace downwash

@@ -1,0 +1,64 @@
+#pragma once
+
+// Private to aeromap.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "downwash/aeromap/layer_builder.hpp"
+
+namespace downwash {
+
+/// K over a strip of a layer for far fewer evaluations than it is asked for. Square blocks of cells are halved until
+/// parabolas through samples meet K at further samples, or are left to direct evaluation when they do not; what was
+/// evaluated once is remembered.
+class FactorPatches {
+ public:
+    /// The largest blocks, and the strip, are as many cells wide and high. Where their lower left corners are flyable
+    /// K is exact there.
+    static constexpr std::size_t block_cells = 8;
+
+    /// Whether the cells [i, i + n) of the strip's rows [k, k + n) are flyable throughout; of those in the layer.
+    enum class Flyable : std::uint8_t { none, some, all };
+    using FlyableCells = std::function<Flyable(std::size_t i, std::size_t k, std::size_t n)>;
+
+    /// Evaluates directly until parabolas are fitted.
+    /// @param first the strip's first row
+    FactorPatches(const LayerGrid& grid, std::size_t first);
+
+    /// Fits parabolas where all cells are flyable. @pre K turns only from one obstacle to the next (shortest_turn_m)
+    void fit(const FlyableCells& flyable);
+
+    /// K at a point of the strip, which is taken to the nearest of 2048 in a cell's side; parabolas miss by about
+    /// 0.002 at most.
+    [[nodiscard]] double factor(double x_m, double z_m);
+
+ private:
+    /// Of nine samples, x running fastest.
+    using Values = std::array<double, 9>;
+    /// In the lattice of 2048 points to a cell's side, from the strip's lower left corner.
+    struct Square {
+        std::uint64_t x, z, side;
+    };
+
+    void fit(std::size_t node, const Square& square, bool is_flyable, const FlyableCells& flyable);
+    [[nodiscard]] bool is_met(const Square& square, const Values& values);
+    [[nodiscard]] bool is_quiet(const Square& square) const;
+    [[nodiscard]] double sample(std::uint64_t x, std::uint64_t z);
+    [[nodiscard]] Vector3 hub_m(std::uint64_t x, std::uint64_t z) const;
+
+    const LayerGrid& grid_;
+    std::size_t first_;
+    /// Of each block and, behind them, of its quarters in groups of four: what a node stands for is `direct`, the index
+    /// of its first quarter, or -1 - i for values_[i].
+    std::vector<std::int32_t> nodes_;
+    std::size_t blocks_ = 0;
+    std::vector<Values> values_;
+    std::unordered_map<std::uint64_t, double> known_;  ///< K at points of the lattice; forgotten when they grow many
+};
+
+}  // namespace downwash
