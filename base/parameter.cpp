@@ -195,7 +195,7 @@ std::string expectation(const ParameterInfo& info) {
     switch (info.kind) {
         case ParameterKind::group:
             return std::string("a group of keys") + (info.can_be_none ? " or none" : "") +
-                   (info.can_be_file ? " or the path of a file" : "") +
+                   (info.can_be_file ? " or the path of a file" : "") + (info.can_be_list ? " or a list of them" : "") +
                    (info.can_be_integers ? " or a list of whole numbers" + range : "");
         case ParameterKind::list:
             return "a list";

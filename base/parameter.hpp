@@ -53,6 +53,7 @@ struct ParameterInfo {
     bool exclusive = false;        ///< exactly one of the exclusive keys of a group must be there
     bool can_be_none = false;      ///< a group that `none` switches off
     bool can_be_file = false;      ///< a group that may be the path of a file instead
+    bool can_be_list = false;      ///< a group that may be a list of such groups, their keys below "path[]"
     bool can_be_group = false;     ///< a choice that may be a group of keys instead
     bool can_be_integers = false;  ///< a group that may be a list of whole numbers instead
     Range range;
@@ -121,6 +122,10 @@ struct Parameter : ParameterInfo {
         return condition = when, applies = std::move(test), std::move(*this);
     }
 
+    /// Whether a model has a list of groups here now.
+    [[nodiscard]] bool has_list(const Model& model, std::size_t index) const {
+        return kind == ParameterKind::list || (can_be_list && count(model, index) > 1);
+    }
     /// Whether a model has one value here now, not keys below.
     [[nodiscard]] bool has_value(const Model& model, std::size_t index) const {
         return get && !(can_be_group && count(model, index) > 0);

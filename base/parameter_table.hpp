@@ -59,7 +59,7 @@ void for_each_value(const ParameterTable<Model>& table, const Model& model, cons
         }
         if (parameter->has_value(model, index)) {
             visit(*parameter, below, index);
-        } else if (parameter->kind == ParameterKind::list) {
+        } else if (parameter->has_list(model, index)) {
             for (std::size_t i = 0; i < parameter->count(model, index); ++i) {
                 for_each_value(table, model, visit, parameter->path + "[]", below + "[" + std::to_string(i) + "]", i);
             }

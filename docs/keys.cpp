@@ -24,6 +24,7 @@ Problem with_everything<Problem>() {
     Problem problem;
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.any_of = {problem.goal};
     problem.obstacles = {{"", Box{}, {}, {}},
                          {"", Cylinder{}, {}, {}},
                          {"", Sphere{}, {}, {}},

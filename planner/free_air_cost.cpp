@@ -49,18 +49,22 @@ double FreeAirCost::least_of_motion(const Configuration& from, const Configurati
     return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), 0});
 }
 
-double FreeAirCost::least_to_goal(const Configuration& from, double hold_s) const {
-    // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.
-    const GoalError off = space_.error_beyond_tolerance(from);
-    const bool has_tip = space_.goal().end_effector.has_value();
-    const double tip_speed_m_s =
-        limits_.max_speed_m_s + (has_tip ? 2 * space_.arm_weight_m() * limits_.max_arm_rate_rad_s : 0);
-    const double duration_s =
-        peak_over_mean_speed * std::max(off.distance_m / tip_speed_m_s, off.angle_rad / limits_.max_arm_rate_rad_s);
-    // A tip moves by at most d + 2 w darm where the length is sqrt(d^2 + (w darm)^2).
-    const double length_m = has_tip ? off.distance_m / std::sqrt(5.0) : off.distance_m;
-    const double all_s = duration_s + hold_s;
-    return objective_({hover_power_w_ * all_s, all_s, length_m, 0});
+double FreeAirCost::least_to_goal(const Configuration& from) const {
+    double least = HUGE_VAL;
+    for (const Goal& goal : alternatives(space_.goal())) {
+        // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.
+        const GoalError off = space_.error_beyond_tolerance(goal, from);
+        const bool has_tip = goal.end_effector.has_value();
+        const double tip_speed_m_s =
+            limits_.max_speed_m_s + (has_tip ? 2 * space_.arm_weight_m() * limits_.max_arm_rate_rad_s : 0);
+        const double duration_s =
+            peak_over_mean_speed * std::max(off.distance_m / tip_speed_m_s, off.angle_rad / limits_.max_arm_rate_rad_s);
+        // A tip moves by at most d + 2 w darm where the length is sqrt(d^2 + (w darm)^2).
+        const double length_m = has_tip ? off.distance_m / std::sqrt(5.0) : off.distance_m;
+        const double all_s = duration_s + goal.hold_s;
+        least = std::min(least, objective_({hover_power_w_ * all_s, all_s, length_m, 0}));
+    }
+    return least;
 }
 
 double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {

@@ -18,7 +18,7 @@ class FreeAirCost {
     [[nodiscard]] double least_of_motion(const Configuration& from, const Configuration& to) const;
 
     /// Nor does any motion from a configuration to one that meets the goal, and the hold there.
-    [[nodiscard]] double least_to_goal(const Configuration& from, double hold_s) const;
+    [[nodiscard]] double least_to_goal(const Configuration& from) const;
 
     /// Of holding at a configuration [s].
     [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const;

@@ -112,11 +112,10 @@ class InformedSampler : public ob::InformedSampler {
 /// Straight motions, and the hold as part of every motion that arrives at the goal.
 class GeometricObjective : public ob::OptimizationObjective {
  public:
-    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space,
-                       double hold_s)
-        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space), hold_s_(hold_s) {
+    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
+        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {
         setCostToGoHeuristic([this](const ob::State* from, const ob::Goal*) {
-            return ob::Cost(free_air_cost_.least_to_goal(read(from, space_), hold_s_));
+            return ob::Cost(free_air_cost_.least_to_goal(read(from, space_)));
         });
     }
 
@@ -124,7 +123,7 @@ class GeometricObjective : public ob::OptimizationObjective {
     ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
     ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
         const Configuration end = read(to, space_);
-        const double hold = space_.is_near_goal(end) ? free_air_cost_.of_hold(end, hold_s_) : 0;
+        const double hold = space_.is_near_goal(end) ? free_air_cost_.of_hold(end, space_.hold_s(end)) : 0;
         return ob::Cost(free_air_cost_.of_motion(read(from, space_), end) + hold);
     }
     ob::Cost motionCostHeuristic(const ob::State* from, const ob::State* to) const override {
@@ -138,7 +137,6 @@ class GeometricObjective : public ob::OptimizationObjective {
  private:
     const FreeAirCost& free_air_cost_;
     const SearchSpace& space_;
-    double hold_s_;
 };
 
 std::vector<Waypoint> unwrapped(const og::PathGeometric& path, const SearchSpace& space, const Configuration& start) {
@@ -151,7 +149,7 @@ std::vector<Waypoint> unwrapped(const og::PathGeometric& path, const SearchSpace
     return waypoints;
 }
 
-double cost_of(const std::vector<Waypoint>& waypoints, const FreeAirCost& cost, double hold_s) {
+double cost_of(const std::vector<Waypoint>& waypoints, const FreeAirCost& cost, const SearchSpace& space) {
     double sum = 0;
     const auto at = [&](std::size_t i) {
         return Configuration{waypoints[i].x_m, waypoints[i].z_m, waypoints[i].arm_rad};
@@ -159,7 +157,8 @@ double cost_of(const std::vector<Waypoint>& waypoints, const FreeAirCost& cost, 
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
         sum += cost.of_motion(at(i - 1), at(i));
     }
-    return sum + cost.of_hold(at(waypoints.size() - 1), hold_s);
+    const Configuration end = at(waypoints.size() - 1);
+    return sum + cost.of_hold(end, space.hold_s(end));
 }
 
 }  // namespace
@@ -191,7 +190,6 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     const auto information = make_space_information(space, random, step_m, counts);
     const FreeAirCost free_air_cost(problem, model, space);
     const Configuration start{problem.start.x_m, problem.start.z_m, problem.start.arm_rad};
-    const double hold_s = problem.goal.hold_s;
 
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start_state(information);
@@ -202,8 +200,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     definition->setGoal(problem.planner.algorithm == "bit-star"
                             ? make_goal_region(information, space, random, collected_goals)
                             : make_goal_region(information, space, random));
-    definition->setOptimizationObjective(
-        std::make_shared<GeometricObjective>(information, free_air_cost, space, hold_s));
+    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
 
     const PreparedPlanner prepared = prepared_planner(problem.planner, information, definition);
     set_parameters(*prepared.planner, problem.planner.algorithm);
@@ -235,9 +232,9 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
             result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
                                      model.tick().tick_s);
             if (is_exact && !best_cost) {
-                improve(cost_of(waypoints, free_air_cost, hold_s));
+                improve(cost_of(waypoints, free_air_cost, space));
             }
-            result.cost = is_exact ? *best_cost : cost_of(waypoints, free_air_cost, hold_s);
+            result.cost = is_exact ? *best_cost : cost_of(waypoints, free_air_cost, space);
         }
     }
     return result;

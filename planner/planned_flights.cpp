@@ -142,12 +142,11 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
 
 FlightLeg PlannedFlights::hold_leg(const ReferencePoint& at) const {
     const double tick_s = model_.tick().tick_s;
-    return {{at, at, hold_ticks(problem_.goal, tick_s), tick_s}};
+    return {{at, at, hold_ticks(problem_.goal, model_, at), tick_s}};
 }
 
 std::int64_t PlannedFlights::judged_ticks() const {
-    const double tick_s = model_.tick().tick_s;
-    return std::min<std::int64_t>(hold_ticks(problem_.goal, tick_s), std::llround(goal_settling_s / tick_s));
+    return std::llround(goal_settling_s / model_.tick().tick_s);
 }
 
 double PlannedFlights::cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {

@@ -63,10 +63,17 @@ struct Problem {
     std::vector<Obstacle> obstacles;
     AeroSettings aero;
     Start start;
+    std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
     Goal goal;
     MotionLimits motion;
     PlannerSettings planner;
 };
+
+/// More goals than these, in a row or to choose from, are not planned for.
+inline constexpr std::size_t most_goals = 64;
+
+/// All goals in the order in which they are to be visited: the stops, then the goal.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);
 
 /// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision
 /// or outside the flyable area, a goal out of reach. Keys are key paths of a problem file. Empty when it is sound.

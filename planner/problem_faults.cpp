@@ -11,7 +11,7 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/factor_grid.hpp"
-#include "downwash/planner/goal_reach.hpp"
+#include "downwash/planner/goal_faults.hpp"
 #include "downwash/planner/problem.hpp"
 #include "downwash/planner/problem_parameters.hpp"
 #include "downwash/planner/solution.hpp"
@@ -203,16 +203,11 @@ bool is_beyond_limits(const ArmParameters& arm, double angle_rad, double toleran
            (angle_rad < arm.lower_limit_rad - tolerance_rad || angle_rad > arm.upper_limit_rad + tolerance_rad);
 }
 
-std::string limits_text(const ArmParameters& arm) {
-    return rounded(arm.lower_limit_rad * degrees_per_radian) + " to " +
-           rounded(arm.upper_limit_rad * degrees_per_radian);
-}
-
 std::vector<Fault> start_beyond_arm_limits(const Problem& p) {
     if (!is_beyond_limits(p.robot.arm, p.start.arm_rad)) {
         return {};
     }
-    return {{"start.arm_deg", "is beyond the arm's limits: expected " + limits_text(p.robot.arm)}};
+    return {{"start.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
 }
 
 std::vector<Fault> start_in_collision(const Problem& p) {
@@ -257,76 +252,6 @@ std::vector<Fault> start_not_flyable(const Problem& p) {
     return {};
 }
 
-std::vector<Fault> unclear_goal(const Problem& p) {
-    if (p.goal.end_effector.has_value() == p.goal.configuration.has_value()) {
-        return {{"goal", "needs exactly one of end_effector or configuration"}};
-    }
-    const auto& pose = p.goal.configuration;
-    if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
-        return {{"goal.configuration", "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
-    }
-    return {};
-}
-
-std::vector<Fault> configuration_outside_bounds(const Problem& p) {
-    std::vector<Fault> faults;
-    if (!p.goal.configuration) {
-        return faults;
-    }
-    const double tolerance_m = p.goal.configuration->tolerance_m;
-    const auto check = [&](const char* key, const std::optional<double>& value, double low, double high) {
-        if (value && (*value < low - tolerance_m || *value > high + tolerance_m)) {
-            faults.push_back({key, "is " + to_text(*value) + ", outside the bounds: expected " + to_text(low) + " to " +
-                                       to_text(high)});
-        }
-    };
-    check("goal.configuration.x_m", p.goal.configuration->x_m, p.bounds.x_low_m, p.bounds.x_high_m);
-    check("goal.configuration.z_m", p.goal.configuration->z_m, p.bounds.z_low_m, p.bounds.z_high_m);
-    return faults;
-}
-
-std::vector<Fault> configuration_beyond_arm_limits(const Problem& p) {
-    if (!p.goal.configuration || !p.goal.configuration->arm_rad ||
-        arm_can_turn_to(p.robot.arm, *p.goal.configuration->arm_rad, p.goal.configuration->tolerance_rad)) {
-        return {};
-    }
-    return {{"goal.configuration.arm_deg", "is beyond the arm's limits: expected " + limits_text(p.robot.arm)}};
-}
-
-std::vector<Fault> configuration_in_collision(const Problem& p) {
-    if (!p.goal.configuration || has_clear_configuration(p)) {
-        return {};
-    }
-    return {{"goal.configuration",
-             "is in collision with an obstacle or nearer to it than planner.safety_margin_m, "
-             "anywhere within its tolerances: move the goal or the obstacle"}};
-}
-
-std::vector<Fault> end_effector_out_of_reach(const Problem& p) {
-    if (!p.goal.end_effector) {
-        return {};
-    }
-    const double missing_m = missing_reach_m(p);
-    if (missing_m > 0) {
-        return {{"goal.end_effector", "is out of reach: from anywhere within the bounds the arm of " +
-                                          to_text(p.robot.arm.length_m) + " m misses it by " + rounded(missing_m) +
-                                          " m; widen environment.bounds or move the goal"}};
-    }
-    switch (reach_of_end_effector(p)) {
-        case Reach::clear:
-            return {};
-        case Reach::none:
-            return {{"goal.end_effector",
-                     "is out of reach: the limits of the arm, the wanted direction and the bounds "
-                     "leave no pose that gets there"}};
-        case Reach::blocked:
-            break;
-    }
-    return {{"goal.end_effector",
-             "is out of reach: in every pose that gets there the robot touches an obstacle or is "
-             "nearer to it than planner.safety_margin_m"}};
-}
-
 std::vector<Fault> weightless_objective(const Problem& p) {
     if (p.planner.objective == CostFunction::of_nothing()) {
         return {{"planner.objective", "has no weight above 0: expected one at least"}};
@@ -353,7 +278,7 @@ std::vector<Fault> algorithm_of_another_variant(const Problem& p) {
                                       hint}};
 }
 
-const std::array<Check<Problem>, 21> checks{{
+const std::array<Check<Problem>, 16> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -370,13 +295,6 @@ const std::array<Check<Problem>, 21> checks{{
       "planner.safety_margin_m"},
      start_in_collision},
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
-    {{"goal"}, unclear_goal},
-    {{"goal", "environment.bounds"}, configuration_outside_bounds},
-    {{"goal", "robot.arm"}, configuration_beyond_arm_limits},
-    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
-     configuration_in_collision},
-    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
-     end_effector_out_of_reach},
     {{"planner.objective"}, weightless_objective},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
 }};
@@ -387,7 +305,14 @@ std::vector<Fault> further_problem_faults(const Problem& problem, FaultyKeys fau
     std::vector<Fault> faults = value_faults(problem_parameters(), problem, "", faulty);
     append(faults, further_robot_faults(problem.robot, faulty, "robot."));
     append(faults, run_checks(std::span<const Check<Problem>>(checks), problem, "", faulty));
+    append(faults, run_checks(goal_checks(), problem, "", faulty));
     return faults;
+}
+
+std::vector<Goal> goals_of(const Problem& problem) {
+    std::vector<Goal> goals = problem.stops;
+    goals.push_back(problem.goal);
+    return goals;
 }
 
 std::vector<Fault> problem_faults(const Problem& problem) {

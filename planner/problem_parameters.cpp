@@ -6,6 +6,7 @@
 
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/planner/aero_parameters.hpp"
+#include "downwash/planner/goal_parameters.hpp"
 #include "downwash/planner/obstacle_parameters.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve.hpp"
@@ -113,57 +114,6 @@ void add_start(Rows& rows) {
         [](auto& p) -> auto& { return p.start.arm_rate_rad_s; }));
 }
 
-void add_goal(Rows& rows) {
-    rows.push_back(group("goal", "where the flight must end and stay").is_required());
-    rows.push_back(
-        parameters::optional_group<Problem>(
-            "goal.end_effector", "the end effector at a point", [](auto& p) -> auto& { return p.goal.end_effector; })
-            .is_exclusive());
-    const auto tip = [](auto& p) -> auto& {
-        return *p.goal.end_effector;
-    };
-    rows.push_back(position(
-                       "goal.end_effector.x_m", "along the plane", [tip](auto& p) -> auto& { return tip(p).x_m; })
-                       .is_required());
-    rows.push_back(position(
-                       "goal.end_effector.z_m", "upwards", [tip](auto& p) -> auto& { return tip(p).z_m; })
-                       .is_required());
-    rows.push_back(positive(
-        "goal.end_effector.tolerance_m", "distance that is near enough",
-        100, [tip](auto& p) -> auto& { return tip(p).tolerance_m; }));
-    rows.push_back(angle(
-        "goal.end_effector.direction_deg", "direction of the arm in the plane, down is 90; null for any",
-        3600, [tip](auto& p) -> auto& { return tip(p).direction_rad; }));
-    rows.push_back(positive(
-        "goal.end_effector.direction_tolerance_deg", "deviation that is near enough",
-        180, [tip](auto& p) -> auto& { return tip(p).direction_tolerance_rad; }));
-
-    rows.push_back(
-        parameters::optional_group<Problem>(
-            "goal.configuration", "the vehicle and its arm", [](auto& p) -> auto& { return p.goal.configuration; })
-            .is_exclusive());
-    const auto pose = [](auto& p) -> auto& {
-        return *p.goal.configuration;
-    };
-    rows.push_back(position(
-        "goal.configuration.x_m", "along the plane; null for any", [pose](auto& p) -> auto& { return pose(p).x_m; }));
-    rows.push_back(position(
-        "goal.configuration.z_m", "upwards; null for any", [pose](auto& p) -> auto& { return pose(p).z_m; }));
-    rows.push_back(angle(
-        "goal.configuration.arm_deg", "arm from the vehicle's nose, modulo a turn; null for any",
-        3600, [pose](auto& p) -> auto& { return pose(p).arm_rad; }));
-    rows.push_back(positive(
-        "goal.configuration.tolerance_m", "distance that is near enough",
-        100, [pose](auto& p) -> auto& { return pose(p).tolerance_m; }));
-    rows.push_back(positive(
-        "goal.configuration.tolerance_deg", "deviation of the arm that is near enough",
-        180, [pose](auto& p) -> auto& { return pose(p).tolerance_rad; }));
-    rows.push_back(number(
-                       "goal.hold_s", "how long the end is held", [](auto& p) -> auto& { return p.goal.hold_s; })
-                       .at_least(1)
-                       .at_most(3600));
-}
-
 void add_motion(Rows& rows) {
     rows.push_back(group("motion", "limits of the reference"));
     rows.push_back(positive(
@@ -255,7 +205,7 @@ Rows all_rows() {
     add_environment(rows);
     add_aero_rows(rows);
     add_start(rows);
-    add_goal(rows);
+    add_goal_rows(rows);
     add_motion(rows);
     add_planner(rows);
     return rows;

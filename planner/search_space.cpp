@@ -1,13 +1,23 @@
 #include "downwash/planner/search_space.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/rigid_body.hpp"
 
 namespace downwash::planning {
+namespace {
+
+/// The coordinates of the level vehicle.
+std::array<double, 4> level_at(const Configuration& c) {
+    return {c.x_m, c.z_m, 0, c.arm_rad};
+}
+
+}  // namespace
 
 ReferencePoint at_rest(const Configuration& c) noexcept {
     ReferencePoint point;
@@ -102,78 +112,89 @@ Configuration SearchSpace::sample_near(const Configuration& configuration, doubl
 
 std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& configuration, double radius_m,
                                                            Random& random) const {
-    const Configuration candidate = moved_to_goal(sample_near(configuration, radius_m, random), random);
+    const Goal& goal = nearest_goal(goal_, model_.tick().plant, level_at(configuration).data());
+    const Configuration candidate = moved_to(goal, sample_near(configuration, radius_m, random), random);
     return is_valid(candidate) ? std::optional(candidate) : std::nullopt;
 }
 
-Configuration SearchSpace::moved_to_goal(Configuration c, Random& random) const {
+Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& random) const {
     // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance: where an
     // obstacle, a bound or a limit stands at the goal, only those can do.
+    const GoalTolerance tolerance = tolerance_of(goal);
     const double share = random.chance(0.5) ? usable_tolerance_share : 0;
     double dx = random.uniform(-1, 1);
     double dz = random.uniform(-1, 1);
-    const double stretch = share * tolerance_m() / std::max(1.0, std::sqrt(dx * dx + dz * dz));
-    dx *= stretch;
-    dz *= stretch;
-    const double turn = usable_tolerance_share * tolerance_rad() * random.uniform(-1, 1);
-    if (goal_.end_effector) {
-        const EndEffectorGoal& goal = *goal_.end_effector;
-        if (goal.direction_rad) {
-            c.arm_rad = into_arm_range(*goal.direction_rad + turn);
+    const double stretch = tolerance.is_disc ? share / std::max(1.0, std::sqrt(dx * dx + dz * dz)) : share;
+    dx *= stretch * tolerance.x_m;
+    dz *= stretch * tolerance.z_m;
+    const double turn = usable_tolerance_share * tolerance.angle_rad * random.uniform(-1, 1);
+    if (goal.end_effector) {
+        const EndEffectorGoal& point = *goal.end_effector;
+        if (point.direction_rad) {
+            c.arm_rad = into_arm_range(*point.direction_rad + turn);
         }
         const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
         const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
-        c.x_m = goal.x_m + dx - tip.x;
-        c.z_m = goal.z_m + dz - tip.z;
+        c.x_m = point.x_m + dx - tip.x;
+        c.z_m = point.z_m + dz - tip.z;
         return c;
     }
-    const ConfigurationGoal& goal = *goal_.configuration;
-    if (goal.x_m) {
-        c.x_m = *goal.x_m + dx;
+    const ConfigurationGoal& pose = *goal.configuration;
+    if (pose.x_m) {
+        c.x_m = *pose.x_m + dx;
     }
-    if (goal.z_m) {
-        c.z_m = *goal.z_m + dz;
+    if (pose.z_m) {
+        c.z_m = *pose.z_m + dz;
     }
-    if (goal.arm_rad) {
-        c.arm_rad = into_arm_range(*goal.arm_rad + (share > 0 ? turn : 0));
+    if (pose.arm_rad) {
+        c.arm_rad = into_arm_range(*pose.arm_rad + (share > 0 ? turn : 0));
     }
     return c;
 }
 
 Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
+    const Goal& nearest = nearest_goal(goal_, model_.tick().plant, level_at(c).data());
+    const GoalTolerance tolerance = tolerance_of(nearest);
     const auto nearest_angle = [&](double from_rad, double goal_rad) {
-        const double most = share * tolerance_rad();
+        const double most = share * tolerance.angle_rad;
         return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most));
     };
-    // Of the distance by which something is off, the part that may stay.
-    const auto kept = [&](double dx, double dz) {
-        const double most = share * tolerance_m();
+    // What may stay of the deviation from the goal.
+    const auto keep = [&](double& dx, double& dz) {
+        if (!tolerance.is_disc) {
+            dx = std::clamp(dx, -share * tolerance.x_m, share * tolerance.x_m);
+            dz = std::clamp(dz, -share * tolerance.z_m, share * tolerance.z_m);
+            return;
+        }
+        const double most = share * tolerance.x_m;
         const double distance = std::sqrt(dx * dx + dz * dz);
-        return distance > most ? most / distance : 1;
+        const double part = distance > most ? most / distance : 1;
+        dx *= part;
+        dz *= part;
     };
-    if (goal_.end_effector) {
-        const EndEffectorGoal& goal = *goal_.end_effector;
+    if (nearest.end_effector) {
+        const EndEffectorGoal& goal = *nearest.end_effector;
         if (goal.direction_rad) {
             c.arm_rad = nearest_angle(c.arm_rad, *goal.direction_rad);
         }
         const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
         const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
-        const double dx = c.x_m + tip.x - goal.x_m;
-        const double dz = c.z_m + tip.z - goal.z_m;
-        const double part = kept(dx, dz);
-        c.x_m = goal.x_m + part * dx - tip.x;
-        c.z_m = goal.z_m + part * dz - tip.z;
+        double dx = c.x_m + tip.x - goal.x_m;
+        double dz = c.z_m + tip.z - goal.z_m;
+        keep(dx, dz);
+        c.x_m = goal.x_m + dx - tip.x;
+        c.z_m = goal.z_m + dz - tip.z;
         return c;
     }
-    const ConfigurationGoal& goal = *goal_.configuration;
-    const double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
-    const double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
-    const double part = kept(dx, dz);
+    const ConfigurationGoal& goal = *nearest.configuration;
+    double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
+    double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
+    keep(dx, dz);
     if (goal.x_m) {
-        c.x_m = *goal.x_m + part * dx;
+        c.x_m = *goal.x_m + dx;
     }
     if (goal.z_m) {
-        c.z_m = *goal.z_m + part * dz;
+        c.z_m = *goal.z_m + dz;
     }
     if (goal.arm_rad) {
         c.arm_rad = nearest_angle(c.arm_rad, *goal.arm_rad);
@@ -183,8 +204,10 @@ Configuration SearchSpace::moved_into_goal(Configuration c, double share) const 
 
 std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
     constexpr int tries = 20;
+    const std::span<const Goal> goals = alternatives(goal_);
     for (int i = 0; i < tries; ++i) {
-        const Configuration candidate = moved_to_goal(sample(random), random);
+        const auto lot = goals.size() == 1 ? 0 : random.uniform(0, static_cast<double>(goals.size()));
+        const Configuration candidate = moved_to(goals[static_cast<std::size_t>(lot)], sample(random), random);
         if (is_valid(candidate)) {
             return candidate;
         }
@@ -193,37 +216,40 @@ std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
 }
 
 GoalError SearchSpace::error(const Configuration& c) const {
-    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
-    return goal_error(goal_, model_.tick().plant, q);
+    return goal_error(goal_, model_.tick().plant, level_at(c).data());
+}
+
+double SearchSpace::hold_s(const Configuration& c) const {
+    return nearest_goal(goal_, model_.tick().plant, level_at(c).data()).hold_s;
 }
 
 bool SearchSpace::is_near_goal(const Configuration& c) const {
     // A hair more than the share: samples right at its rim shall count.
-    constexpr double share = usable_tolerance_share + 1e-6;
-    const GoalError e = error(c);
-    return is_met(goal_, {e.distance_m / share, e.angle_rad / share});
-}
-
-double SearchSpace::tolerance_m() const noexcept {
-    return goal_.end_effector ? goal_.end_effector->tolerance_m : goal_.configuration->tolerance_m;
-}
-
-double SearchSpace::tolerance_rad() const noexcept {
-    return goal_.end_effector ? goal_.end_effector->direction_tolerance_rad : goal_.configuration->tolerance_rad;
+    return error(c).used_share <= usable_tolerance_share + 1e-6;
 }
 
 double SearchSpace::goal_distance_m(const Configuration& c) const {
     if (is_near_goal(c)) {
         return 0;
     }
-    const GoalError off = error_beyond_tolerance(c);
-    return off.distance_m + arm_weight_m() * off.angle_rad;
+    double least = HUGE_VAL;
+    for (const Goal& goal : alternatives(goal_)) {
+        const GoalError off = error_beyond_tolerance(goal, c);
+        least = std::min(least, off.distance_m + arm_weight_m() * off.angle_rad);
+    }
+    return least;
 }
 
-GoalError SearchSpace::error_beyond_tolerance(const Configuration& c) const {
-    const GoalError e = error(c);
-    return {std::max(0.0, e.distance_m - usable_tolerance_share * tolerance_m()),
-            std::max(0.0, e.angle_rad - usable_tolerance_share * tolerance_rad())};
+GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configuration& c) const {
+    const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c).data());
+    const GoalTolerance tolerance = tolerance_of(goal);
+    const auto beyond = [](double deviation, double most) {
+        return std::max(0.0, std::abs(deviation) - usable_tolerance_share * most);
+    };
+    const auto length = [](double x, double z) { return std::sqrt(x * x + z * z); };
+    return {tolerance.is_disc ? beyond(length(d.x_m, d.z_m), tolerance.x_m)
+                              : length(beyond(d.x_m, tolerance.x_m), beyond(d.z_m, tolerance.z_m)),
+            beyond(d.angle_rad, tolerance.angle_rad), tolerance.used_share(d)};
 }
 
 bool SearchSpace::is_inside(const Configuration& c) const noexcept {

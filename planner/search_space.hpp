@@ -58,7 +58,8 @@ class SearchSpace {
     [[nodiscard]] Configuration sample(Random& random) const;
 
     /// A configuration of the level vehicle that meets the goal, free of collision: inverse kinematics with the arm in
-    /// any direction that the goal leaves open, so both branches of the arm occur. Nothing after some failed tries.
+    /// any direction that the goal leaves open, so both branches of the arm occur; alternatives come in turn by lot.
+    /// Nothing after some failed tries.
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
 
     /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
@@ -70,21 +71,24 @@ class SearchSpace {
                                                                 Random& random) const;
 
     /// The configuration nearest to another that uses up at most so much of each of the goal's tolerances; what the
-    /// goal leaves free is kept. May collide.
+    /// goal leaves free is kept. Of alternatives the nearest. May collide.
     /// @param share of the tolerances, 0 to 1; 0 is the middle of the goal
     [[nodiscard]] Configuration moved_into_goal(Configuration configuration, double share) const;
 
     /// Goal error of the level vehicle.
     [[nodiscard]] GoalError error(const Configuration& configuration) const;
 
+    /// For how long the goal is held there [s]; of several alternatives the nearest one's hold.
+    [[nodiscard]] double hold_s(const Configuration& configuration) const;
+
     /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within the
     /// usable share of each tolerance.
     [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
 
-    /// By how much the goal error exceeds the usable share of each tolerance.
-    [[nodiscard]] GoalError error_beyond_tolerance(const Configuration& configuration) const;
+    /// By how much the error from one of the goal's alternatives exceeds the usable share of each tolerance.
+    [[nodiscard]] GoalError error_beyond_tolerance(const Goal& goal, const Configuration& configuration) const;
 
-    /// Distance and angle to the goal as one length [m], 0 inside the goal region.
+    /// Distance and angle to the goal as one length [m], 0 inside the goal region; of alternatives to the nearest.
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
 
     /// What forbids the level vehicle there: `bounds` (or arm limits), `collision` with the safety margin, or `none`.
@@ -100,11 +104,9 @@ class SearchSpace {
     [[nodiscard]] double extent_m() const noexcept;
 
  private:
-    [[nodiscard]] Configuration moved_to_goal(Configuration configuration, Random& random) const;
+    [[nodiscard]] Configuration moved_to(const Goal& goal, Configuration configuration, Random& random) const;
     /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
-    [[nodiscard]] double tolerance_m() const noexcept;
-    [[nodiscard]] double tolerance_rad() const noexcept;
 
     const FlightModel& model_;
     Bounds bounds_;

@@ -72,7 +72,7 @@ class Writer {
 
     /// Groups that are switched off are written as none, those of another alternative not at all.
     bool is_written(const Row& row, std::size_t index) const {
-        return row.kind == ParameterKind::list || row.can_be_none || row.count(problem_, index) > 0;
+        return (row.kind == ParameterKind::list && !row.exclusive) || row.can_be_none || row.count(problem_, index) > 0;
     }
 
     void write_content(const Row& row, std::size_t index, const std::string& indent) {
@@ -80,7 +80,7 @@ class Writer {
             out_ += " " + quoted(file_text_(row, index)) + "\n";
         } else if (row.has_value(problem_, index)) {
             out_ += " " + value_text(row, row.get(problem_, index)) + "\n";
-        } else if (row.kind == ParameterKind::list) {
+        } else if (row.has_list(problem_, index)) {
             write_list(row, index, indent);
         } else if (row.count(problem_, index) == 0) {
             out_ += " none\n";

@@ -199,6 +199,8 @@ void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const Yaml
     if (node.kind == YamlNode::Kind::map) {
         parameter.resize(model_, index, 1);
         read_keys({parameter.path, key, index, key_mark, node, {}, {}});
+    } else if (parameter.can_be_list && node.kind == YamlNode::Kind::list) {
+        read_list(parameter, node, key);
     } else if (is_text && parameter.can_be_none && node.text == "none") {
         parameter.resize(model_, index, 0);
     } else if (is_text && parameter.can_be_file && !node.text.empty()) {
@@ -215,6 +217,10 @@ void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlN
     if (node.kind != YamlNode::Kind::list) {
         const std::string remedy = node.kind == YamlNode::Kind::null ? "; write [] for none" : "";
         fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
+        return;
+    }
+    if (node.items.empty() && (parameter.can_be_list || parameter.exclusive)) {
+        fault(key, node.mark, "is empty: expected one element at least");
         return;
     }
     parameter.resize(model_, 0, node.items.size());

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
@@ -106,6 +107,15 @@ class Recorder {
     double clearance_m_ = std::numeric_limits<double>::infinity();
 };
 
+struct Level {
+    double q[4];
+};
+
+/// The level vehicle at a reference point.
+Level level_at(const ReferencePoint& point) {
+    return {{point.position[0], point.position[1], 0, point.position[2]}};
+}
+
 std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot>& knots, std::int64_t hold,
                                                  double tick_s) {
     std::vector<ReferenceSegment> segments;
@@ -116,25 +126,64 @@ std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot
     return segments;
 }
 
-/// Worst goal error over the rows of the settling time, and whether the goal was met in each.
-void judge_goal(const FlightModel& model, const Goal& goal, Execution& execution) {
-    const PlantModel& plant = model.tick().plant;
-    const auto settling = static_cast<std::size_t>(std::llround(goal_settling_s / model.tick().tick_s));
-    const std::size_t count = execution.outcome == Outcome::ok ? std::min(settling + 1, execution.rows.size()) : 1;
-    for (std::size_t i = execution.rows.size() - count; i < execution.rows.size(); ++i) {
-        const FlightRow& row = execution.rows[i];
-        const GoalError error = goal_error(goal, plant, row.q);
-        execution.goal_error_m = std::max(execution.goal_error_m, error.distance_m);
+bool is_standing(const ReferencePoint& point) {
+    const auto is_zero = [](const double(&v)[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
+    return is_zero(point.velocity) && is_zero(point.acceleration);
+}
+
+/// The ticks at which the holds of the goals end, in their order; fewer when the reference does not come to all of
+/// them. The last one is that of the last goal, which is held after the last knot.
+std::vector<std::int64_t> hold_ends(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
+                                    std::span<const Goal> goals) {
+    std::vector<std::int64_t> ends;
+    for (std::size_t i = 1; i < knots.size() && ends.size() + 1 < goals.size(); ++i) {
+        const Goal& goal = goals[ends.size()];
+        const ReferencePoint& point = knots[i].point;
+        if (point == knots[i - 1].point && is_standing(point) &&
+            knots[i].tick - knots[i - 1].tick >= hold_ticks(goal, model, point) &&
+            is_met(goal_error(goal, model.tick().plant, level_at(point).q))) {
+            ends.push_back(knots[i].tick);
+        }
+    }
+    if (ends.size() + 1 == goals.size()) {
+        ends.push_back(knots.back().tick + hold_ticks(goals.back(), model, knots.back().point));
+    }
+    return ends;
+}
+
+/// What became of a goal that was held up to a tick; of one that was not, where the flight ended.
+GoalVisit visit_of(const Goal& goal, std::optional<std::int64_t> end, const FlightModel& model,
+                   const std::vector<FlightRow>& rows) {
+    GoalVisit visit;
+    visit.is_met = end && *end < static_cast<std::int64_t>(rows.size());
+    const std::int64_t last = visit.is_met ? *end : static_cast<std::int64_t>(rows.size()) - 1;
+    const std::int64_t settling = visit.is_met ? std::llround(goal_settling_s / model.tick().tick_s) : 0;
+    for (std::int64_t i = std::max<std::int64_t>(0, last - settling); i <= last; ++i) {
+        const FlightRow& row = rows[static_cast<std::size_t>(i)];
+        const GoalError error = goal_error(goal, model.tick().plant, row.q);
         const bool is_slow = std::sqrt(row.u[0] * row.u[0] + row.u[1] * row.u[1]) < goal_max_speed_m_s;
-        if (execution.outcome == Outcome::ok && !(is_met(goal, error) && is_slow)) {
+        visit.error_m = std::max(visit.error_m, error.distance_m);
+        visit.is_met = visit.is_met && is_met(error) && is_slow;
+    }
+    return visit;
+}
+
+void judge_goals(const FlightModel& model, std::span<const Goal> goals, const std::vector<std::int64_t>& ends,
+                 Execution& execution) {
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+        const auto end = i < ends.size() ? std::optional(ends[i]) : std::nullopt;
+        const GoalVisit visit = visit_of(goals[i], end, model, execution.rows);
+        execution.goal_error_m = std::max(execution.goal_error_m, visit.error_m);
+        if (execution.outcome == Outcome::ok && !visit.is_met) {
             execution.outcome = Outcome::goal_missed;
         }
+        execution.goals.push_back(visit);
     }
 }
 
 template <class Factor>
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                       const Goal& goal, bool aero, const Factor& factor) {
+                       std::span<const Goal> goals, bool aero, const Factor& factor) {
     Execution execution;
     execution.aero = aero;
     execution.rotor_count = model.tick().plant.rotor_count;
@@ -145,8 +194,8 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
     FlightFault fault = recorder.judge(state, reference);
-    for (const ReferenceSegment& segment :
-         segments_with_hold(knots, hold_ticks(goal, model.tick().tick_s), model.tick().tick_s)) {
+    const std::int64_t hold = hold_ticks(goals.back(), model, knots.back().point);
+    for (const ReferenceSegment& segment : segments_with_hold(knots, hold, model.tick().tick_s)) {
         if (fault != FlightFault::none) {
             break;
         }
@@ -167,7 +216,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.outcome = outcome_of(fault);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
-    judge_goal(model, goal, execution);
+    judge_goals(model, goals, hold_ends(model, knots, goals), execution);
     return execution;
 }
 
@@ -177,23 +226,23 @@ std::string_view name_of(Outcome outcome) {
     return outcome_names[static_cast<std::size_t>(outcome)];
 }
 
-std::int64_t hold_ticks(const Goal& goal, double tick_s) {
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(goal.hold_s / tick_s - 1e-9)));
+std::int64_t hold_ticks(const Goal& goal, const FlightModel& model, const ReferencePoint& at) {
+    const double hold_s = nearest_goal(goal, model.tick().plant, level_at(at).q).hold_s;
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(hold_s / model.tick().tick_s - 1e-9)));
 }
 
 bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state) {
     const double* u = state.plant.u;
-    return is_met(goal, goal_error(goal, plant, state.plant.q)) &&
-           std::sqrt(u[0] * u[0] + u[1] * u[1]) < goal_max_speed_m_s;
+    return is_met(goal_error(goal, plant, state.plant.q)) && std::sqrt(u[0] * u[0] + u[1] * u[1]) < goal_max_speed_m_s;
 }
 
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                  const Goal& goal, bool aero) {
-    assert(!knots.empty() && knots.front().tick == 0);
+                  std::span<const Goal> goals, bool aero) {
+    assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
     if (aero && model.has_effects()) {
-        return execute_with(model, start, knots, goal, true, simulation::DirectFactor{model});
+        return execute_with(model, start, knots, goals, true, simulation::DirectFactor{model});
     }
-    return execute_with(model, start, knots, goal, false, simulation::NoEffect{});
+    return execute_with(model, start, knots, goals, false, simulation::NoEffect{});
 }
 
 }  // namespace downwash

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct FlightRow {
     double energy_j = 0;  ///< spent since the start
 };
 
+/// What became of one goal of a flight.
+struct GoalVisit {
+    bool is_met = false;  ///< throughout the last second of its hold
+    double error_m = 0;   ///< worst over that second; where the flight ended, if it was not held for so long
+};
+
 /// A plan flown from start to the end of the hold.
 struct Execution {
     bool aero = true;  ///< whether surfaces acted on the rotors
@@ -47,8 +54,9 @@ struct Execution {
     double length_m = 0;            ///< see SegmentFlight
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
-    double max_saturation = 0;  ///< greatest demand over its limit; above 1 something was clipped
-    double goal_error_m = 0;    ///< worst over the last second of the hold; where the flight ended, if earlier
+    double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;       ///< the worst of all goals
+    std::vector<GoalVisit> goals;  ///< one for each, in their order
     int rotor_count = 0;
     bool has_rotor_lag = false;
     std::vector<FlightRow> rows;  ///< one per control tick, the last one at the end of the flight
@@ -56,12 +64,24 @@ struct Execution {
 
 /// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
+/// @param goals at least one, in the order in which they are to be visited. The last one is held after the last knot.
+/// The
+///        others are held between two knots that are the same point at rest, which meets the goal, for its hold at
+///        least
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
-                                                const std::vector<ReferenceKnot>& knots, const Goal& goal, bool aero);
+                                                const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,
+                                                bool aero);
 
-/// Control ticks of a hold.
-[[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const Goal& goal, double tick_s);
+/// The same for one goal.
+[[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,
+                                       const std::vector<ReferenceKnot>& knots, const Goal& goal, bool aero) {
+    return execute(model, start, knots, std::span(&goal, 1), aero);
+}
+
+/// Control ticks for which a reference point is held as a goal: of several alternatives the nearest one's hold.
+[[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const Goal& goal, const FlightModel& model,
+                                                      const ReferencePoint& at);
 
 /// Whether a vehicle meets the goal at this instant: within tolerance and slow enough.
 [[nodiscard]] DOWNWASH_EXPORT bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state);

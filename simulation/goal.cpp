@@ -1,5 +1,6 @@
 #include "downwash/simulation/goal.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "downwash/base/lane_math.hpp"
@@ -12,34 +13,64 @@ double angle_between(double a_rad, double b_rad) {
     return std::abs(lane::wrap_angle(a_rad - b_rad));
 }
 
-GoalError end_effector_error(const EndEffectorGoal& goal, const PlantModel& model, const double q[4]) {
+GoalDeviation deviation(const EndEffectorGoal& goal, const PlantModel& model, const double q[4]) {
     const auto attitude = dynamics::attitude(model, q[2], q[3]);
     const auto tip = dynamics::end_effector_position(model, attitude, q[0], q[1]);
-    const double dx = tip.x - goal.x_m;
-    const double dz = tip.z - goal.z_m;
-    return {std::sqrt(dx * dx + dz * dz), goal.direction_rad ? angle_between(q[2] + q[3], *goal.direction_rad) : 0};
+    return {tip.x - goal.x_m, tip.z - goal.z_m,
+            goal.direction_rad ? angle_between(q[2] + q[3], *goal.direction_rad) : 0};
 }
 
-GoalError configuration_error(const ConfigurationGoal& goal, const double q[4]) {
-    const double dx = goal.x_m ? q[0] - *goal.x_m : 0;
-    const double dz = goal.z_m ? q[1] - *goal.z_m : 0;
-    return {std::sqrt(dx * dx + dz * dz), goal.arm_rad ? angle_between(q[3], *goal.arm_rad) : 0};
+GoalDeviation deviation(const ConfigurationGoal& goal, const double q[4]) {
+    return {goal.x_m ? q[0] - *goal.x_m : 0, goal.z_m ? q[1] - *goal.z_m : 0,
+            goal.arm_rad ? angle_between(q[3], *goal.arm_rad) : 0};
+}
+
+template <class Kind>
+GoalTolerance tolerance(const Kind& goal, double angle_rad) {
+    return {goal.tolerance_x_m.value_or(goal.tolerance_m), goal.tolerance_z_m.value_or(goal.tolerance_m),
+            !goal.tolerance_x_m && !goal.tolerance_z_m, angle_rad};
+}
+
+double distance_m(const GoalDeviation& d) {
+    return std::sqrt(d.x_m * d.x_m + d.z_m * d.z_m);
 }
 
 }  // namespace
 
-GoalError goal_error(const Goal& goal, const PlantModel& model, const double q[4]) {
-    return goal.end_effector ? end_effector_error(*goal.end_effector, model, q)
-                             : configuration_error(goal.configuration.value_or(ConfigurationGoal{}), q);
+std::span<const Goal> alternatives(const Goal& goal) noexcept {
+    return goal.any_of.empty() ? std::span<const Goal>(&goal, 1) : std::span<const Goal>(goal.any_of);
 }
 
-bool is_met(const Goal& goal, const GoalError& error) {
+double GoalTolerance::used_share(const GoalDeviation& d) const noexcept {
+    const double of_place = is_disc ? distance_m(d) / x_m : std::max(std::abs(d.x_m) / x_m, std::abs(d.z_m) / z_m);
+    return std::max(of_place, d.angle_rad / angle_rad);
+}
+
+GoalTolerance tolerance_of(const Goal& goal) noexcept {
     if (goal.end_effector) {
-        return error.distance_m <= goal.end_effector->tolerance_m &&
-               error.angle_rad <= goal.end_effector->direction_tolerance_rad;
+        return tolerance(*goal.end_effector, goal.end_effector->direction_tolerance_rad);
     }
-    return goal.configuration && error.distance_m <= goal.configuration->tolerance_m &&
-           error.angle_rad <= goal.configuration->tolerance_rad;
+    const ConfigurationGoal& configuration = *goal.configuration;
+    return tolerance(configuration, configuration.tolerance_rad);
+}
+
+GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model, const double q[4]) {
+    return goal.end_effector ? deviation(*goal.end_effector, model, q) : deviation(*goal.configuration, q);
+}
+
+GoalError goal_error(const Goal& goal, const PlantModel& model, const double q[4]) {
+    const Goal& nearest = nearest_goal(goal, model, q);
+    const GoalDeviation d = goal_deviation(nearest, model, q);
+    return {distance_m(d), d.angle_rad, tolerance_of(nearest).used_share(d)};
+}
+
+const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const double q[4]) {
+    if (goal.any_of.empty()) {
+        return goal;
+    }
+    const auto share = [&](const Goal& each) { return tolerance_of(each).used_share(goal_deviation(each, model, q)); };
+    return *std::min_element(goal.any_of.begin(), goal.any_of.end(),
+                             [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
 }
 
 }  // namespace downwash

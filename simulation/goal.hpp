@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/dynamics/plant_model.hpp"
@@ -19,6 +21,9 @@ struct EndEffectorGoal {
     double tolerance_m = 0.1;                              ///< Euclidean distance, > 0
     std::optional<double> direction_rad;                   ///< of the arm in the world, a = pitch + arm
     double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
+    /// Where one of them is given, x and z are judged one by one, each within its own tolerance or, without one, within
+    /// tolerance_m.
+    std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
 /// A configuration of vehicle and arm; an empty coordinate is free.
@@ -26,26 +31,61 @@ struct ConfigurationGoal {
     std::optional<double> x_m, z_m, arm_rad;
     double tolerance_m = 0.1;                    ///< Euclidean distance over the given coordinates, > 0
     double tolerance_rad = 0.08726646259971647;  ///< of the arm, modulo a turn; 5 degrees
+    /// As for the end effector.
+    std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
-/// Where the flight must end and stay. Exactly one of the two kinds is set.
+/// Where the flight must end and stay. Exactly one of end_effector, configuration and any_of is set.
 struct Goal {
     std::optional<EndEffectorGoal> end_effector;
     std::optional<ConfigurationGoal> configuration;
-    double hold_s = 5;  ///< the last reference point is held for so long, >= 1
+    double hold_s = 5;         ///< the last reference point is held for so long, >= 1
+    std::vector<Goal> any_of;  ///< reaching any of these will do, held for as long as that one says; not nested
 };
+
+/// The goals of which any will do: the goal itself, unless it names others.
+[[nodiscard]] DOWNWASH_EXPORT std::span<const Goal> alternatives(const Goal& goal) noexcept;
+
+/// How far a vehicle is from a goal, coordinate by coordinate; 0 where the goal leaves it free.
+struct GoalDeviation {
+    double x_m = 0, z_m = 0;
+    double angle_rad = 0;  ///< of the arm or its direction, modulo a turn, >= 0
+};
+
+/// How far that may be: (x, z) within a disc or an upright rectangle, and an angle.
+struct GoalTolerance {
+    double x_m = 0, z_m = 0;  ///< half widths; of a disc its radius
+    bool is_disc = true;
+    double angle_rad = 0;
+
+    /// The greatest share of it that a deviation uses up; 1 at its rim.
+    [[nodiscard]] DOWNWASH_EXPORT double used_share(const GoalDeviation& deviation) const noexcept;
+};
+
+/// Of a goal without alternatives.
+[[nodiscard]] DOWNWASH_EXPORT GoalTolerance tolerance_of(const Goal& goal) noexcept;
+
+/// The deviation of a configuration q = (x, z, pitch, arm) [m, m, rad, rad] from a goal without alternatives.
+[[nodiscard]] DOWNWASH_EXPORT GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model,
+                                                           const double q[4]);
 
 /// How far a vehicle is from a goal.
 struct GoalError {
     double distance_m = 0;  ///< Euclidean, over the coordinates that the goal gives
     double angle_rad = 0;   ///< of the arm or its direction, modulo a turn; 0 when the goal leaves it free
+    double used_share = 0;  ///< the greatest share of a tolerance that is used up; see is_met()
 };
 
-/// The error of a configuration q = (x, z, pitch, arm) [m, m, rad, rad].
+/// The error of a configuration q = (x, z, pitch, arm) [m, m, rad, rad]; among alternatives that of the nearest.
 [[nodiscard]] DOWNWASH_EXPORT GoalError goal_error(const Goal& goal, const PlantModel& model, const double q[4]);
 
+/// The alternative of which a configuration uses up the least share of the tolerances; the first of equals.
+[[nodiscard]] DOWNWASH_EXPORT const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const double q[4]);
+
 /// Whether the error lies within the goal's tolerances.
-[[nodiscard]] DOWNWASH_EXPORT bool is_met(const Goal& goal, const GoalError& error);
+[[nodiscard]] inline bool is_met(const GoalError& error) noexcept {
+    return error.used_share <= 1;
+}
 
 /// The share of each tolerance that a reference may use up while planning; the rest is left to the flight.
 inline constexpr double usable_tolerance_share = 0.9;

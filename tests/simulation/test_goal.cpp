@@ -30,5 +30,5 @@ TEST_CASE("goal errors of an end effector and of a configuration by hand") {
     CHECK(goal_error(configured, plant, forward).distance_m == Approx(0.5));
     configured.configuration->arm_rad = -0.4;
     CHECK(goal_error(configured, plant, turned).angle_rad == Approx(0.4));
-    CHECK_FALSE(is_met(configured, goal_error(configured, plant, forward)));
+    CHECK_FALSE(is_met(goal_error(configured, plant, forward)));
 }
