@@ -56,7 +56,7 @@ void fly(const Problem& problem, bool aero, Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
     const auto model = make_flight_model(problem);
     solution.execution =
-        execute(*model, start_state(*model, problem.start), solution.plan->reference, problem.goal, aero);
+        execute(*model, start_state(*model, problem.start), solution.plan->reference, goals_of(problem), aero);
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
     solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "downwash/problems/problem_writer.hpp"
@@ -72,6 +73,11 @@ void add_flight(Table& table, const Solution& solution, const Execution& flight)
     table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
     table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
     table.add("goal error", fmt::format("{:.3f} m", flight.goal_error_m));
+    if (flight.goals.size() > 1) {
+        const auto met =
+            std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
+        table.add("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+    }
     table.add("least clearance",
               std::isfinite(flight.min_clearance_m) ? fmt::format("{:.3f} m", flight.min_clearance_m) : "no obstacles");
 }

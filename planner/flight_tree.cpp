@@ -29,7 +29,7 @@ FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const S
     const Start& start = problem.start;
     root.configuration = {start.x_m, start.z_m, start.arm_rad};
     root.reference = reference_at(start);
-    root.state = start_state(model, start);
+    root.state = flights.start();
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
     places_.push_back(moving_.back()->configuration);
 }

@@ -58,20 +58,25 @@ std::vector<Fault> unclear_goals(const Problem& p) {
     if (may_choose && !p.goal.any_of.empty() && (p.goal.end_effector || p.goal.configuration)) {
         faults.push_back({"goal", "needs exactly one of end_effector, configuration or any_of"});
     }
-    append(faults, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<Fault> {
-               if (!goal.any_of.empty()) {
-                   return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
-               }
-               if (goal.end_effector.has_value() == goal.configuration.has_value()) {
-                   return {{key, "needs exactly one of end_effector or configuration"}};
-               }
-               const auto& pose = goal.configuration;
-               if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
-                   return {{key + ".configuration",
-                            "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
-               }
-               return {};
-           }));
+    append(
+        faults, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<Fault> {
+            if (!goal.any_of.empty()) {
+                return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
+            }
+            if (goal.end_effector.has_value() == goal.configuration.has_value()) {
+                return {{key, "needs exactly one of end_effector or configuration"}};
+            }
+            const auto& pose = goal.configuration;
+            if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
+                return {{key + ".configuration",
+                         "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
+            }
+            if (pose && ((pose->tolerance_x_m && !pose->x_m) || (pose->tolerance_z_m && !pose->z_m))) {
+                const std::string axis = pose->tolerance_x_m && !pose->x_m ? "x_m" : "z_m";
+                return {{key + ".configuration.tolerance_" + axis, "has a meaning only with " + axis + ": remove it"}};
+            }
+            return {};
+        }));
     return faults;
 }
 

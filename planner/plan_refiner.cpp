@@ -60,6 +60,9 @@ FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const 
 }
 
 void PlanRefiner::take(const Plan& plan) {
+    if (plan.reference.size() < 2) {
+        return;  // the start meets the goal: there is nothing on the way
+    }
     Change change{{}, {}, 0};
     for (std::size_t i = 0; i < plan.reference.size(); ++i) {
         change.points.push_back(plan.reference[i].point);
@@ -68,7 +71,7 @@ void PlanRefiner::take(const Plan& plan) {
         }
     }
     FlownPlan base;
-    base.states.push_back(start_state(flights_.model(), problem_.start));
+    base.states.push_back(flights_.start());
     base.costs.push_back(0);
     std::vector<FlightJob> jobs{job_for(base, change)};
     flights_.fly(jobs);

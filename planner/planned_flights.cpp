@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "downwash/planner/free_air_cost.hpp"
+#include "downwash/planner/solve.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
@@ -50,12 +51,14 @@ std::map<std::string, std::uint64_t> no_rejections() {
 }
 
 PlannedFlights::PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space,
-                               const AeroMap* map, std::function<bool()> is_over, int threads)
+                               const AeroMap* map, std::function<bool()> is_over, int threads,
+                               std::optional<FlightState> start)
     : problem_(problem),
       model_(model),
       space_(space),
       map_(map),
       limits_(reference_limits(problem.motion)),
+      start_(start ? *start : start_state(model, problem.start)),
       crew_(model, map, planning_rules(problem, std::move(is_over)), &problem.goal, threads) {
     statistics_.rejected = no_rejections();
 }

@@ -29,8 +29,9 @@ class PlannedFlights {
     /// @param map surface effects of the planner's own model; nullptr for none
     /// @param is_over asked now and then within flights, from all threads; true ends them without a result
     /// @param threads at least 1; nothing but the time depends on it
+    /// @param start the whole vehicle with which the search begins; empty: as the problem's start says
     PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
-                   std::function<bool()> is_over = {}, int threads = 1);
+                   std::function<bool()> is_over = {}, int threads = 1, std::optional<FlightState> start = {});
 
     /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
     /// its reference to a few centimetres. Counts the refusal if it is not.
@@ -52,6 +53,8 @@ class PlannedFlights {
 
     [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
     [[nodiscard]] const FlightModel& model() const noexcept { return model_; }
+    /// The vehicle at the start of the search.
+    [[nodiscard]] const FlightState& start() const noexcept { return start_; }
     [[nodiscard]] const AeroMap* map() const noexcept { return map_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     void count_rejection(const std::string& cause);
@@ -68,6 +71,7 @@ class PlannedFlights {
     const SearchSpace& space_;
     const AeroMap* map_;
     ReferenceLimits limits_;
+    FlightState start_;
     FlightCrew crew_;
     FlightStatistics statistics_;
 };

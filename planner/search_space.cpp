@@ -113,7 +113,11 @@ Configuration SearchSpace::sample_near(const Configuration& configuration, doubl
 std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& configuration, double radius_m,
                                                            Random& random) const {
     const Goal& goal = nearest_goal(goal_, model_.tick().plant, level_at(configuration).data());
-    const Configuration candidate = moved_to(goal, sample_near(configuration, radius_m, random), random);
+    const Configuration near = sample_near(configuration, radius_m, random);
+    // Another place anywhere within a disc is near enough; a rectangle may be wide.
+    const Configuration candidate = tolerance_of(goal).is_disc
+                                        ? moved_to(goal, near, random)
+                                        : moved_into(goal, near, usable_tolerance_share * random.uniform(0.5, 1));
     return is_valid(candidate) ? std::optional(candidate) : std::nullopt;
 }
 
@@ -153,8 +157,11 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
 }
 
 Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
-    const Goal& nearest = nearest_goal(goal_, model_.tick().plant, level_at(c).data());
-    const GoalTolerance tolerance = tolerance_of(nearest);
+    return moved_into(nearest_goal(goal_, model_.tick().plant, level_at(c).data()), c, share);
+}
+
+Configuration SearchSpace::moved_into(const Goal& wanted, Configuration c, double share) const {
+    const GoalTolerance tolerance = tolerance_of(wanted);
     const auto nearest_angle = [&](double from_rad, double goal_rad) {
         const double most = share * tolerance.angle_rad;
         return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most));
@@ -172,8 +179,8 @@ Configuration SearchSpace::moved_into_goal(Configuration c, double share) const 
         dx *= part;
         dz *= part;
     };
-    if (nearest.end_effector) {
-        const EndEffectorGoal& goal = *nearest.end_effector;
+    if (wanted.end_effector) {
+        const EndEffectorGoal& goal = *wanted.end_effector;
         if (goal.direction_rad) {
             c.arm_rad = nearest_angle(c.arm_rad, *goal.direction_rad);
         }
@@ -186,7 +193,7 @@ Configuration SearchSpace::moved_into_goal(Configuration c, double share) const 
         c.z_m = goal.z_m + dz - tip.z;
         return c;
     }
-    const ConfigurationGoal& goal = *nearest.configuration;
+    const ConfigurationGoal& goal = *wanted.configuration;
     double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
     double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
     keep(dx, dz);

@@ -1,9 +1,11 @@
 #include "downwash/planner/solve.hpp"
 
 #include <chrono>
+#include <span>
 
 #include "downwash/planner/control_planners.hpp"
 #include "downwash/planner/flight_tree_planner.hpp"
+#include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/mp_arm.hpp"
 #include "downwash/planner/ompl_space.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
@@ -70,9 +72,10 @@ class Search {
 };
 
 /// Flies a plan with direct aerodynamics and says how long that took.
-Execution fly_directly(const Problem& problem, const FlightModel& model, const Plan& plan, double& wall_s) {
+Execution fly_directly(const FlightState& start, std::span<const Goal> goals, const FlightModel& model,
+                       const Plan& plan, double& wall_s) {
     const Stopwatch clock;
-    Execution execution = execute(model, start_state(model, problem.start), plan.reference, problem.goal, true);
+    Execution execution = execute(model, start, plan.reference, goals, true);
     wall_s = clock.seconds();
     return execution;
 }
@@ -114,22 +117,28 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
 /// What searches whose edges are flights have in common: every better plan of mp-arm-ada is flown with direct
 /// aerodynamics before it counts, and everything flown is accounted for.
 struct FlightSearch {
-    FlightSearch(const Problem& of, const FlightModel& with, const SolveOptions& options, const AeroMap* map,
-                 Solution& into)
+    /// @param whole the problem of which this one is a part, if not all   @param course that lies before it
+    FlightSearch(const Problem& of, const Problem& whole, const FlightModel& with, const SolveOptions& options,
+                 const AeroMap* map, const planning::Course& course, Solution& into)
         : problem(of),
+          start(start_state(with, whole.start)),
+          before(course),
+          goals(course.goals),
           model(with),
           solution(into),
           search(of, options, into),
           space(of, with),
           random(of.planner.seed),
           flights(
-              of, with, space, map, [this] { return search.is_over(); }, options.threads) {}
+              of, with, space, map, [this] { return search.is_over(); }, options.threads, course.vehicle) {
+        goals.push_back(of.goal);
+    }
 
     bool accept(const Plan& plan, double cost, std::uint64_t iteration) {
         search.found_first(search.seconds());
         if (problem.planner.variant == Variant::mp_arm_ada) {
             double flight_wall_s = 0;
-            Execution flight = fly_directly(problem, model, plan, flight_wall_s);
+            Execution flight = fly_directly(start, goals, model, before.continued_by(plan), flight_wall_s);
             if (flight.outcome != Outcome::ok) {
                 return false;
             }
@@ -151,6 +160,9 @@ struct FlightSearch {
     }
 
     const Problem& problem;
+    FlightState start;  ///< of the whole flight
+    const planning::Course& before;
+    std::vector<Goal> goals;  ///< up to the one that is searched for
     const FlightModel& model;
     Solution& solution;
     Search search;
@@ -237,20 +249,29 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
     solution.seed = problem.planner.seed;
     solution.threads = options.threads;
 
-    if (problem.planner.variant == Variant::mp_arm) {
-        search_geometrically(problem, *model, options, solution);
-    } else {
-        std::shared_ptr<const AeroMap> map;
-        if (problem.planner.variant == Variant::mp_arm_ada && problem.aero.enabled) {
-            const Stopwatch clock;
-            map = options.map ? options.map : model->make_map(problem.bounds, options.threads, {}, options.map_cache);
-            solution.planning.map_wall_s = clock.seconds();
+    std::shared_ptr<const AeroMap> map;
+    if (problem.planner.variant == Variant::mp_arm_ada && problem.aero.enabled) {
+        const Stopwatch clock;
+        map = options.map ? options.map : model->make_map(problem.bounds, options.threads, {}, options.map_cache);
+        solution.planning.map_wall_s = clock.seconds();
+    }
+    const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
+                            Solution& into) {
+        if (problem.planner.variant == Variant::mp_arm) {
+            search_geometrically(part, *model, how, into);
+            return;
         }
-        FlightSearch common(problem, *model, options, map.get(), solution);
+        FlightSearch common(part, problem, *model, how, map.get(), before, into);
         problem.planner.algorithm == "rrt-star" ? search_by_flights(common) : search_by_controls(common);
+    };
+    if (problem.stops.empty()) {
+        search(problem, options, planning::Course::from_start(problem, *model), solution);
+    } else {
+        planning::solve_in_turn(problem, *model, map.get(), options, search, solution);
     }
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
-        solution.execution = fly_directly(problem, *model, *solution.plan, solution.planning.flight_wall_s);
+        solution.execution = fly_directly(start_state(*model, problem.start), goals_of(problem), *model, *solution.plan,
+                                          solution.planning.flight_wall_s);
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {

@@ -27,7 +27,7 @@ SteeredFlights::SteeredFlights(const Problem& problem, const SearchSpace& space,
 
 FlightPoint SteeredFlights::start() const {
     FlightPoint point;
-    point.vehicle = start_state(flights_.model(), problem_.start);
+    point.vehicle = flights_.start();
     point.reference = reference_at(problem_.start);
     point.rest = steps_.rest_of(point.reference);
     return point;

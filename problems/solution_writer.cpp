@@ -84,6 +84,10 @@ Json execution_json(const Solution& solution) {
         return {};
     }
     const Execution& flight = *solution.execution;
+    Json goals = Json::array();
+    for (const GoalVisit& visit : flight.goals) {
+        goals.push_back({{"met", visit.is_met}, {"error_m", number(visit.error_m)}});
+    }
     return {{"aero", flight.aero},
             {"outcome", name_of(flight.outcome)},
             {"min_clearance_m", number(flight.min_clearance_m)},
@@ -92,7 +96,8 @@ Json execution_json(const Solution& solution) {
             {"cost", number(solution.execution_cost)},
             {"max_tracking_error_m", number(flight.max_tracking_error_m)},
             {"max_saturation", number(flight.max_saturation)},
-            {"goal_error_m", number(flight.goal_error_m)}};
+            {"goal_error_m", number(flight.goal_error_m)},
+            {"goals", std::move(goals)}};
 }
 
 /// A name, or the weights of a sum.

@@ -79,7 +79,7 @@ TEST_CASE("Solve writes a solution and a trajectory and the effective problem in
                                 "az_m_s2", "arm_acceleration_rad_s2"});
     CHECK(keys_of(solution.at("execution")) == std::set<std::string>{"aero", "outcome", "min_clearance_m", "energy_j",
                                                                      "duration_s", "cost", "max_tracking_error_m",
-                                                                     "max_saturation", "goal_error_m"});
+                                                                     "max_saturation", "goal_error_m", "goals"});
     CHECK(solution.at("schema") == "downwash/solution/v1");
     CHECK(solution.at("status") == "solved");
     CHECK(solution.at("seed") == 5);

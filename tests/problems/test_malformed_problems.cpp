@@ -113,10 +113,38 @@ const Edit edits[] = {
     {"robot: robot.yaml", "robot: [robot.yaml]",
      "problem.yaml:3:8: robot is a list: expected a group of keys or the path of a file"},
     {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n", "",
-     "problem.yaml:13:1: goal needs exactly one of end_effector or configuration"},
+     "problem.yaml:13:1: goal needs exactly one of end_effector, configuration or any_of"},
     {"  end_effector: {", "  configuration: {x_m: 1}\n  end_effector: {",
-     "problem.yaml:15:3: goal has both configuration and end_effector: expected exactly one of end_effector or "
-     "configuration"},
+     "problem.yaml:15:3: goal has both configuration and end_effector: expected exactly one of end_effector, "
+     "configuration or any_of"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n", "  any_of: []\n",
+     "problem.yaml:14:11: goal.any_of is empty: expected one element at least"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n",
+     "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {hold_s: 2}]\n",
+     "problem.yaml:14:48: goal.any_of[1] needs exactly one of end_effector or configuration\n"
+     "problem.yaml:15:3: goal.hold_s has a meaning only without any_of: remove it"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30, tolerance_x_m: 0, hold_s: 2}}]\n",
+     "problem.yaml:14:89: goal.any_of[1].configuration.tolerance_x_m is 0: expected a number in m above 0 and at most "
+     "100, or null\n"
+     "problem.yaml:14:92: unknown key 'hold_s' in goal.any_of[1].configuration: expected x_m, z_m, arm_deg, "
+     "tolerance_m, tolerance_x_m, tolerance_z_m or tolerance_deg"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30}}]\n",
+     "problem.yaml:14:70: goal.any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
+    {"end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}", "configuration: {z_m: 3, tolerance_x_m: 0.1}",
+     "problem.yaml:14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
+    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n", "goal: []\n",
+     "problem.yaml:13:7: goal is empty: expected one element at least"},
+    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "goal: [{end_effector: {x_m: 3, z_m: 9}}, {any_of: []}, {configuration: {x_m: 3}, hold_s: 0}]\n",
+     "problem.yaml:13:42: goal[1] needs exactly one of end_effector or configuration\n"
+     "problem.yaml:13:43: unknown key 'any_of' in goal[1]: expected end_effector, configuration or hold_s\n"
+     "problem.yaml:13:90: goal[2].hold_s is 0: expected a number in s from 1 to 3600"},
+    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "goal: [{end_effector: {x_m: 3, z_m: 9}}, {configuration: {x_m: 3}}]\n",
+     "problem.yaml:13:9: goal[0].end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses "
+     "it by 2.7 m; widen environment.bounds or move the goal"},
     {"end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}", "configuration: {tolerance_m: 0.1}",
      "problem.yaml:14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"hold_s: 5", "hold_s: 0.5", "problem.yaml:15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},

@@ -65,6 +65,40 @@ TEST_CASE("every shipped problem is sound") {
     CHECK(read_robot(std::filesystem::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml").name == "ars_lrm");
 }
 
+TEST_CASE("goals are read one by one, in turn, or as a choice") {
+    const TestFolder folder;
+    const auto read_with = [&](std::string_view text) {
+        constexpr std::string_view one = "goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n";
+        folder.write("problem.yaml", edited(good_problem, one, text));
+        folder.write("robot.yaml", good_robot);
+        return read_problem(folder / "problem.yaml");
+    };
+    const Problem turn = read_with(
+        "goal:\n  - configuration: {x_m: 1, tolerance_x_m: 0.2}\n    hold_s: 3\n"
+        "  - end_effector: {x_m: 2, z_m: 3, tolerance_z_m: 0.3}\n  - configuration: {z_m: 4}\n    hold_s: 7\n");
+    REQUIRE(turn.stops.size() == 2);
+    CHECK(turn.stops[0].configuration->x_m == 1);
+    CHECK(turn.stops[0].configuration->tolerance_x_m == 0.2);
+    CHECK(turn.stops[0].hold_s == 3);
+    CHECK(turn.stops[1].end_effector->tolerance_z_m == 0.3);
+    CHECK(turn.stops[1].hold_s == 5);
+    CHECK(turn.goal.configuration->z_m == 4);
+    CHECK(turn.goal.hold_s == 7);
+    CHECK(goals_of(turn).size() == 3);
+
+    const Problem choice =
+        read_with("goal: {any_of: [{configuration: {x_m: 1}}, {configuration: {x_m: 2}, hold_s: 2}]}\n");
+    CHECK(choice.stops.empty());
+    REQUIRE(choice.goal.any_of.size() == 2);
+    CHECK(choice.goal.any_of[0].hold_s == 5);
+    CHECK(choice.goal.any_of[1].configuration->x_m == 2);
+    CHECK(choice.goal.any_of[1].hold_s == 2);
+
+    const Problem alone = read_with("goal: [{configuration: {x_m: 1}}]\n");
+    CHECK(alone.stops.empty());
+    CHECK(alone.goal.configuration->x_m == 1);
+}
+
 TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {
     const TestFolder folder;
     const auto objective_of = [&](std::string_view text) {

@@ -55,6 +55,22 @@ class ProblemMaker {
             problem.robot.arm.is_limited = false;
             problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = 0;
         }
+        if (Goal& goal = problem.goal; goal.end_effector && coin()) {
+            goal.end_effector->tolerance_x_m = 0.1 + uniform();
+        } else if (goal.configuration && coin()) {
+            goal.configuration->z_m = 2 + uniform();
+            goal.configuration->tolerance_z_m = 0.1 + uniform();
+        }
+        if (coin()) {
+            Goal other = problem.goal;
+            other.hold_s = 1 + uniform();
+            if (coin()) {
+                problem.stops = {other, problem.goal};
+            } else {
+                problem.goal = {};
+                problem.goal.any_of = {other};
+            }
+        }
         problem.motion.max_arm_rate_rad_s = 1 + uniform();
         problem.planner.variant = coin() ? Variant::mp_arm : Variant::mp_arm_da;
         problem.planner.objective = coin() ? Objective::length : Objective::clearance;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -146,4 +147,44 @@ TEST_CASE("the flight through the map stays beside the flight with direct aerody
     for (int i = 0; i < 4; ++i) {
         CHECK(state.plant.q[i] == Approx(e.rows[1500].q[i]).margin(2e-3));
     }
+}
+
+TEST_CASE("goals on the way count as met only when the reference stands at them for their hold, in their order") {
+    const Problem problem = goal_at(-2, 2);  // from (-4, 2)
+    const auto model = make_flight_model(problem);
+    Goal stop = problem.goal;
+    stop.configuration->x_m = -3;
+    stop.hold_s = 2;
+    const double down = problem.start.arm_rad;
+    const ReferencePoint start = rest(-4, 2, down);
+    const ReferencePoint middle = rest(-3, 2, down);
+    const ReferencePoint end = rest(-2, 2, down);
+    const auto flown_by = [&](const std::vector<ReferenceKnot>& knots, const std::vector<Goal>& goals) {
+        return execute(*model, start_state(*model, problem.start), knots, goals, true);
+    };
+    const std::vector<ReferenceKnot> held{{0, start}, {400, middle}, {600, middle}, {1000, end}};
+
+    const Execution good = flown_by(held, {stop, problem.goal});
+    CHECK(good.outcome == Outcome::ok);
+    REQUIRE(good.goals.size() == 2);
+    CHECK(good.goals[0].is_met);
+    CHECK(good.goals[1].is_met);
+    CHECK(good.goal_error_m == std::max(good.goals[0].error_m, good.goals[1].error_m));
+    CHECK(good.duration_s == Approx(15));
+
+    const std::vector<ReferenceKnot> hasty{{0, start}, {400, middle}, {599, middle}, {1000, end}};
+    const Execution early = flown_by(hasty, {stop, problem.goal});
+    CHECK(early.outcome == Outcome::goal_missed);
+    CHECK_FALSE(early.goals[0].is_met);
+    CHECK_FALSE(early.goals[1].is_met);                       // it is not its turn yet
+    CHECK(early.goals[0].error_m == Approx(1).margin(0.02));  // measured where the flight ended
+
+    const Execution reversed = flown_by(held, {problem.goal, stop});
+    CHECK(reversed.outcome == Outcome::goal_missed);
+    CHECK_FALSE(reversed.goals[0].is_met);
+
+    // Two goals at one place need two holds.
+    CHECK(flown_by(held, {stop, stop, problem.goal}).outcome == Outcome::goal_missed);
+    const std::vector<ReferenceKnot> twice{{0, start}, {400, middle}, {600, middle}, {800, middle}, {1200, end}};
+    CHECK(flown_by(twice, {stop, stop, problem.goal}).outcome == Outcome::ok);
 }

@@ -3,6 +3,7 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/execution.hpp"
 
 using namespace downwash;
 
@@ -31,4 +32,66 @@ TEST_CASE("goal errors of an end effector and of a configuration by hand") {
     configured.configuration->arm_rad = -0.4;
     CHECK(goal_error(configured, plant, turned).angle_rad == Approx(0.4));
     CHECK_FALSE(is_met(goal_error(configured, plant, forward)));
+}
+
+TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
+    const Problem problem = test::ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const PlantModel& plant = model->tick().plant;
+    Goal goal;
+    goal.configuration = ConfigurationGoal{};
+    goal.configuration->x_m = 0;
+    goal.configuration->z_m = 2;
+    goal.configuration->tolerance_m = 0.1;
+    const auto share_at = [&](double x_m, double z_m) {
+        const double q[4] = {x_m, z_m, 0, 0};
+        return goal_error(goal, plant, q).used_share;
+    };
+    CHECK(share_at(0.06, 2.08) == Approx(1));
+    CHECK(share_at(0.09, 2.09) == Approx(0.9 * std::sqrt(2.0)));
+    goal.configuration->tolerance_x_m = 0.5;
+    CHECK(share_at(0.25, 2.09) == Approx(0.9));  // z keeps tolerance_m
+    CHECK(share_at(-0.45, 1.95) == Approx(0.9));
+    CHECK(share_at(0, 2.2) == Approx(2));
+    goal.configuration->tolerance_z_m = 0.05;
+    CHECK(share_at(0.25, 2.04) == Approx(0.8));
+    const double q[4] = {0.3, 2.4, 0, 0};
+    CHECK(goal_error(goal, plant, q).distance_m == Approx(0.5));  // as the crow flies, whatever the tolerances
+
+    Goal tip;
+    tip.end_effector = EndEffectorGoal{};
+    tip.end_effector->x_m = 1.2;
+    tip.end_effector->z_m = 2;
+    tip.end_effector->tolerance_z_m = 0.4;
+    const double forward[4] = {0.05, 2.1, 0, 0};  // tip at (1.25, 2.1)
+    CHECK(goal_error(tip, plant, forward).used_share == Approx(0.5));
+}
+
+TEST_CASE("of several goals the nearest by its own tolerances counts, with its own hold") {
+    const Problem problem = test::ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const PlantModel& plant = model->tick().plant;
+    Goal strict;
+    strict.configuration = ConfigurationGoal{};
+    strict.configuration->x_m = 0;
+    strict.configuration->tolerance_m = 0.1;
+    strict.hold_s = 3;
+    Goal loose = strict;
+    loose.configuration->x_m = 2;
+    loose.configuration->tolerance_m = 1;
+    loose.hold_s = 7;
+    Goal goal;
+    goal.any_of = {strict, loose};
+    const double between[4] = {0.5, 0, 0, 0};  // five tolerances from one, one and a half from the other
+    CHECK(goal_error(goal, plant, between).distance_m == Approx(1.5));
+    CHECK(goal_error(goal, plant, between).used_share == Approx(1.5));
+    CHECK_FALSE(is_met(goal_error(goal, plant, between)));
+    const double beside[4] = {0.05, 0, 0, 0};
+    CHECK(nearest_goal(goal, plant, beside).hold_s == 3);
+    CHECK(is_met(goal_error(goal, plant, beside)));
+    ReferencePoint at;
+    at.position[0] = 1.5;
+    CHECK(hold_ticks(goal, *model, at) == 700);
+    at.position[0] = 0.05;
+    CHECK(hold_ticks(goal, *model, at) == 300);
 }

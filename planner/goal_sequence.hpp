@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "downwash/planner/problem.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve.hpp"
+
+namespace downwash::planning {
+
+/// What lies before a search for the way to one of several goals: the flight to those before it. Empty for the first.
+struct Course {
+    std::vector<Goal> goals;  ///< reached and held
+    Plan plan;                ///< through them, to the end of the last hold
+    FlightState vehicle;      ///< the whole vehicle there, as the planner's own model flies it
+    double cost = 0;
+
+    /// The course before the first goal.
+    [[nodiscard]] static Course from_start(const Problem& problem, const FlightModel& model);
+
+    /// The course and a plan that begins where it ends, as one plan.
+    [[nodiscard]] Plan continued_by(const Plan& next) const;
+};
+
+/// Searches for the way to the goal of a problem without stops, whose start is at the end of the course before. Fills
+/// what it finds, and how that went, into the solution: cost and plan from there on, and, where it was flown with
+/// direct aerodynamics, the execution of course and plan together.
+using PartSearch = std::function<void(const Problem& part, const SolveOptions&, const Course& before, Solution&)>;
+
+/// Searches goal by goal, each from the whole vehicle that holds at the one before, with an equal share of what is left
+/// of time and iterations. The order is kept, and every part is found by itself: the whole is not the best of all ways
+/// through the goals. Ends with the first part for which no plan is found; what there is up to there is `approximate`.
+/// @param map of the planner's own model; nullptr for none
+void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
+                   const PartSearch& search, Solution& solution);
+
+}  // namespace downwash::planning
