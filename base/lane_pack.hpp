@@ -14,7 +14,7 @@
 namespace downwash::lane {
 inline namespace {  // NOLINT(google-build-namespaces): internal linkage is the point
 
-constexpr int pack_width = 4;
+inline constexpr int pack_width = 4;
 
 // Not `using`, which ignores the attribute.
 typedef double Doubles __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)

@@ -95,6 +95,8 @@ void add(SearchRecord& sum, const SearchRecord& part) {
     sum.edges_simulated += part.edges_simulated;
     sum.simulated_s += part.simulated_s;
     sum.states_checked += part.states_checked;
+    sum.nearest_approach_m = part.nearest_approach_m;
+    sum.obstruction = part.obstruction;
     for (const auto& [cause, count] : part.rejected) {
         sum.rejected[cause] += count;
     }

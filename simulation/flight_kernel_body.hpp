@@ -25,39 +25,39 @@ typedef std::uint64_t Words __attribute__((vector_size(32)));        // NOLINT(m
 
 #ifdef __AVX2__
 /// The whole part of numbers in [0, 2^31).
-Counts whole(Doubles x) {
+inline Counts whole(Doubles x) {
     return reinterpret_cast<Counts>(_mm256_cvttpd_epi32(x));
 }
-Doubles number(Counts x) {
+inline Doubles number(Counts x) {
     return _mm256_cvtepi32_pd(reinterpret_cast<__m128i>(x));
 }
-Doubles floats_in(Counts bits) {
+inline Doubles floats_in(Counts bits) {
     return _mm256_cvtps_pd(reinterpret_cast<__m128>(bits));
 }
-Counts low_half(Words x) {
+inline Counts low_half(Words x) {
     const __m256i even = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
     const __m256i gathered = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x), even);
     return reinterpret_cast<Counts>(_mm256_castsi256_si128(gathered));
 }
-Counts high_half(Words x) {
+inline Counts high_half(Words x) {
     const __m256i odd = _mm256_setr_epi32(1, 3, 5, 7, 1, 3, 5, 7);
     const __m256i gathered = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x), odd);
     return reinterpret_cast<Counts>(_mm256_castsi256_si128(gathered));
 }
 #else
-Counts whole(Doubles x) {
+inline Counts whole(Doubles x) {
     return reinterpret_cast<Counts>(__builtin_convertvector(x, SignedCounts));
 }
-Doubles number(Counts x) {
+inline Doubles number(Counts x) {
     return __builtin_convertvector(reinterpret_cast<SignedCounts>(x), Doubles);
 }
-Doubles floats_in(Counts bits) {
+inline Doubles floats_in(Counts bits) {
     return __builtin_convertvector(reinterpret_cast<Floats>(bits), Doubles);
 }
-Counts low_half(Words x) {
+inline Counts low_half(Words x) {
     return __builtin_convertvector(x, Counts);
 }
-Counts high_half(Words x) {
+inline Counts high_half(Words x) {
     return __builtin_convertvector(x >> 32, Counts);
 }
 #endif
@@ -81,7 +81,7 @@ struct CellPlaces {
     PackMask is_inside;
 };
 
-CellPlaces places_in(const MapView& view, Pack x_m, Pack z_m) {
+inline CellPlaces places_in(const MapView& view, Pack x_m, Pack z_m) {
     CellPlaces at;
     const Pack u = (x_m - Pack(view.x_low_m)) * Pack(view.cells_per_m);
     const Pack w = (z_m - Pack(view.z_low_m)) * Pack(view.cells_per_m);
@@ -97,7 +97,7 @@ CellPlaces places_in(const MapView& view, Pack x_m, Pack z_m) {
 }
 
 /// AeroMap::factor() for every lane.
-Pack factor_in(const MapView& view, const CellPlaces& at) {
+inline Pack factor_in(const MapView& view, const CellPlaces& at) {
     static_assert(sizeof(MapCell) == 8 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "a cell is read as one word");
     const Words cells = words_at(view.cells, at.cell);
     const Counts steps = high_half(cells);
@@ -145,7 +145,7 @@ struct LaneNoEffect {
 };
 
 /// 1 where some hub is not in a cell that is flyable throughout.
-Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state, const dynamics::Attitude<Pack>& a) {
+inline Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state, const dynamics::Attitude<Pack>& a) {
     const PlantModel& plant = model.tick->plant;
     Counts doubt{};
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
@@ -165,7 +165,7 @@ Pack flyable_doubt(const FlightKernelModel& model, const State<Pack>& state, con
 }
 
 /// No point of the robot, and no hub, has moved farther between two poses [m].
-Pack motion_bound_m(const FlightKernelModel& model, const State<Pack>& state, const Pack anchor[4]) {
+inline Pack motion_bound_m(const FlightKernelModel& model, const State<Pack>& state, const Pack anchor[4]) {
     const Pack dx = state.plant.q[0] - anchor[0];
     const Pack dz = state.plant.q[1] - anchor[1];
     const Pack pitch = lane::abs(state.plant.q[2] - anchor[2]);
@@ -188,7 +188,7 @@ void store(const Pack (&packs)[Count], double (&to)[Count][lane_count]) {
     }
 }
 
-State<Pack> load_state(const FlightLanes& lanes) {
+inline State<Pack> load_state(const FlightLanes& lanes) {
     State<Pack> state;
     load(state.plant.q, lanes.q);
     load(state.plant.u, lanes.u);
@@ -203,7 +203,7 @@ State<Pack> load_state(const FlightLanes& lanes) {
     return state;
 }
 
-void store_state(const State<Pack>& state, FlightLanes& lanes) {
+inline void store_state(const State<Pack>& state, FlightLanes& lanes) {
     store(state.plant.q, lanes.q);
     store(state.plant.u, lanes.u);
     store(state.plant.thrust_n, lanes.thrust_n);
@@ -216,7 +216,7 @@ void store_state(const State<Pack>& state, FlightLanes& lanes) {
     state.controller.rate_reference.store(lanes.rate_reference);
 }
 
-controllers::Setpoint<Pack> reference_at(const FlightLanes& lanes, Pack tick, Pack tick_s) {
+inline controllers::Setpoint<Pack> reference_at(const FlightLanes& lanes, Pack tick, Pack tick_s) {
     const Pack inverse_duration = Pack::load(lanes.inverse_duration_1_s);
     const Pack s = tick * tick_s * inverse_duration;
     const PackMask is_end = tick >= Pack::load(lanes.ticks);
@@ -277,7 +277,7 @@ void fly_lanes_with(const FlightKernelModel& model, FlightLanes& lanes, int most
     unclear.store(lanes.is_unclear);
 }
 
-[[gnu::flatten]] void fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
+[[gnu::flatten]] inline void fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
     if (model.has_map) {
         fly_lanes_with(model, lanes, most_ticks, LaneMapEffect{model});
     } else {

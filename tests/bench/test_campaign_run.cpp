@@ -142,7 +142,7 @@ TEST_CASE("what is read from a file of results is what was written") {
 TEST_CASE("the file has the tables and columns that Planner Arena reads") {
     const ScratchFolder folder;
     run_into(folder, small_campaign());
-    CHECK(answer(folder, "SELECT name || ' ' || timelimit IS NULL || ' ' || runcount FROM experiments") != "");
+    CHECK_FALSE(answer(folder, "SELECT name || ' ' || timelimit IS NULL || ' ' || runcount FROM experiments").empty());
     CHECK(answer(folder, "SELECT count(*) FROM plannerConfigs WHERE name = 'mp-arm rrt-star'") == "1");
     CHECK(answer(folder, "SELECT description FROM enums WHERE name = 'status' AND value = 2") == "solved");
     CHECK(answer(folder,
@@ -207,7 +207,7 @@ TEST_CASE("what is no file of results is refused") {
     CHECK_THROWS_AS(results_in(folder), std::runtime_error);
     CHECK_THROWS_AS(run_into(folder, small_campaign(), true), std::runtime_error);
     std::filesystem::remove(folder.path() / "results" / results_file);
-    CHECK(answer(folder, "CREATE TABLE other (x)") == "");
+    CHECK(answer(folder, "CREATE TABLE other (x)").empty());
     CHECK_THROWS_WITH(results_in(folder), Catch::Contains("holds no results of a campaign"));
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("a file of results that was tampered with is refused, not believed") {
                                         "UPDATE plannerConfigs SET variant = 'x'", "UPDATE runs SET time = 'soon'");
     const ScratchFolder folder;
     run_into(folder, small_campaign(1));
-    CHECK(answer(folder, change) == "");
+    CHECK(answer(folder, change).empty());
     CAPTURE(change);
     CHECK_THROWS_AS(results_in(folder), DatabaseError);
 }

@@ -122,6 +122,12 @@ TEST_CASE("a tour with a goal behind a wall ends before it and is not called sol
         CHECK(solution.execution->goals[0].is_met);
         CHECK_FALSE(solution.execution->goals[2].is_met);
         CHECK(solution.execution->goal_error_m > 1);
+        if (variant == Variant::mp_arm_da) {
+            REQUIRE(solution.planning.nearest_approach_m);
+            CHECK(*solution.planning.nearest_approach_m > 0.2);  // the tip to (3, 4.8), the wall at 1.35
+            CHECK(*solution.planning.nearest_approach_m < 4);  // nearer than from the stop before
+            CHECK(solution.planning.obstruction);
+        }
     }
 }
 

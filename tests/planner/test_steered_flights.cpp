@@ -1,3 +1,5 @@
+#include <ompl/control/spaces/RealVectorControlSpace.h>
+
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -97,10 +99,11 @@ TEST_CASE("a moment beyond the longest plan is refused") {
 }
 
 TEST_CASE("a flight closes from nearby, at rest within the goal, hold included") {
-    Fixture f;
-    f.problem.start.x_m = near_goal().x_m;
-    f.problem.start.z_m = near_goal().z_m;
-    f.problem.start.arm_rad = near_goal().arm_rad;
+    Problem problem = test::ceiling_problem();
+    problem.start.x_m = near_goal().x_m;
+    problem.start.z_m = near_goal().z_m;
+    problem.start.arm_rad = near_goal().arm_rad;
+    const Fixture f(problem);
     const double upwards[3] = {0.2, 0.05, 0};
     const std::vector<FlightPoint> moments{f.flights.start(), f.flights.stepped(f.flights.start(), upwards)};
     REQUIRE(f.flights.is_worth_closing(moments.back()));
@@ -155,7 +158,7 @@ TEST_CASE("OMPL propagates what steps fly, and ends before the step that is refu
     ompl::control::Control* control = information->allocControl();
     planning::point_of(from) = f.flights.resting_at({-3, 2, 1.5707963267948966});
     const double forward[3] = {1, 0, 0};
-    std::copy(forward, forward + 3, const_cast<double*>(planning::velocity_of(control)));
+    std::copy(forward, forward + 3, control->as<ompl::control::RealVectorControlSpace::ControlType>()->values);
     const unsigned int steps = information->propagateWhileValid(from, control, 100, to);
     FlightPoint point = planning::point_of(from);
     for (unsigned int i = 0; i < steps; ++i) {
