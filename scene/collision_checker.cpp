@@ -149,7 +149,7 @@ struct CollisionChecker::Impl {
     const Scene::Solids& solids;
     PlaneOfMotion plane;
     std::vector<Piece> pieces;
-    Vector3 joint_m;  ///< in the body frame
+    Vector3 joint_m;          ///< in the body frame
     double reach_m = 0;       ///< of all pieces
     double body_reach_m = 0;  ///< of those of the multirotor
 };

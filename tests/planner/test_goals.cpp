@@ -125,7 +125,7 @@ TEST_CASE("a tour with a goal behind a wall ends before it and is not called sol
         if (variant == Variant::mp_arm_da) {
             REQUIRE(solution.planning.nearest_approach_m);
             CHECK(*solution.planning.nearest_approach_m > 0.2);  // the tip to (3, 4.8), the wall at 1.35
-            CHECK(*solution.planning.nearest_approach_m < 4);  // nearer than from the stop before
+            CHECK(*solution.planning.nearest_approach_m < 4);    // nearer than from the stop before
             CHECK(solution.planning.obstruction);
         }
     }
