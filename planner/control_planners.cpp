@@ -120,6 +120,10 @@ class ControlSearch {
     [[nodiscard]] ControlResult result() const {
         ControlResult result = result_;
         result.iterations = iterations_;
+        if (!result.plan) {
+            const FlightPoint nearest = nearest_.empty() ? flights_.start() : nearest_.back();
+            result.nearest_approach_m = flights_.space().goal_distance_m(nearest.rest);
+        }
         if (!result.plan && nearest_.size() > 1) {
             result.status = Status::approximate;
             result.plan = flights_.plan(nearest_, {});
@@ -155,7 +159,7 @@ class ControlSearch {
             flights_.flights().count_rejection("direct_flight");
             return Review::discarded;
         }
-        result_ = {Status::solved, std::move(plan), end->cost, 0};
+        result_ = {Status::solved, std::move(plan), end->cost, 0, {}};
         return Review::accepted;
     }
 

@@ -15,6 +15,8 @@ struct ControlResult {
     std::optional<Plan> plan;
     double cost = 0;
     std::uint64_t iterations = 0;
+    /// Without a plan that was accepted: from the place of rest that came nearest to the goal region [m].
+    std::optional<double> nearest_approach_m;
 };
 
 /// What a search over controls is told and asked while it runs.

@@ -187,6 +187,10 @@ void search_by_controls(FlightSearch& common) {
     planning::ControlResult result =
         planning::plan_by_controls(settings.algorithm, settings.seed, flights, common.random, hooks);
     common.account(result.iterations);
+    if (result.nearest_approach_m) {
+        common.solution.planning.nearest_approach_m = result.nearest_approach_m;
+        common.solution.planning.obstruction = common.flights.statistics().obstruction;
+    }
     common.solution.status = result.status;
     common.solution.plan = std::move(result.plan);
     common.solution.cost = result.cost;

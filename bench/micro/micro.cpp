@@ -9,28 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "bridge.hpp"
 #include "downwash/aeromap/map_cache.hpp"
 #include "downwash/aeromap/volume_map.hpp"
-#include "downwash/planner/solve.hpp"
-#include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 
 using namespace downwash;
+using bench::Bridge;
 
 namespace {
-
-/// The bridge with its map, made once.
-struct Bridge {
-    Problem problem = read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
-    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
-
-    static const Bridge& get() {
-        static const Bridge bridge;
-        return bridge;
-    }
-};
 
 ReferencePoint rest(double x_m, double z_m, double arm_rad) {
     ReferencePoint point;

@@ -1,14 +1,8 @@
-#include <mujoco/mujoco.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
-#include <iomanip>
-#include <memory>
-#include <sstream>
-#include <string>
 
+#include "../support/mujoco_world.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/controllers/model_inversion.hpp"
 
@@ -18,6 +12,7 @@ namespace {
 
 using downwash::PlantModel;
 using downwash::Robot;
+using downwash::test::MujocoWorld;
 using downwash::test::plant_of;
 using downwash::test::test_robot;
 namespace controllers = downwash::controllers;
@@ -27,69 +22,12 @@ struct FreeAir {
     double operator()(int, double, double) const { return 1; }
 };
 
-/// The robot as MJCF: two slides, a hinge for pitch, a hinge for the arm; a motor on each rotor's axis.
-std::string mjcf(const Robot& robot, double step_s) {
-    const double ia = robot.multirotor.pitch_inertia_kg_m2;
-    const double ib = robot.arm.inertia_kg_m2;
-    std::ostringstream xml;
-    xml << std::setprecision(17);
-    xml << "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
-        << "<option timestep='" << step_s << "' integrator='RK4' gravity='0 0 -9.80665'>"
-        << "<flag contact='disable' constraint='disable'/></option>"
-        << "<worldbody><body name='multirotor'>"
-        << "<joint name='x' type='slide' axis='1 0 0'/><joint name='z' type='slide' axis='0 0 1'/>"
-        << "<joint name='pitch' type='hinge' axis='0 1 0'/>"
-        << "<inertial pos='0 0 0' mass='" << robot.multirotor.mass_kg << "' diaginertia='" << ia << ' ' << ia << ' '
-        << ia << "'/>";
-    for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
-        const auto& hub = robot.rotors.positions_m[i];
-        xml << "<site name='rotor" << i << "' pos='" << hub[0] << ' ' << hub[1] << ' ' << hub[2] << "'/>";
-    }
-    xml << "<body name='arm' pos='" << robot.arm.joint_x_m << " 0 " << robot.arm.joint_z_m << "'>"
-        << "<joint name='arm' type='hinge' axis='0 1 0'/>"
-        << "<inertial pos='" << robot.arm.center_of_mass_m << " 0 0' mass='" << robot.arm.mass_kg << "' diaginertia='"
-        << ib << ' ' << ib << ' ' << ib << "'/></body></body></worldbody><actuator>";
-    for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
-        xml << "<motor site='rotor" << i << "' gear='0 0 1 0 0 0'/>";
-    }
-    xml << "<motor joint='arm'/></actuator></mujoco>";
-    return xml.str();
-}
-
-/// A MuJoCo world with its memory.
-class World {
- public:
-    explicit World(const std::string& xml) {
-        const auto files = std::make_unique<mjVFS>();
-        mj_defaultVFS(files.get());
-        mj_makeEmptyFileVFS(files.get(), "robot.xml", static_cast<int>(xml.size()));
-        std::memcpy(files->filedata[0], xml.data(), xml.size());
-        char error[1000] = "";
-        model_.reset(mj_loadXML("robot.xml", files.get(), error, sizeof(error)));
-        mj_deleteVFS(files.get());
-        INFO(error);
-        REQUIRE(model_ != nullptr);
-        data_.reset(mj_makeData(model_.get()));
-        REQUIRE(model_->nv == 4);
-    }
-    mjModel* model() { return model_.get(); }
-    mjData* data() { return data_.get(); }
-
- private:
-    struct Free {
-        void operator()(mjModel* model) const { mj_deleteModel(model); }
-        void operator()(mjData* data) const { mj_deleteData(data); }
-    };
-    std::unique_ptr<mjModel, Free> model_;
-    std::unique_ptr<mjData, Free> data_;
-};
-
 /// Both plants fly the same commands; returns the greatest difference of a coordinate.
 double worst_difference(const Robot& robot, double flight_s, double& greatest_pitch, double& arm_sweep) {
     constexpr double step_s = 1e-3;
     constexpr int steps_per_tick = 10;
     const PlantModel plant = plant_of(robot);
-    World world(mjcf(robot, step_s));
+    MujocoWorld world(robot, step_s);
     mjData* const data = world.data();
 
     dynamics::PlantState<double> state{};
@@ -159,7 +97,7 @@ TEST_CASE("The plant falls and tumbles as in MuJoCo without any command") {
     constexpr double step_s = 1e-3;
     const Robot robot = test_robot();
     const PlantModel plant = plant_of(robot);
-    World world(mjcf(robot, step_s));
+    MujocoWorld world(robot, step_s);
     dynamics::PlantState<double> state{};
     const double u[4] = {0.2, 1, 1.5, -4};
     std::copy(u, u + 4, state.u);

@@ -1,6 +1,8 @@
 #include <ompl/control/spaces/RealVectorControlSpace.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 
 #include "../support/test_problem.hpp"

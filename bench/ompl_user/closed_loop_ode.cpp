@@ -1,0 +1,126 @@
+#include "closed_loop_ode.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace downwash::bench {
+namespace {
+
+struct Bodies {
+    Eigen::Matrix4d mass;
+    Eigen::Vector4d bias;
+};
+
+/// Mass matrix and bias of the two bodies (model 2).
+Bodies bodies(const PlantModel& p, const double q[4], const double u[4]) {
+    const Eigen::Vector2d r(std::cos(q[2]) * p.joint_x_m + std::sin(q[2]) * p.joint_z_m,
+                            -std::sin(q[2]) * p.joint_x_m + std::cos(q[2]) * p.joint_z_m);
+    const double a = q[2] + q[3];
+    const Eigen::Vector2d e(std::cos(a), -std::sin(a));
+    const Eigen::Vector2d by_arm = p.arm_center_of_mass_m * Eigen::Vector2d(-std::sin(a), -std::cos(a));
+    const Eigen::Vector2d by_pitch = Eigen::Vector2d(r.y(), -r.x()) + by_arm;
+
+    Bodies b;
+    b.mass.setZero();
+    b.mass(0, 0) = b.mass(1, 1) = p.total_mass_kg;
+    b.mass.block<2, 1>(0, 2) = p.arm_mass_kg * by_pitch;
+    b.mass.block<2, 1>(0, 3) = p.arm_mass_kg * by_arm;
+    b.mass(2, 2) = p.pitch_inertia_kg_m2 + p.arm_inertia_kg_m2 + p.arm_mass_kg * by_pitch.squaredNorm();
+    b.mass(2, 3) = p.arm_inertia_kg_m2 + p.arm_mass_kg * by_arm.dot(by_pitch);
+    b.mass(3, 3) = p.arm_inertia_kg_m2 + p.arm_mass_kg * by_arm.squaredNorm();
+    b.mass.triangularView<Eigen::StrictlyLower>() = b.mass.transpose();
+
+    const double turn = u[2] + u[3];
+    const Eigen::Vector2d acceleration = -r * u[2] * u[2] - p.arm_center_of_mass_m * e * turn * turn;
+    const Eigen::Vector2d k = p.arm_mass_kg * (acceleration + Eigen::Vector2d(0, standard_gravity_m_s2));
+    b.bias << p.arm_mass_kg * acceleration.x(),
+        p.arm_mass_kg * acceleration.y() + p.total_mass_kg * standard_gravity_m_s2, by_pitch.dot(k), by_arm.dot(k);
+    return b;
+}
+
+double limited(double value, double limit) {
+    return std::clamp(value, -limit, limit);
+}
+
+}  // namespace
+
+void ClosedLoopOde::operator()(const std::vector<double>& s, const double velocity[3],
+                               std::vector<double>& rates) const {
+    const PlantModel& p = model_.tick().plant;
+    const ControllerGains& g = model_.tick().gains;
+    const double* q = &s[x];
+    const double* u = &s[vx];
+    const Bodies b = bodies(p, q, u);
+
+    // Position and arm (model 5.1, 5.2): the accelerations to impose.
+    const double error[3] = {s[reference_x] - q[0], s[reference_z] - q[1], s[reference_arm] - q[3]};
+    Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
+    for (int i = 0; i < 2; ++i) {
+        wanted[i] =
+            g.position_kd * (velocity[i] - u[i]) + g.position_kp * error[i] +
+            limited(g.position_ki * s[integral_x + static_cast<std::size_t>(i)], g.position_integral_limit_m_s2);
+    }
+    wanted[3] = g.arm_kd * (velocity[2] - u[3]) + g.arm_kp * error[2] +
+                limited(g.arm_ki * s[integral_arm], g.arm_integral_limit_rad_s2);
+
+    // Their force, its direction as pitch reference, the rate to get there.
+    const Eigen::Vector2d force = (b.mass * wanted + b.bias).head<2>();
+    const double least_z = g.min_vertical_force_ratio * p.total_mass_kg * standard_gravity_m_s2;
+    const double pitch_reference = limited(std::atan2(force.x(), std::max(force.y(), least_z)), g.max_tilt_rad);
+    const double reference_rate = (pitch_reference - s[filtered_pitch_reference]) / g.pitch_rate_filter_s;
+    const double rate_error = reference_rate + g.attitude_k5 * (pitch_reference - q[2]) - u[2];
+    const double thrust = force.dot(Eigen::Vector2d(std::sin(q[2]), std::cos(q[2])));
+    wanted[2] = g.attitude_ku5 * rate_error +
+                limited(g.attitude_kiu5 * s[integral_pitch_rate], g.attitude_integral_limit_rad_s2);
+
+    // The torques for it, with the accelerations that this thrust will really give.
+    const Eigen::Vector2d given = thrust * Eigen::Vector2d(std::sin(q[2]), std::cos(q[2])) - b.bias.head<2>() -
+                                  b.mass.block<2, 2>(0, 2) * wanted.tail<2>();
+    wanted.head<2>() = given / p.total_mass_kg;
+    const Eigen::Vector4d demand = b.mass * wanted + b.bias;
+
+    // Rotors, their limits, and surfaces near them (model 3).
+    double acting_thrust = 0;
+    double acting_torque = 0;
+    double power = 0;
+    for (int i = 0; i < p.rotor_count; ++i) {
+        const double command =
+            std::clamp(p.force_share[i] * thrust + p.torque_share_1_m[i] * demand[2], p.min_thrust_n, p.max_thrust_n);
+        const double hub_x = q[0] + std::cos(q[2]) * p.rotor_x_m[i] + std::sin(q[2]) * p.rotor_z_m[i];
+        const double hub_z = q[1] - std::sin(q[2]) * p.rotor_x_m[i] + std::cos(q[2]) * p.rotor_z_m[i];
+        const double factor = map_ != nullptr ? map_->factor(model_.rotor_layer(i), hub_x, hub_z) : 1;
+        acting_thrust += factor * command;
+        acting_torque -= p.rotor_x_m[i] * factor * command;
+        power += p.power_coefficient_w_n1p5 * std::pow(command, 1.5);
+    }
+    const double joint_torque = limited(demand[3], p.max_joint_torque_nm);
+    const Eigen::Vector4d acting(acting_thrust * std::sin(q[2]), acting_thrust * std::cos(q[2]), acting_torque,
+                                 joint_torque);
+    const Eigen::Vector4d acceleration = b.mass.ldlt().solve(acting - b.bias);
+
+    rates.resize(size);
+    for (std::size_t i = 0; i < 4; ++i) {
+        rates[x + i] = u[i];
+        rates[vx + i] = acceleration[static_cast<Eigen::Index>(i)];
+    }
+    rates[integral_x] = error[0];
+    rates[integral_z] = error[1];
+    rates[integral_pitch_rate] = rate_error;
+    rates[integral_arm] = error[2];
+    rates[filtered_pitch_reference] = reference_rate;
+    for (std::size_t i = 0; i < 3; ++i) {
+        rates[reference_x + i] = velocity[i];
+    }
+    rates[energy] = power + std::abs(joint_torque * u[3]);
+}
+
+std::vector<double> ClosedLoopOde::resting_at(double x_m, double z_m, double arm_rad) {
+    std::vector<double> state(size, 0.0);
+    state[x] = state[reference_x] = x_m;
+    state[z] = state[reference_z] = z_m;
+    state[arm] = state[reference_arm] = arm_rad;
+    return state;
+}
+
+}  // namespace downwash::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <ompl/control/SpaceInformation.h>
+
+#include <memory>
+#include <optional>
+
+#include "closed_loop_ode.hpp"
+#include "downwash/planner/problem.hpp"
+
+namespace downwash::bench {
+
+/// A planner as a practitioner builds it from OMPL's tutorial: control::RRT, an ODESolver (RK4, 10 ms) for the closed
+/// loop, propagation by 0.1 s, and plain FCL between every body and every obstacle at the end of each.
+///
+/// Written to be quick where a user is free to choose: collisions without a margin, once in 0.1 s; no rule on
+/// saturation or tracking; the tip at the goal is enough, neither at rest nor held; goals sampled by inverse
+/// kinematics.
+class UserPlanner {
+ public:
+    /// @pre obstacles are boxes, cylinders and spheres   @param map as for ClosedLoopOde
+    UserPlanner(const Problem& problem, const FlightModel& model, const AeroMap* map);
+    ~UserPlanner();
+
+    /// Time to the first solution [s]; nothing within the limit. OMPL's global generator is the source of chance.
+    [[nodiscard]] std::optional<double> time_to_first_solution_s(double limit_s) const;
+
+    [[nodiscard]] const ompl::control::SpaceInformationPtr& information() const;
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace downwash::bench

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <cstring>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "downwash/simulation/robot.hpp"
+
+namespace downwash::test {
+
+/// The robot as MJCF: two slides, a hinge for pitch, a hinge for the arm; a motor on each rotor's axis.
+inline std::string mjcf(const Robot& robot, double step_s) {
+    const double ia = robot.multirotor.pitch_inertia_kg_m2;
+    const double ib = robot.arm.inertia_kg_m2;
+    std::ostringstream xml;
+    xml << std::setprecision(17);
+    xml << "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
+        << "<option timestep='" << step_s << "' integrator='RK4' gravity='0 0 -9.80665'>"
+        << "<flag contact='disable' constraint='disable'/></option>"
+        << "<worldbody><body name='multirotor'>"
+        << "<joint name='x' type='slide' axis='1 0 0'/><joint name='z' type='slide' axis='0 0 1'/>"
+        << "<joint name='pitch' type='hinge' axis='0 1 0'/>"
+        << "<inertial pos='0 0 0' mass='" << robot.multirotor.mass_kg << "' diaginertia='" << ia << ' ' << ia << ' '
+        << ia << "'/>";
+    for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
+        const auto& hub = robot.rotors.positions_m[i];
+        xml << "<site name='rotor" << i << "' pos='" << hub[0] << ' ' << hub[1] << ' ' << hub[2] << "'/>";
+    }
+    xml << "<body name='arm' pos='" << robot.arm.joint_x_m << " 0 " << robot.arm.joint_z_m << "'>"
+        << "<joint name='arm' type='hinge' axis='0 1 0'/>"
+        << "<inertial pos='" << robot.arm.center_of_mass_m << " 0 0' mass='" << robot.arm.mass_kg << "' diaginertia='"
+        << ib << ' ' << ib << ' ' << ib << "'/></body></body></worldbody><actuator>";
+    for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
+        xml << "<motor site='rotor" << i << "' gear='0 0 1 0 0 0'/>";
+    }
+    xml << "<motor joint='arm'/></actuator></mujoco>";
+    return xml.str();
+}
+
+/// The robot in a MuJoCo world of its own, integrated by RK4.
+class MujocoWorld {
+ public:
+    /// @throws std::runtime_error with MuJoCo's words
+    MujocoWorld(const Robot& robot, double step_s) {
+        const std::string xml = mjcf(robot, step_s);
+        const auto files = std::make_unique<mjVFS>();
+        mj_defaultVFS(files.get());
+        mj_makeEmptyFileVFS(files.get(), "robot.xml", static_cast<int>(xml.size()));
+        std::memcpy(files->filedata[0], xml.data(), xml.size());
+        char error[1000] = "";
+        model_.reset(mj_loadXML("robot.xml", files.get(), error, sizeof(error)));
+        mj_deleteVFS(files.get());
+        if (model_ == nullptr || model_->nv != 4) {
+            throw std::runtime_error(std::string("no robot for MuJoCo: ") + error);
+        }
+        data_.reset(mj_makeData(model_.get()));
+    }
+    mjModel* model() { return model_.get(); }
+    mjData* data() { return data_.get(); }
+
+ private:
+    struct Free {
+        void operator()(mjModel* model) const { mj_deleteModel(model); }
+        void operator()(mjData* data) const { mj_deleteData(data); }
+    };
+    std::unique_ptr<mjModel, Free> model_;
+    std::unique_ptr<mjData, Free> data_;
+};
+
+}  // namespace downwash::test
