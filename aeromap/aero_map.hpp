@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/map_view.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 
@@ -31,25 +32,6 @@ struct MapLayer {
 
 /// The most cells a map may have: 2^24, some hundred megabytes.
 inline constexpr double most_map_cells = 16777216;
-
-/// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
-enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
-
-/// A cell of a layer: where its own grid of values begins, and how fine it is.
-struct MapCell {
-    std::uint32_t first_node;
-    std::uint16_t steps_x;  ///< intervals along x, a power of two
-    std::uint16_t steps_z;  ///< intervals along z, a power of two
-};
-
-/// A layer as plain arrays, for code that looks up many points at once. AeroMap::factor() says how to read them.
-struct MapView {
-    double x_low_m, z_low_m, cells_per_m;
-    std::uint32_t columns, rows;
-    const MapCell* cells;              ///< x running fastest
-    const CellFlyability* flyability;  ///< of each cell
-    const float* nodes;
-};
 
 /// K stored over rotor positions in the plane of motion, one layer for all rotors that share lateral offset and effect.
 ///

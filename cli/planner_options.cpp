@@ -31,7 +31,8 @@ constexpr std::array options{
 };
 
 std::string description(const OptionOfKey& option) {
-    ParameterInfo parameter = *problem_parameters().find(option.key);
+    const ParameterInfo& known = *problem_parameters().find(option.key);
+    ParameterInfo parameter = known;
     parameter.can_be_group = false;  // an option is a word
     return fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key);
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "downwash/base/lane_math.hpp"
@@ -12,8 +11,6 @@
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where the largest change is bounded from samples: distances q^i * nearest, up to `farthest`.
 constexpr double nearest = 0.01;

@@ -31,9 +31,12 @@ constexpr int no_free_motion = 3;
 constexpr double clearance_error_m = 1e-7;
 
 simulation::FlightKernel kernel_for(Instructions instructions) {
-#ifdef DOWNWASH_HAS_AVX2_KERNEL
+#ifdef DOWNWASH_HAS_AVX_KERNELS
     if (instructions == Instructions::avx2) {
         return simulation::fly_lanes_avx2;
+    }
+    if (instructions == Instructions::avx512) {
+        return simulation::fly_lanes_avx512;
     }
 #endif
     assert(instructions == Instructions::baseline);
@@ -292,13 +295,15 @@ const FlightLeg* FlightJob::refused_leg() const noexcept {
     return refused != legs.end() ? &*refused : nullptr;
 }
 
-Instructions best_instructions() noexcept {
-#ifdef DOWNWASH_HAS_AVX2_KERNEL
+std::span<const Instructions> known_instructions() noexcept {
+    static constexpr Instructions all[] = {Instructions::baseline, Instructions::avx2, Instructions::avx512};
+    std::size_t known = 1;
+#ifdef DOWNWASH_HAS_AVX_KERNELS
     if (__builtin_cpu_supports("avx2") != 0) {
-        return Instructions::avx2;
+        known = __builtin_cpu_supports("avx512f") != 0 ? 3 : 2;
     }
 #endif
-    return Instructions::baseline;
+    return {all, known};
 }
 
 struct FlightCrew::Impl {

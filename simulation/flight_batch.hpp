@@ -39,10 +39,14 @@ struct FlightJob {
 enum class Instructions : std::uint8_t {
     baseline,  ///< what every processor of the architecture has
     avx2,      ///< x86-64 only
+    avx512,    ///< x86-64 only: AVX-512 F
 };
 
-/// The widest that this build and this processor have.
-[[nodiscard]] DOWNWASH_EXPORT Instructions best_instructions() noexcept;
+/// Those that this build and this processor have, the widest last.
+[[nodiscard]] DOWNWASH_EXPORT std::span<const Instructions> known_instructions() noexcept;
+[[nodiscard]] inline Instructions best_instructions() noexcept {
+    return known_instructions().back();
+}
 
 /// Flies jobs side by side: in the lanes of wide registers, and on several threads. Every job comes out exactly as
 /// fly() flies its legs one after the other, whatever the instructions and the number of threads. A lane whose flight

@@ -9,8 +9,8 @@
 
 namespace downwash::simulation {
 
-/// Edges that fly side by side.
-inline constexpr int lane_count = 4;
+/// Edges that fly side by side, as many as the widest kernel takes at once.
+inline constexpr int lane_count = 8;
 
 /// Everything about the edges that changes, as structure of arrays; [..][lane].
 struct alignas(64) FlightLanes {
@@ -57,8 +57,9 @@ struct FlightKernelModel {
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
 
 void fly_lanes_baseline(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
-#ifdef DOWNWASH_HAS_AVX2_KERNEL
+#ifdef DOWNWASH_HAS_AVX_KERNELS
 void fly_lanes_avx2(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
+void fly_lanes_avx512(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
 #endif
 
 }  // namespace downwash::simulation

@@ -14,12 +14,16 @@ struct NoEffect {
     [[nodiscard]] int same_as(int) const noexcept { return 0; }
 };
 
-/// The effect looked up in a map. Rotors one behind the other as seen along the lateral axis share a look-up where
-/// their layers hold the same.
+/// The effect looked up in a map along one flight. Rotors one behind the other as seen along the lateral axis share a
+/// look-up where their layers hold the same, and every rotor remembers the patch of the map that it is in: the values
+/// are those of AeroMap::factor() to the last bit. Not to be shared between threads.
 class MapEffect {
  public:
     MapEffect(const FlightModel& model, const AeroMap& map) : model_(model), map_(map) {
         const PlantModel& plant = model.tick().plant;
+        for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
+            layers_[i].view = map.view(model.rotor_layer(i));
+        }
         for (int i = 0; i < plant.rotor_count; ++i) {
             same_as_[i] = i;
             for (int j = i; j-- > 0;) {
@@ -31,13 +35,32 @@ class MapEffect {
         }
     }
     double operator()(int rotor, double x_m, double z_m) const noexcept {
-        return map_.factor(model_.rotor_layer(rotor), x_m, z_m);
+        Layer& layer = layers_[rotor];
+        const double u = (x_m - layer.view.x_low_m) * layer.view.cells_per_m;
+        const double w = (z_m - layer.view.z_low_m) * layer.view.cells_per_m;
+        double s = (u - layer.patch.u) * layer.patch.steps_x;
+        double t = (w - layer.patch.w) * layer.patch.steps_z;
+        if (!is_in_patch(s, t)) {
+            if (!layer.view.contains(u, w)) {
+                return map_.factor(model_.rotor_layer(rotor), x_m, z_m);
+            }
+            layer.patch = patch_at(layer.view, u, w);
+            s = (u - layer.patch.u) * layer.patch.steps_x;
+            t = (w - layer.patch.w) * layer.patch.steps_z;
+        }
+        return bilinear(layer.patch.corner, s, t);
     }
     [[nodiscard]] int same_as(int rotor) const noexcept { return same_as_[rotor]; }
 
  private:
+    struct Layer {
+        MapView view;
+        MapPatch patch = no_patch;
+    };
+
     const FlightModel& model_;
     const AeroMap& map_;
+    mutable Layer layers_[max_rotors + 1];
     int same_as_[max_rotors] = {};
 };
 

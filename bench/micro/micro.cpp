@@ -234,11 +234,22 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     }
     state.SetItemsProcessed(ticks);
 }
-BENCHMARK_CAPTURE(batch, dynamics_aware_baseline, false, Instructions::baseline, 1);
-BENCHMARK_CAPTURE(batch, dynamics_aware_best, false, best_instructions(), 1);
-BENCHMARK_CAPTURE(batch, aerodynamics_aware_baseline, true, Instructions::baseline, 1);
-BENCHMARK_CAPTURE(batch, aerodynamics_aware_best, true, best_instructions(), 1);
-BENCHMARK_CAPTURE(batch, aerodynamics_aware_best_two_threads, true, best_instructions(), 2)->UseRealTime();
+
+/// With every set of instructions that there is here, and with two threads.
+[[maybe_unused]] const bool batches_are_registered = [] {
+    constexpr const char* names[] = {"baseline", "avx2", "avx512"};
+    for (const bool is_aware : {false, true}) {
+        const std::string variant = is_aware ? "aerodynamics_aware" : "dynamics_aware";
+        for (const Instructions instructions : known_instructions()) {
+            const std::string name = "batch/" + variant + '_' + names[static_cast<int>(instructions)];
+            benchmark::RegisterBenchmark(name.c_str(), batch, is_aware, instructions, 1);
+        }
+        benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, is_aware,
+                                     best_instructions(), 2)
+            ->UseRealTime();
+    }
+    return true;
+}();
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {

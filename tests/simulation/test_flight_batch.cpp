@@ -14,9 +14,9 @@ namespace {
 
 /// Instructions and numbers of threads.
 std::vector<std::pair<Instructions, int>> ways_to_fly() {
-    std::vector<std::pair<Instructions, int>> ways{{Instructions::baseline, 1}, {best_instructions(), 3}};
-    if (best_instructions() != Instructions::baseline) {
-        ways.emplace_back(best_instructions(), 1);
+    std::vector<std::pair<Instructions, int>> ways{{best_instructions(), 3}};
+    for (const Instructions instructions : known_instructions()) {
+        ways.emplace_back(instructions, 1);
     }
     return ways;
 }
