@@ -170,10 +170,8 @@ std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
         }
     }
     const std::vector<double> cost_before = [&] {
-        std::vector<double> costs;
-        for (const Rewiring& r : open) {
-            costs.push_back(r.parent->cost);
-        }
+        std::vector<double> costs(open.size());
+        std::transform(open.begin(), open.end(), costs.begin(), [](const Rewiring& r) { return r.parent->cost; });
         return costs;
     }();
     const auto flights = flown(edges);

@@ -15,14 +15,14 @@ enum class Reach {
 [[nodiscard]] bool arm_can_turn_to(const ArmParameters& arm, double angle_rad, double tolerance_rad);
 
 /// How much farther the arm would have to reach for an end-effector goal from within the bounds [m]; <= 0 when it is
-/// within reach. Exact, obstacles and limits of the arm apart. @pre goal.end_effector is set
-[[nodiscard]] double missing_reach_m(const Problem& problem, const Goal& goal);
+/// within reach. Exact, obstacles and limits of the arm apart. @pre wanted.end_effector is set
+[[nodiscard]] double missing_reach_m(const Problem& problem, const Goal& wanted);
 
-/// Tries poses around an end-effector goal, half a degree of arm apart. @pre goal.end_effector is set
-[[nodiscard]] Reach reach_of_end_effector(const Problem& problem, const Goal& goal);
+/// Tries poses around an end-effector goal, half a degree of arm apart. @pre wanted.end_effector is set
+[[nodiscard]] Reach reach_of_end_effector(const Problem& problem, const Goal& wanted);
 
 /// Tries poses within the tolerances of a configuration goal; true when a coordinate is free, as then there are too
-/// many to say no. @pre goal.configuration is set
-[[nodiscard]] bool has_clear_configuration(const Problem& problem, const Goal& goal);
+/// many to say no. @pre wanted.configuration is set
+[[nodiscard]] bool has_clear_configuration(const Problem& problem, const Goal& wanted);
 
 }  // namespace downwash

@@ -139,6 +139,7 @@ std::vector<std::string_view> algorithm_names() {
 
 void add_objective(Rows& rows) {
     std::vector<std::pair<Objective, std::string_view>> names;
+    names.reserve(all_objectives.size());
     for (const Objective objective : all_objectives) {
         names.emplace_back(objective, name_of(objective));
     }

@@ -105,7 +105,7 @@ class SearchSpace {
 
  private:
     [[nodiscard]] Configuration moved_to(const Goal& goal, Configuration configuration, Random& random) const;
-    [[nodiscard]] Configuration moved_into(const Goal& goal, Configuration configuration, double share) const;
+    [[nodiscard]] Configuration moved_into(const Goal& wanted, Configuration configuration, double share) const;
     /// The same direction of the arm as the least angle that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad) const noexcept;
 

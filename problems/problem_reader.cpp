@@ -68,7 +68,8 @@ void set_parameter(Problem& problem, std::string_view key, std::string_view text
     node.kind = text == "null" ? problems::YamlNode::Kind::null : problems::YamlNode::Kind::scalar;
     node.text = text;
     try {
-        ParameterInfo info = *parameter;
+        const ParameterInfo& known = *parameter;
+        ParameterInfo info = known;
         info.can_be_group = false;  // of which one text says nothing
         parameter->set(problem, 0, problems::read_value(info, node));
     } catch (const problems::YamlError& error) {

@@ -29,7 +29,7 @@ FieldSamples sampled_for(const FieldFigure& figure, const FieldLayout& layout, d
     const double height_px = layout.top - layout.bottom;
     const double points = layout.width() * height_px * points_per_px * points_per_px;
     const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(most_points) / points));
-    const auto count = [scale](double px) { return std::max<std::size_t>(2, std::lround(scale * px)); };
+    const auto count = [scale](double px) { return static_cast<std::size_t>(std::max(2L, std::lround(scale * px))); };
     return sampled(figure, count(layout.width()), count(height_px), at_corners);
 }
 
@@ -138,7 +138,7 @@ void add_mark_data(GnuplotScript& script, const FieldFigure& figure) {
 /// The line around where the field is not defined, as the data $boundary.
 void add_boundary(GnuplotScript& script, const FieldFigure& figure, const FieldLayout& layout) {
     constexpr double px_per_cell = 2;
-    const auto cells = [](double px) { return std::max<std::size_t>(1, std::lround(px / px_per_cell)); };
+    const auto cells = [](double px) { return static_cast<std::size_t>(std::max(1L, std::lround(px / px_per_cell))); };
     const auto is_undefined_at = [&](double x_m, double z_m) { return std::isnan(figure.value(x_m, z_m)); };
     add_data(script, "$boundary",
              lines_text(region_boundary(is_undefined_at, figure.extent, cells(layout.width()),

@@ -318,6 +318,7 @@ struct FlightCrew::Impl {
     void work() {
         FlightLanes lanes{};
         std::vector<Lane> flights;
+        flights.reserve(lane_count);
         for (int i = 0; i < lane_count; ++i) {
             flights.emplace_back(world, lanes, i);
         }
