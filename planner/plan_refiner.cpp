@@ -34,14 +34,28 @@ void PlanRefiner::drop_champion() {
     }
 }
 
-FlightJob PlanRefiner::job_for(const FlownPlan& base, const Change& change) const {
+FlightJob PlanRefiner::job_for(const FlightState& from, const Change& change, std::size_t first,
+                               std::size_t last) const {
     const double tick_s = flights_.model().tick().tick_s;
-    FlightJob job{base.states[change.first], {}, flights_.judged_ticks()};
-    for (std::size_t i = change.first; i < change.ticks.size(); ++i) {
+    FlightJob job{from, {}, 0};
+    for (std::size_t i = first; i <= last; ++i) {
         job.legs.push_back({{change.points[i], change.points[i + 1], change.ticks[i], tick_s}});
     }
-    job.legs.push_back(flights_.hold_leg(change.points.back()));
+    if (last + 1 == change.ticks.size()) {
+        job.legs.push_back(flights_.hold_leg(change.points.back()));
+        job.judged_ticks = flights_.judged_ticks();
+    }
     return job;
+}
+
+double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const {
+    double cost = base.costs[change.first];
+    const FlightState* state = &base.states[change.first];
+    for (const FlightLeg& leg : job.legs) {
+        cost = flights_.cost_after(cost, *state, leg);
+        state = &leg.end;
+    }
+    return cost;
 }
 
 FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const FlightJob& job) const {
@@ -63,7 +77,7 @@ void PlanRefiner::take(const Plan& plan) {
     if (plan.reference.size() < 2) {
         return;  // the start meets the goal: there is nothing on the way
     }
-    Change change{{}, {}, 0};
+    Change change;
     for (std::size_t i = 0; i < plan.reference.size(); ++i) {
         change.points.push_back(plan.reference[i].point);
         if (i > 0) {
@@ -73,7 +87,7 @@ void PlanRefiner::take(const Plan& plan) {
     FlownPlan base;
     base.states.push_back(flights_.start());
     base.costs.push_back(0);
-    std::vector<FlightJob> jobs{job_for(base, change)};
+    std::vector<FlightJob> jobs{job_for(base.states[0], change, 0, change.ticks.size() - 1)};
     flights_.fly(jobs);
     if (jobs[0].fault() != FlightFault::none) {
         return;
@@ -92,7 +106,7 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
     if (!drawn) {
         return std::nullopt;
     }
-    Change change{std::move(drawn->points), {}, drawn->first_segment};
+    Change change{std::move(drawn->points), {}, drawn->first_segment, drawn->last_segment};
     // Segments that do not change keep their ticks; their numbers may have shifted by a corner more or less.
     const std::size_t segments = change.points.size() - 1;
     const std::size_t old_segments = track.plan.ticks.size();
@@ -112,6 +126,44 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
     return total <= most_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
 }
 
+/// Of changes whose own segments are flown: where one got to the old plan's next corner for less, the rest of the plan,
+/// hold included, is flown as well.
+std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes,
+                                              std::vector<FlightJob>& jobs) {
+    std::vector<std::size_t> promising;
+    std::vector<std::size_t> unfinished;
+    std::vector<FlightJob> rests;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const Change& change = changes[i];
+        const std::size_t segments = change.ticks.size();
+        const bool is_whole = change.last + 1 == segments;
+        const double old_cost = is_whole ? base.cost : base.costs[change.last + 1 + base.ticks.size() - segments];
+        if (jobs[i].fault() != FlightFault::none || !(cost_after(base, change, jobs[i]) < old_cost)) {
+            continue;
+        }
+        promising.push_back(i);
+        if (!is_whole) {
+            unfinished.push_back(i);
+            rests.push_back(job_for(jobs[i].end(), change, change.last + 1, segments - 1));
+        }
+    }
+    flights_.fly(rests);
+    for (std::size_t i = 0; i < rests.size(); ++i) {
+        std::vector<FlightLeg>& legs = jobs[unfinished[i]].legs;
+        legs.insert(legs.end(), rests[i].legs.begin(), rests[i].legs.end());
+    }
+    std::optional<FlownPlan> best;
+    for (const std::size_t i : promising) {
+        if (jobs[i].fault() == FlightFault::none) {
+            FlownPlan plan = flown(base, changes[i], jobs[i]);
+            if (plan.cost < (best ? best->cost : base.cost)) {
+                best = std::move(plan);
+            }
+        }
+    }
+    return best;
+}
+
 void PlanRefiner::improve() {
     if (tracks_.empty()) {
         return;
@@ -122,23 +174,14 @@ void PlanRefiner::improve() {
     std::vector<FlightJob> jobs;
     for (int tries = 0; tries < 4 * changes_side_by_side && jobs.size() < changes_side_by_side; ++tries) {
         if (auto change = changed(track)) {
-            jobs.push_back(job_for(track.plan, *change));
+            jobs.push_back(job_for(track.plan.states[change->first], *change, change->first, change->last));
             changes.push_back(std::move(*change));
         }
     }
     flights_.fly(jobs);
-    std::optional<FlownPlan> best;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        if (jobs[i].fault() != FlightFault::none) {
-            continue;
-        }
-        FlownPlan plan = flown(track.plan, changes[i], jobs[i]);
-        if (plan.cost < (best ? best->cost : track.plan.cost)) {
-            best = std::move(plan);
-        }
-    }
+    const std::optional<FlownPlan> best = best_of(track.plan, changes, jobs);
     if (best) {
-        track.plan = std::move(*best);
+        track.plan = *best;
         track.step = std::min(1.0, 1.5 * track.step);
         track.failures = 0;
     } else {

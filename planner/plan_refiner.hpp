@@ -21,7 +21,7 @@ struct FlownPlan {
 
 /// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
 /// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
-/// only when that is cheaper: an evolution strategy with success-driven step length (Rechenberg 1973), several changes
+/// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with success-driven step length (Rechenberg 1973), several changes
 /// side by side. Of two plans that it works on the cheaper one is the champion; the other one is given a chance to
 /// overtake it before it is dropped.
 class PlanRefiner {
@@ -52,11 +52,16 @@ class PlanRefiner {
     struct Change {
         std::vector<ReferencePoint> points;
         std::vector<std::int64_t> ticks;
-        std::size_t first;  ///< segment that differs
+        std::size_t first = 0, last = 0;  ///< segments that differ
     };
 
     [[nodiscard]] std::optional<Change> changed(const Track& track);
-    [[nodiscard]] FlightJob job_for(const FlownPlan& base, const Change& change) const;
+    /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
+    [[nodiscard]] FlightJob job_for(const FlightState& from, const Change& change, std::size_t first,
+                                    std::size_t last) const;
+    [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
+                                                   std::vector<FlightJob>& jobs);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
 
     const Problem& problem_;

@@ -30,18 +30,25 @@ constexpr int no_free_motion = 3;
 /// Queries of clearance are certain but for so much [m].
 constexpr double clearance_error_m = 1e-7;
 
-simulation::FlightKernel kernel_for(Instructions instructions) {
+/// The kernel for many lanes, and the one for so few that half a wide register would do.
+struct Kernels {
+    simulation::FlightKernel for_many, for_few;
+};
+
+constexpr int few_lanes = lane_count / 2;
+
+Kernels kernels_for(Instructions instructions) {
 #ifdef DOWNWASH_HAS_AVX_KERNELS
     if (instructions == Instructions::avx2) {
-        return simulation::fly_lanes_avx2;
+        return {simulation::fly_lanes_avx2, simulation::fly_lanes_avx2};
     }
     if (instructions == Instructions::avx512) {
-        return simulation::fly_lanes_avx512;
+        return {simulation::fly_lanes_avx512, simulation::fly_lanes_avx2};
     }
 #endif
     assert(instructions == Instructions::baseline);
     static_cast<void>(instructions);
-    return simulation::fly_lanes_baseline;
+    return {simulation::fly_lanes_baseline, simulation::fly_lanes_baseline};
 }
 
 double reach_m(const Vector3& half_size_m, const Vector3& center_m) {
@@ -111,15 +118,17 @@ class Lane {
 
     /// Copies another lane, so that a lane without a job computes nothing that is odd.
     void idle_like(const Lane& other) {
-        const auto copy_all = [&](double* first, std::size_t rows) {
-            for (std::size_t i = 0; i < rows; ++i) {
-                first[i * lane_count + static_cast<std::size_t>(number_)] =
-                    first[i * lane_count + static_cast<std::size_t>(other.number_)];
-            }
-        };
-        static_assert(sizeof(FlightLanes) % (lane_count * sizeof(double)) == 0);
-        copy_all(&lanes_->q[0][0], sizeof(FlightLanes) / (lane_count * sizeof(double)));
+        copy_numbers(other);
         lanes_->is_active[number_] = 0;
+    }
+
+    /// Goes on with another lane's job, and leaves that one free.
+    void take_over(Lane& other) {
+        copy_numbers(other);
+        job_ = std::exchange(other.job_, nullptr);
+        leg_ = other.leg_;
+        level_ = other.level_;
+        lanes_->is_active[other.number_] = 0;
     }
 
     /// Judges where the kernel stopped.
@@ -139,8 +148,8 @@ class Lane {
         if (fault == FlightFault::none && is_unclear) {
             fault = fault_nearby();
         }
-        if (fault == FlightFault::none && is_judged() && !meets_goal(*world_->goal, plant(), state())) {
-            fault = FlightFault::goal_missed;
+        if (fault == FlightFault::none && is_judged()) {
+            fault = goal_fault();
         }
         if (fault != FlightFault::none || is_end) {
             end_with(fault);
@@ -148,6 +157,15 @@ class Lane {
     }
 
  private:
+    void copy_numbers(const Lane& other) {
+        static_assert(sizeof(FlightLanes) % (lane_count * sizeof(double)) == 0);
+        double* const first = &lanes_->q[0][0];
+        for (std::size_t row = 0; row < sizeof(FlightLanes) / (lane_count * sizeof(double)); ++row) {
+            first[row * lane_count + static_cast<std::size_t>(number_)] =
+                first[row * lane_count + static_cast<std::size_t>(other.number_)];
+        }
+    }
+
     [[nodiscard]] const PlantModel& plant() const noexcept { return world_->model.tick().plant; }
 
     void begin_leg() {
@@ -170,11 +188,14 @@ class Lane {
         lanes_->tick[number_] = 0;
         lanes_->ticks[number_] = static_cast<double>(segment.ticks());
         lanes_->length_m[number_] = 0;
-        if (is_judged_leg()) {
-            look_after_every_tick();
-            if (is_judged() && !meets_goal(*world_->goal, plant(), state())) {
-                end_with(FlightFault::goal_missed);
+        lanes_->look_tick[number_] =
+            is_judged_leg() ? static_cast<double>(segment.ticks() - job_->judged_ticks) : HUGE_VAL;
+        if (is_judged()) {
+            if (const FlightFault fault = goal_fault(); fault != FlightFault::none) {
+                end_with(fault);
+                return;
             }
+            look_after_every_tick();
         }
     }
 
@@ -184,6 +205,19 @@ class Lane {
     [[nodiscard]] bool is_judged() const noexcept {
         return is_judged_leg() && static_cast<std::int64_t>(lanes_->tick[number_]) + job_->judged_ticks >=
                                       job_->legs.back().segment.ticks();
+    }
+
+    /// Whether the goal is met now; if so, the robot may move no farther without a look than it surely stays so.
+    FlightFault goal_fault() {
+        const FlightState now = state();
+        if (!meets_goal(*world_->goal, plant(), now)) {
+            return FlightFault::goal_missed;
+        }
+        const double motion_m =
+            motion_within_goal_m(*world_->goal, plant(), now.plant.q, world_->model.collisions().body_reach_m());
+        lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
+        lanes_->look_tick[number_] = HUGE_VAL;
+        return FlightFault::none;
     }
 
     void look_after_every_tick() { lanes_->free_motion_m[number_] = -1; }
@@ -199,8 +233,7 @@ class Lane {
         }
         const PlanarPose pose = pose_of(now);
         const CollisionChecker& collisions = world_->model.collisions();
-        const bool has_to_look_on = is_judged_leg() || world_->rules.measures_clearance;
-        if (has_to_look_on || !find_free_motion(pose)) {
+        if (world_->rules.measures_clearance || !find_free_motion(pose)) {
             look_after_every_tick();
             if (collisions.is_nearer_than(pose, world_->rules.margin_m)) {
                 return FlightFault::collision;
@@ -312,7 +345,7 @@ struct FlightCrew::Impl {
         : rules(std::move(the_rules)),
           world{model, map, rules, goal},
           kernel_model(make_kernel_model(world)),
-          kernel(kernel_for(instructions)) {}
+          kernels(kernels_for(instructions)) {}
 
     /// Flies jobs until none is left; several threads may do so at once.
     void work() {
@@ -323,7 +356,6 @@ struct FlightCrew::Impl {
             flights.emplace_back(world, lanes, i);
         }
         for (;;) {
-            const Lane* busy = nullptr;
             for (Lane& lane : flights) {
                 while (lane.is_free()) {
                     const std::size_t job = next_job++;
@@ -332,17 +364,17 @@ struct FlightCrew::Impl {
                     }
                     lane.begin(jobs[job]);
                 }
-                busy = lane.is_free() ? busy : &lane;
             }
-            if (busy == nullptr) {
+            const int busy = move_together(flights);
+            if (busy == 0) {
                 return;
             }
             for (Lane& lane : flights) {
                 if (lane.is_free()) {
-                    lane.idle_like(*busy);
+                    lane.idle_like(flights.front());
                 }
             }
-            kernel(kernel_model, lanes, most_ticks_per_call);
+            (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, most_ticks_per_call);
             const bool is_interrupted = rules.is_over && rules.is_over();
             for (Lane& lane : flights) {
                 if (!lane.is_free()) {
@@ -350,6 +382,21 @@ struct FlightCrew::Impl {
                 }
             }
         }
+    }
+
+    /// Moves the flights into the first lanes, and says how many there are.
+    static int move_together(std::vector<Lane>& flights) {
+        int busy = 0;
+        for (Lane& lane : flights) {
+            if (lane.is_free()) {
+                continue;
+            }
+            Lane& first_free = flights[static_cast<std::size_t>(busy++)];
+            if (first_free.is_free()) {
+                first_free.take_over(lane);
+            }
+        }
+        return busy;
     }
 
     /// Waits for batches until the crew is dismissed.
@@ -375,7 +422,7 @@ struct FlightCrew::Impl {
     FlightRules rules;
     World world;
     FlightKernelModel kernel_model;
-    simulation::FlightKernel kernel;
+    Kernels kernels;
 
     std::span<FlightJob> jobs;
     std::atomic<std::size_t> next_job{0};

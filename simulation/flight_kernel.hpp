@@ -28,6 +28,7 @@ struct alignas(64) FlightLanes {
     // Until the robot has moved so far from a pose nothing but the rules of flight_rules.hpp has to be looked at.
     double anchor[4][lane_count];
     double free_motion_m[lane_count];  ///< negative: look after every tick
+    double look_tick[lane_count];      ///< from this tick of the segment on as well; infinite: never
 
     double length_m[lane_count];
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack

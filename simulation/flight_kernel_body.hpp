@@ -220,6 +220,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     Pack anchor[4];
     group.load(anchor, lanes.anchor);
     const Pack free_motion_m = group.load(lanes.free_motion_m);
+    const Pack look_tick = group.load(lanes.look_tick);
     const Pack ticks = group.load(lanes.ticks);
     const PlantModel& plant = model.tick->plant;
     dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
@@ -232,7 +233,8 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
         state = next;
         motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
         fault = broken_rule(model.limits, record.saturation, state, reference);
-        unclear = select(motion_bound_m(model, state, anchor) > free_motion_m, Pack(1), Pack(0));
+        unclear = select((motion_bound_m(model, state, anchor) > free_motion_m) | (tick_count >= look_tick), Pack(1),
+                         Pack(0));
         if (model.has_map) {
             unclear = lane::max(unclear, flyable_doubt(model, state, motion.attitude, factor));
         }

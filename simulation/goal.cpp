@@ -73,4 +73,20 @@ const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const double
                              [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
 }
 
+double motion_within_goal_m(const Goal& goal, const PlantModel& model, const double q[4], double body_reach_m) {
+    const Goal& nearest = nearest_goal(goal, model, q);
+    const GoalDeviation d = goal_deviation(nearest, model, q);
+    const GoalTolerance tolerance = tolerance_of(nearest);
+    const double distance_left_m = tolerance.is_disc
+                                       ? tolerance.x_m - distance_m(d)
+                                       : std::min(tolerance.x_m - std::abs(d.x_m), tolerance.z_m - std::abs(d.z_m));
+    // The arm's direction turns by at most motion / length, the body by motion / reach, and their difference is the
+    // arm's angle.
+    const double turn_per_m = 1 / model.arm_length_m + (nearest.configuration ? 1 / body_reach_m : 0);
+    const bool has_angle = nearest.configuration ? nearest.configuration->arm_rad.has_value()
+                                                 : nearest.end_effector->direction_rad.has_value();
+    const double angle_left_m = (tolerance.angle_rad - d.angle_rad) / turn_per_m;
+    return has_angle ? std::min(distance_left_m, angle_left_m) : distance_left_m;
+}
+
 }  // namespace downwash

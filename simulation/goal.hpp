@@ -87,6 +87,12 @@ struct GoalError {
     return error.used_share <= 1;
 }
 
+/// How far any point of the robot may move, at the most, so that a configuration that meets the goal surely still does
+/// [m]; negative where it does not.
+/// @param body_reach_m a turn of the body moves some point of the robot with this reach [m], > 0
+[[nodiscard]] DOWNWASH_EXPORT double motion_within_goal_m(const Goal& goal, const PlantModel& model, const double q[4],
+                                                          double body_reach_m);
+
 /// The share of each tolerance that a reference may use up while planning; the rest is left to the flight.
 inline constexpr double usable_tolerance_share = 0.9;
 

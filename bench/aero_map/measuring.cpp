@@ -12,12 +12,6 @@
 namespace downwash::bench {
 namespace {
 
-double thread_time_s() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// A line of /proc/self/status, which counts in kB; negative when it is not there.
 double status_bytes(const std::string& key) {
     std::ifstream status("/proc/self/status");
@@ -32,6 +26,16 @@ double status_bytes(const std::string& key) {
 }
 
 }  // namespace
+
+double thread_time_s() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double memory_bytes() {
+    return status_bytes("VmRSS");
+}
 
 double best_of(int repetitions, const std::function<void()>& work) {
     double best_s = std::numeric_limits<double>::infinity();
@@ -48,7 +52,7 @@ double peak_growth_bytes(const std::function<void()>& work) {
     std::ofstream clear("/proc/self/clear_refs");
     clear << "5" << std::flush;  // the peak begins anew
     const bool is_clear = clear.good();
-    const double before = status_bytes("VmRSS");
+    const double before = memory_bytes();
     work();
     const double peak = status_bytes("VmHWM");
     return is_clear && before > 0 && peak > 0 ? peak - before : -1;

@@ -4,6 +4,12 @@
 
 namespace downwash::bench {
 
+/// Processor time of the calling thread [s].
+double thread_time_s();
+
+/// The memory of this process [bytes]; negative where the system does not say.
+double memory_bytes();
+
 /// The least processor time of the calling thread over so many repetitions [s]. What else runs on the machine can only
 /// add to it, by emptying caches.
 double best_of(int repetitions, const std::function<void()>& work);
