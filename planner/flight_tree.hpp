@@ -46,6 +46,9 @@ class FlightTree {
     /// What the flight of an edge would cost far from all surfaces, without flying it.
     [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
 
+    /// No flight from a configuration to the goal, and hold there, costs less, far from all surfaces.
+    [[nodiscard]] double least_cost_to_goal(const Configuration& from) const;
+
     /// An edge that may be worth flying: from a node to rest at a configuration (arm angle unwrapped as seen from it).
     struct Edge {
         const FlightNode* from;

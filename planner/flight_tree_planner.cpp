@@ -31,6 +31,12 @@ constexpr double range_share = 0.2;
 /// win with so much less.
 constexpr double optimism = 0.9;
 
+/// A way through the tree that is so much dearer than the best one may still overtake it: by rewiring, or when refined.
+constexpr double patience = 1.15;
+
+/// Ways that lead nowhere farther from each other than this are the same for the refiner [m].
+constexpr double other_way_m = 0.5;
+
 /// While the search goes on a better plan is worth a direct flight from this relative gain on; at its end any is.
 constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
@@ -54,6 +60,24 @@ std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
         }
     }
     return all;
+}
+
+/// From the straight lines between the points of a way, in the plane of motion.
+double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way) {
+    double nearest_m = HUGE_VAL;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const double* a = way[i - 1].position;
+        const double* b = way[i].position;
+        const double dx = b[0] - a[0];
+        const double dz = b[1] - a[1];
+        const double length2 = dx * dx + dz * dz;
+        const double along =
+            length2 > 0 ? std::clamp(((place.x_m - a[0]) * dx + (place.z_m - a[1]) * dz) / length2, 0.0, 1.0) : 0;
+        const double off_x = place.x_m - a[0] - along * dx;
+        const double off_z = place.z_m - a[1] - along * dz;
+        nearest_m = std::min(nearest_m, std::sqrt(off_x * off_x + off_z * off_z));
+    }
+    return nearest_m;
 }
 
 }  // namespace
@@ -171,9 +195,11 @@ std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
         return std::nullopt;
     }
     growth.neighbours = tree_.nearest(growth.to, neighbour_count());
+    const double least_to_goal = optimism * tree_.least_cost_to_goal(growth.to);
     for (FlightNode* node : with_ancestors(growth.neighbours)) {
         const double estimate = node->cost + optimism * tree_.estimated_cost(*node, growth.to);
-        if (estimate < best_hold_cost_ && space_.distance_m(node->configuration, growth.to) > 1e-6) {
+        if (estimate + least_to_goal < patience * best_hold_cost_ &&
+            space_.distance_m(node->configuration, growth.to) > 1e-6) {
             growth.parents.push_back({node, estimate});
         }
     }
@@ -218,7 +244,8 @@ void FlightTreePlanner::choose_parents(std::vector<Growth>& wave) {
 std::vector<FlightNode*> FlightTreePlanner::add(const std::vector<Growth>& wave) {
     std::vector<FlightNode*> added;
     for (const Growth& growth : wave) {
-        const bool is_worthwhile = growth.best && growth.best->cost < best_hold_cost_;
+        const bool is_worthwhile = growth.best && growth.best->cost + optimism * tree_.least_cost_to_goal(growth.to) <
+                                                      patience * best_hold_cost_;
         added.push_back(is_worthwhile ? &tree_.add(*growth.best_parent, *growth.best) : nullptr);
     }
     return added;
@@ -267,13 +294,32 @@ void FlightTreePlanner::hand_to_refiner() {
         handed_over_cost_ = best->cost;
         refiner_.take(tree_.plan_to(*best));
     } else if (refiner_.wants_plan() && random_.chance(0.05)) {
-        const auto& holds = tree_.holds();
-        const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
-        if (!hold->is_discarded) {
+        if (const FlightNode* hold = other_way()) {
             refiner_.take(tree_.plan_to(*hold));
         }
     }
     refine_ticks_ += flights_.statistics().ticks - before;
+}
+
+/// Of some holds, drawn by lot, the one whose way leads farthest from the champion's; nullptr when all follow it.
+const FlightNode* FlightTreePlanner::other_way() {
+    constexpr int draws = 8;
+    const std::vector<ReferencePoint>& champion = refiner_.champion()->points;
+    const auto& holds = tree_.holds();
+    const FlightNode* farthest = nullptr;
+    double farthest_m = other_way_m;
+    for (int i = 0; i < draws; ++i) {
+        const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
+        double away_m = 0;
+        for (const FlightNode* n = hold->parent; n != nullptr; n = n->parent) {
+            away_m = std::max(away_m, distance_from_way_m(n->configuration, champion));
+        }
+        if (!hold->is_discarded && away_m > farthest_m) {
+            farthest_m = away_m;
+            farthest = hold;
+        }
+    }
+    return farthest;
 }
 
 FlightNode* FlightTreePlanner::best_hold() const {

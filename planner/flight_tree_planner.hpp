@@ -71,6 +71,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     void refine();
     void hand_to_refiner();
     [[nodiscard]] FlightNode* best_hold() const;
+    [[nodiscard]] const FlightNode* other_way();
     [[nodiscard]] bool has_plan() const noexcept { return !tree_.holds().empty(); }
     void review(double least_gain);
     [[nodiscard]] std::size_t neighbour_count() const;

@@ -13,8 +13,13 @@ constexpr int changes_side_by_side = 8;
 /// Changes begin with the largest and shrink to this share of them.
 constexpr double least_step = 0.01;
 
-/// A plan that did not get better for so many waves is given up, or, as the champion, begun anew with large steps.
+/// When so many waves in a row did not make a plan better its steps become large again.
 constexpr int most_failures = 60;
+
+/// Of its waves, after how many the other plan has to be nearly as cheap as the champion, and after how many cheaper.
+constexpr int waves_to_come_near = 60;
+constexpr double near_cost_ratio = 1.05;
+constexpr int waves_to_overtake = 180;
 
 /// A plan so much dearer than the champion is not worth working on.
 constexpr double most_cost_ratio = 1.5;
@@ -186,17 +191,20 @@ void PlanRefiner::improve() {
         track.failures = 0;
     } else {
         track.step = std::max(least_step, 0.9 * track.step);
-        ++track.failures;
-    }
-    if (track.plan.cost < tracks_.front().plan.cost) {
-        std::swap(tracks_.front(), track);
-    }
-    if (tracks_[number].failures >= most_failures) {
-        if (number > 0) {
-            tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
-        } else {
+        if (++track.failures >= most_failures) {
             track.step = 1;
             track.failures = 0;
+        }
+    }
+    ++track.waves;
+    if (number > 0) {
+        if (track.plan.cost < tracks_.front().plan.cost) {
+            std::swap(tracks_.front(), track);
+            tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
+        } else if (track.waves >= waves_to_overtake ||
+                   (track.waves >= waves_to_come_near &&
+                    track.plan.cost > near_cost_ratio * tracks_.front().plan.cost)) {
+            tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
         }
     }
 }

@@ -21,9 +21,9 @@ struct FlownPlan {
 
 /// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
 /// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
-/// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with success-driven step length (Rechenberg 1973), several changes
-/// side by side. Of two plans that it works on the cheaper one is the champion; the other one is given a chance to
-/// overtake it before it is dropped.
+/// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with
+/// success-driven step length (Rechenberg 1973), several changes side by side. Of two plans that it works on the
+/// cheaper one is the champion; the other one is given a chance to overtake it before it is dropped.
 class PlanRefiner {
  public:
     PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random);
@@ -46,7 +46,8 @@ class PlanRefiner {
     struct Track {
         FlownPlan plan;
         double step = 1;   ///< of changes, as a share of the largest
-        int failures = 0;  ///< waves since the last success
+        int failures = 0;  ///< waves since the last success, or since steps became large again
+        int waves = 0;     ///< that it was worked on
     };
     /// A changed plan that may be worth flying.
     struct Change {

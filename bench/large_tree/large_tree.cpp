@@ -80,8 +80,10 @@ void run(const Options& options) {
     const Solution solution = solve(problem, solve_options);
 
     fmt::print(
-        "# What a large tree costs\n\nCommit {}; {}; {}, mp-arm-ada, seed {}, one thread. Processor time of an iteration, its share of the "
-        "refinement included, while the tree has about so many nodes, and how much memory the search has taken by then, the aero map apart. "
+        "# What a large tree costs\n\nCommit {}; {}; {}, mp-arm-ada, seed {}, one thread. Processor time of an "
+        "iteration, its share of the "
+        "refinement included, while the tree has about so many nodes, and how much memory the search has taken by "
+        "then, the aero map apart. "
         "`bench/large_tree.sh` writes this page.\n\n| nodes | iteration | memory |\n| --: | --: | --: |\n",
         bench::source_commit(), bench::processor(), problem.name, options.seed);
     for (const Stage& stage : stages) {
@@ -89,8 +91,10 @@ void run(const Options& options) {
     }
     const double ratio = stages.back().iteration_s() / stages.front().iteration_s();
     fmt::print(
-        "\n| bound | found | |\n| --- | --: | --- |\n| an iteration at {} nodes costs at most 3 times one at {} | {:.2f} "
-        "times | {} |\n| {} nodes take less than 300 MB | {:.0f} MB | {} |\n\nThe plan after {} iterations costs {:.0f}.\n",
+        "\n| bound | found | |\n| --- | --: | --- |\n| an iteration at {} nodes costs at most 3 times one at {} | "
+        "{:.2f} "
+        "times | {} |\n| {} nodes take less than 300 MB | {:.0f} MB | {} |\n\nThe plan after {} iterations costs "
+        "{:.0f}.\n",
         stages.back().nodes, stages.front().nodes, ratio, verdict(ratio <= 3), stages.back().nodes,
         1e-6 * stages.back().bytes, verdict(stages.back().bytes < 300e6), solution.planning.iterations, solution.cost);
 }

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -94,4 +95,53 @@ TEST_CASE("of several goals the nearest by its own tolerances counts, with its o
     CHECK(hold_ticks(goal, *model, at) == 700);
     at.position[0] = 0.05;
     CHECK(hold_ticks(goal, *model, at) == 300);
+}
+
+TEST_CASE("within the motion that a goal leaves it stays met, and not much more would do") {
+    const Problem problem = test::ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const PlantModel& plant = model->tick().plant;
+    const double reach_m = model->collisions().body_reach_m();
+    const double joint_reach_m = std::hypot(plant.joint_x_m, plant.joint_z_m);
+    test::Random random(3);
+    int met = 0, lost = 0;
+    for (int n = 0; n < 20000; ++n) {
+        Goal goal;
+        if (random.integer(0, 1) == 0) {
+            goal.end_effector = EndEffectorGoal{};
+            goal.end_effector->x_m = 1.2;
+            goal.end_effector->direction_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
+            if (random.integer(0, 1) == 0) {
+                goal.end_effector->tolerance_x_m = 0.2;
+            }
+        } else {
+            goal.configuration = ConfigurationGoal{};
+            goal.configuration->x_m = 0;
+            goal.configuration->z_m = 0;
+            goal.configuration->arm_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
+        }
+        const double q[4] = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.05, 0.05),
+                             random.uniform(-0.05, 0.05)};
+        const double motion_m = motion_within_goal_m(goal, plant, q, reach_m);
+        REQUIRE((motion_m >= 0) == is_met(goal_error(goal, plant, q)));
+        if (motion_m < 0) {
+            continue;
+        }
+        // The bound of the flights' kernel: how far the point of the robot that moves most may have moved.
+        const auto moved = [&](double share) {
+            const double way_m = share * motion_m * random.uniform(0, 1);
+            const double angle = random.uniform(-4, 4);
+            const double left_m = share * motion_m - way_m;
+            const double pitch = left_m / std::max(reach_m, joint_reach_m) * random.uniform(-1, 1);
+            const double arm = (left_m - joint_reach_m * std::abs(pitch)) / plant.arm_length_m * random.uniform(-1, 1);
+            const double to[4] = {q[0] + way_m * std::cos(angle), q[1] + way_m * std::sin(angle), q[2] + pitch,
+                                  q[3] + arm - pitch};
+            return is_met(goal_error(goal, plant, to));
+        };
+        REQUIRE(moved(1 - 1e-9));
+        ++met;
+        lost += moved(4) ? 0 : 1;
+    }
+    CHECK(met > 2000);
+    CHECK(lost > 500);
 }
