@@ -16,7 +16,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 using Row = std::vector<const Run*>;
 
 Spread spread_of(const std::vector<double>& values) {
-    return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75), quantile(values, 0.95)};
+    return {quantile(values, 0), quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75),
+            quantile(values, 0.95)};
 }
 
 /// A figure of every attempted seed.

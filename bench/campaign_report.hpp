@@ -11,7 +11,7 @@ namespace downwash::bench {
 
 /// Quantiles over all attempted seeds, those without a value counting as infinite. NaN without seeds.
 struct Spread {
-    double low_quartile = 0, median = 0, high_quartile = 0, most = 0;  ///< `most`: the 95 % quantile
+    double least = 0, low_quartile = 0, median = 0, high_quartile = 0, most = 0;  ///< `most`: the 95 % quantile
 };
 
 /// The planner's best cost so far at a moment of the search.
@@ -85,7 +85,7 @@ struct CampaignReport {
 };
 
 /// Moments at which costs are compared [s].
-inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 3, 10};
+inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 
 [[nodiscard]] CampaignReport report_of(const CampaignResults& results);
 

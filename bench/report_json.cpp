@@ -17,7 +17,8 @@ Json share_json(const Share& share) {
 }
 
 Json spread_json(const Spread& spread) {
-    return {{"25", number(spread.low_quartile)},
+    return {{"0", number(spread.least)},
+            {"25", number(spread.low_quartile)},
             {"50", number(spread.median)},
             {"75", number(spread.high_quartile)},
             {"95", number(spread.most)}};

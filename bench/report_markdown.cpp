@@ -153,9 +153,9 @@ class Document {
     }
 
     void costs() {
-        add("## Cost\n\nMedian [quartiles]. `flown`: of the reported plan's flight, where it held; before it the "
-            "planner's "
-            "own figure of its best plan so far. Planners are compared by what is\nflown, since their own figures do "
+        add("## Cost\n\nMedian [quartiles]. `flown`: of the reported plan's flight, where it held, and the "
+            "`least` of them; before it the planner's own figure of its best plan so far. Planners are compared by "
+            "what is\nflown, since their own figures do "
             "not "
             "know the same physics.\n\n| problem | planner |");
         const std::vector<CostAt> none;
@@ -165,13 +165,14 @@ class Document {
             add(" {} |", seconds_text(at.time_s));
             line += "---|";
         }
-        add(" flown |\n{}---|\n", line);
+        add(" flown | least |\n{}---|---|\n", line);
         for (const CellFigures& cell : report_.cells) {
             add("{}", place(cell));
             for (const CostAt& at : cell.cost_over_time) {
                 add(" {} |", cost_text(at.cost));
             }
-            add(" {} |\n", cost_text(cell.flown_cost));
+            add(" {} | {} |\n", cost_text(cell.flown_cost),
+                std::isfinite(cell.flown_cost.least) ? number_text(cell.flown_cost.least) : "none");
         }
         add("\n");
     }

@@ -8,7 +8,7 @@ namespace downwash::planning {
 namespace {
 
 // How often what is changed; shares of one, the rest changes speeds alone.
-constexpr double moves_goal = 0.05;
+constexpr double moves_goal = 0.10;
 constexpr double adds_corner = 0.05;
 constexpr double leaves_corner_out = 0.10;
 constexpr double flies_through = 0.15;

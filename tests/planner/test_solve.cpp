@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -345,4 +346,34 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     REQUIRE(solved.status == Status::solved);
     CHECK_FALSE(solved.planning.nearest_approach_m);
     CHECK_FALSE(solved.planning.obstruction);
+}
+
+TEST_CASE("where a surface saves energy the aware planner flies and holds along it, and that pays") {
+    Problem problem = test::ceiling_problem();  // the deck's lower side at 5 m
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = 3;
+    problem.goal.configuration->z_m = 3.3;
+    problem.goal.configuration->tolerance_z_m = 1.5;
+    problem.goal.hold_s = 60;
+    problem.planner.max_iterations = 2500;
+    std::vector<double> aware_j, unaware_j;
+    int below_the_deck = 0;
+    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+        problem.planner.seed = seed;
+        problem.planner.variant = Variant::mp_arm_ada;
+        const Solution aware = solve(problem);
+        problem.planner.variant = Variant::mp_arm_da;
+        const Solution unaware = solve(problem);
+        REQUIRE(aware.execution);
+        REQUIRE(unaware.execution);
+        CHECK(aware.execution->outcome == Outcome::ok);
+        aware_j.push_back(aware.execution->energy_j);
+        unaware_j.push_back(unaware.execution->energy_j);
+        below_the_deck += aware.plan->waypoints.back().z_m > 4.4 ? 1 : 0;
+    }
+    std::sort(aware_j.begin(), aware_j.end());
+    std::sort(unaware_j.begin(), unaware_j.end());
+    CHECK(below_the_deck >= 2);
+    CHECK(aware_j[1] < 0.99 * unaware_j[1]);  // medians
 }
