@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Times ticks, look-ups and edges beside what others would use, in one run, and writes bench/results/speed.md: medians of
+# Times ticks and look-ups beside what others would use, in one run, and writes bench/results/speed.md: medians of
 # five repetitions, and their ratios. Some two minutes; close everything else first.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,19 +8,20 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1)
 mkdir -p bench/results
-build/bench/bench_micro --benchmark_filter='tick_with|batch|edge|ode|mujoco|map_look_up' --benchmark_repetitions=5 \
+build/bench/bench_micro --benchmark_filter='tick_with|batch|ode|mujoco|map_look_up' --benchmark_repetitions=5 \
     --benchmark_report_aggregates_only=true --benchmark_format=csv "$@" 2>/dev/null |
     awk -F, -v commit="$commit" -v processor="$processor" '
         function rate(name) { return name in items ? items[name] * 1e-6 : 0 }
         function bound(text, value, least, unit) {
             if (value > 0) {
-                printf "| %s | %.2f%s | %s |\n", text, value, unit, value >= least ? "kept" : "**not kept**"
+                printf "| %s | %.2f%s | %s |\n", text, value, unit, (value >= least ? "kept" : "**not kept**")
             }
         }
         # The widest that this processor has.
         function best(variant) {
-            return rate("batch/" variant "_avx512") > 0 ? "batch/" variant "_avx512" :
-                rate("batch/" variant "_avx2") > 0 ? "batch/" variant "_avx2" : "batch/" variant "_baseline"
+            if (rate("batch/" variant "_avx512") > 0) { return "batch/" variant "_avx512" }
+            if (rate("batch/" variant "_avx2") > 0) { return "batch/" variant "_avx2" }
+            return "batch/" variant "_baseline"
         }
         { gsub(/"/, ""); sub(/\/real_time/, "") }
         /_median,/ { sub(/_median/, "", $1); items[$1] = $7; names[++n] = $1 }
@@ -35,7 +36,6 @@ build/bench/bench_micro --benchmark_filter='tick_with|batch|edge|ode|mujoco|map_
             bound("batched ticks with the map, at least 10 M/s", rate(ada), 10, " M/s")
             bound("a single tick with the map costs at most 1.5 without: speed at least 0.667 of it", rate("tick_with_map") / rate("tick_without_effect"), 2 / 3, "")
             bound("batched over an OMPL ODESolver, at least 8", rate(ada) / rate("ode_solver/with_map"), 8, " times")
-            bound("the same with AVX2 for both", rate("batch/aerodynamics_aware_avx2") / rate("ode_solver/with_map_avx2"), 8, " times")
             bound("the same with baseline instructions for both", rate("batch/aerodynamics_aware_baseline") / rate("ode_solver/with_map"), 8, " times")
             if (rate("mujoco_rk4") > 0) { bound("batched over RK4 of MuJoCo, at least 25", rate(ada) / rate("mujoco_rk4"), 25, " times") }
             bound("two threads over one, at least 1.8", rate("batch/aerodynamics_aware_two_threads") / rate(ada), 1.8, " times")

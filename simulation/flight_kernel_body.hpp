@@ -252,8 +252,10 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     group.store(unclear, lanes.is_unclear);
 }
 
-#ifdef __AVX2__
-[[gnu::flatten]]  // everything in one place; with narrow registers it would not fit into the instruction cache
+#if defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Everything in one place. With narrow registers it would not fit into the instruction cache, and what sanitizers add
+// would keep the compiler busy for minutes.
+[[gnu::flatten]]
 #endif
 inline void
 fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
