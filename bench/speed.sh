@@ -9,9 +9,10 @@ commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1)
 mkdir -p bench/results
 build/bench/bench_micro --benchmark_filter='tick_with|batch|ode|mujoco|map_look_up' --benchmark_repetitions=5 \
-    --benchmark_report_aggregates_only=true --benchmark_format=csv "$@" 2>/dev/null |
+    --benchmark_report_aggregates_only=true --benchmark_format=csv "$@" |
     awk -F, -v commit="$commit" -v processor="$processor" '
         function rate(name) { return name in items ? items[name] * 1e-6 : 0 }
+        function ratio(a, b) { return b > 0 ? a / b : 0 }
         function bound(text, value, least, unit) {
             if (value > 0) {
                 printf "| %s | %.2f%s | %s |\n", text, value, unit, (value >= least ? "kept" : "**not kept**")
@@ -34,12 +35,12 @@ build/bench/bench_micro --benchmark_filter='tick_with|batch|ode|mujoco|map_look_
             print "\n| bound | found | |\n| --- | --: | --- |"
             bound("single ticks with the map, at least 2.5 M/s", rate("tick_with_map"), 2.5, " M/s")
             bound("batched ticks with the map, at least 10 M/s", rate(ada), 10, " M/s")
-            bound("a single tick with the map costs at most 1.5 without: speed at least 0.667 of it", rate("tick_with_map") / rate("tick_without_effect"), 2 / 3, "")
-            bound("batched over an OMPL ODESolver, at least 8", rate(ada) / rate("ode_solver/with_map"), 8, " times")
-            bound("the same with baseline instructions for both", rate("batch/aerodynamics_aware_baseline") / rate("ode_solver/with_map"), 8, " times")
-            if (rate("mujoco_rk4") > 0) { bound("batched over RK4 of MuJoCo, at least 25", rate(ada) / rate("mujoco_rk4"), 25, " times") }
-            bound("two threads over one, at least 1.8", rate("batch/aerodynamics_aware_two_threads") / rate(ada), 1.8, " times")
-            printf "\nBatched ticks with the map run at %.2f of the speed of those without.\n", rate(ada) / rate(best("dynamics_aware"))
+            bound("a single tick with the map costs at most 1.5 without: speed at least 0.667 of it", ratio(rate("tick_with_map"), rate("tick_without_effect")), 2 / 3, "")
+            bound("batched over an OMPL ODESolver, at least 8", ratio(rate(ada), rate("ode_solver/with_map")), 8, " times")
+            bound("the same with baseline instructions for both", ratio(rate("batch/aerodynamics_aware_baseline"), rate("ode_solver/with_map")), 8, " times")
+            bound("batched over RK4 of MuJoCo, at least 25", ratio(rate(ada), rate("mujoco_rk4")), 25, " times")
+            bound("two threads over one, at least 1.8", ratio(rate("batch/aerodynamics_aware_two_threads"), rate(ada)), 1.8, " times")
+            printf "\nBatched ticks with the map run at %.2f of the speed of those without.\n", ratio(rate(ada), rate(best("dynamics_aware")))
         }' >bench/results/speed.md.new
 mv bench/results/speed.md.new bench/results/speed.md
 cat bench/results/speed.md

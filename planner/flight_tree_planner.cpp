@@ -290,7 +290,8 @@ void FlightTreePlanner::hand_to_refiner() {
         return;
     }
     const std::uint64_t before = flights_.statistics().ticks;
-    if (best->cost < (1 - worthwhile_gain) * handed_over_cost_) {
+    const bool is_idle = refiner_.champion() == nullptr;
+    if (is_idle || best->cost < (1 - worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
         refiner_.take(tree_.plan_to(*best));
     } else if (refiner_.wants_plan() && random_.chance(0.05)) {

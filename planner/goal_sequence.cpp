@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "downwash/simulation/flight.hpp"
 
@@ -52,9 +53,10 @@ FlightRules no_rules() {
     return rules;
 }
 
-/// Adds a part's plan and the hold at its end, and flies them in the planner's model.
+/// Adds a part's plan and the hold at its end, and flies them in the planner's model. What was planned by flights flies
+/// as it did; of MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it.
 void advance(Course& course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
-             const AeroMap* map) {
+             const AeroMap* map, bool plans_flights) {
     const double tick_s = model.tick().tick_s;
     Plan plan = course.continued_by(part);
     ReferenceKnot held = plan.reference.back();
@@ -66,7 +68,10 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
         const ReferenceKnot& from = plan.reference[i - 1];
         const ReferenceKnot& to = plan.reference[i];
         const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, tick_s);
-        static_cast<void>(fly(model, map, no_rules(), segment, course.vehicle));
+        const FlightFault fault = fly(model, map, no_rules(), segment, course.vehicle).fault;
+        if (fault != FlightFault::none && plans_flights) {
+            throw std::logic_error("a part of a plan does not fly as it was planned");
+        }
     }
     course.plan = std::move(plan);
     course.goals.push_back(goal);
@@ -190,7 +195,7 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
             solution.execution = std::move(found.execution);
             return;
         }
-        advance(course, goals[i], *found.plan, found.cost, model, map);
+        advance(course, goals[i], *found.plan, found.cost, model, map, problem.planner.variant != Variant::mp_arm);
         solution.plan = course.plan;
     }
 }

@@ -27,7 +27,7 @@ constexpr double most_cost_ratio = 1.5;
 }  // namespace
 
 PlanRefiner::PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random)
-    : problem_(problem), flights_(flights), changes_(problem, space, random) {}
+    : flights_(flights), changes_(problem, space, random) {}
 
 const FlownPlan* PlanRefiner::champion() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
@@ -99,6 +99,9 @@ void PlanRefiner::take(const Plan& plan) {
     }
     Track track{flown(base, change, jobs[0])};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
+        if (!tracks_.empty()) {
+            tracks_.front().waves = 0;  // it has its turns to overtake before it
+        }
         tracks_.insert(tracks_.begin(), std::move(track));
         tracks_.resize(std::min(tracks_.size(), most_tracks));
     } else if (track.plan.cost < most_cost_ratio * tracks_.front().plan.cost && tracks_.size() < most_tracks) {

@@ -65,7 +65,6 @@ class PlanRefiner {
                                                    std::vector<FlightJob>& jobs);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
 
-    const Problem& problem_;
     PlannedFlights& flights_;
     PlanChanges changes_;
     std::vector<Track> tracks_;  ///< the champion first

@@ -64,10 +64,8 @@ struct Execution {
 
 /// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
-/// @param goals at least one, in the order in which they are to be visited. The last one is held after the last knot.
-/// The
-///        others are held between two knots that are the same point at rest, which meets the goal, for its hold at
-///        least
+/// @param goals at least one, in the order in which they are to be visited. The last one is held after the last knot,
+/// the others between two knots that are the same point at rest, which meets the goal, for at least its hold
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
                                                 const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,

@@ -139,20 +139,16 @@ class Lane {
         const bool is_end = leg.flight.ticks >= leg.segment.ticks();
         const bool is_unclear = lanes_->is_unclear[number_] > 0;
         FlightFault fault = static_cast<FlightFault>(static_cast<int>(lanes_->fault[number_]));
-        if (fault == FlightFault::none && !is_unclear && !is_end) {
-            if (is_interrupted) {
-                end_with(FlightFault::interrupted);
-            }
-            return;
-        }
         if (fault == FlightFault::none && is_unclear) {
             fault = fault_nearby();
         }
-        if (fault == FlightFault::none && is_judged()) {
+        if (fault == FlightFault::none && (is_unclear || is_end) && is_judged()) {
             fault = goal_fault();
         }
         if (fault != FlightFault::none || is_end) {
             end_with(fault);
+        } else if (is_interrupted) {
+            end_with(FlightFault::interrupted);
         }
     }
 
@@ -190,6 +186,7 @@ class Lane {
         lanes_->length_m[number_] = 0;
         lanes_->look_tick[number_] =
             is_judged_leg() ? static_cast<double>(segment.ticks() - job_->judged_ticks) : HUGE_VAL;
+        lanes_->max_speed_m_s[number_] = HUGE_VAL;
         if (is_judged()) {
             if (const FlightFault fault = goal_fault(); fault != FlightFault::none) {
                 end_with(fault);
@@ -207,7 +204,8 @@ class Lane {
                                       job_->legs.back().segment.ticks();
     }
 
-    /// Whether the goal is met now; if so, the robot may move no farther without a look than it surely stays so.
+    /// Whether the goal is met now; if so, the robot may move no farther and no faster without a look than it surely
+    /// stays so.
     FlightFault goal_fault() {
         const FlightState now = state();
         if (!meets_goal(*world_->goal, plant(), now)) {
@@ -216,6 +214,7 @@ class Lane {
         const double motion_m =
             motion_within_goal_m(*world_->goal, plant(), now.plant.q, world_->model.collisions().body_reach_m());
         lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
+        lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;
         return FlightFault::none;
     }

@@ -29,14 +29,16 @@ struct alignas(64) FlightLanes {
     double anchor[4][lane_count];
     double free_motion_m[lane_count];  ///< negative: look after every tick
     double look_tick[lane_count];      ///< from this tick of the segment on as well; infinite: never
+    double max_speed_m_s[lane_count];  ///< in (x, z): from this speed on as well; infinite: never
 
     double length_m[lane_count];
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.
     double fault[lane_count];  ///< number of a FlightFault
-    double
-        is_unclear[lane_count];  ///< 1 where the flyable area, or motion beyond free_motion_m, asks for a closer look
+    /// 1 where a closer look is due: the flyable area, motion beyond free_motion_m, look_tick or max_speed_m_s ask for
+    /// it.
+    double is_unclear[lane_count];
 };
 
 /// What a lane's flight does not change.

@@ -221,6 +221,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     group.load(anchor, lanes.anchor);
     const Pack free_motion_m = group.load(lanes.free_motion_m);
     const Pack look_tick = group.load(lanes.look_tick);
+    const Pack max_speed_m_s = group.load(lanes.max_speed_m_s);
     const Pack ticks = group.load(lanes.ticks);
     const PlantModel& plant = model.tick->plant;
     dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
@@ -233,8 +234,10 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
         state = next;
         motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
         fault = broken_rule(model.limits, record.saturation, state, reference);
-        unclear = select((motion_bound_m(model, state, anchor) > free_motion_m) | (tick_count >= look_tick), Pack(1),
-                         Pack(0));
+        const Pack* u = state.plant.u;
+        const PackMask is_slow = lane::sqrt(u[0] * u[0] + u[1] * u[1]) < max_speed_m_s;
+        const PackMask is_due = (motion_bound_m(model, state, anchor) > free_motion_m) | (tick_count >= look_tick);
+        unclear = select(is_due | !is_slow, Pack(1), Pack(0));
         if (model.has_map) {
             unclear = lane::max(unclear, flyable_doubt(model, state, motion.attitude, factor));
         }

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 
@@ -44,6 +44,9 @@ struct Stage {
         bytes = grown_bytes;
     }
     [[nodiscard]] double iteration_s() const {
+        if (last_iteration == first_iteration) {
+            throw std::runtime_error(fmt::format("too few reports around {} nodes to time iterations", nodes));
+        }
         return (last_s - first_s) / static_cast<double>(last_iteration - first_iteration);
     }
 };

@@ -377,3 +377,16 @@ TEST_CASE("where a surface saves energy the aware planner flies and holds along 
     CHECK(below_the_deck >= 2);
     CHECK(aware_j[1] < 0.99 * unaware_j[1]);  // medians
 }
+
+TEST_CASE("a search whose start meets the goal goes on without a plan to refine") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = problem.start.x_m;
+    problem.goal.configuration->z_m = problem.start.z_m;
+    problem.goal.hold_s = 1;
+    problem.planner.max_iterations = 1500;  // enough for every chance of one in twenty to come
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::solved);
+    CHECK(solution.plan->reference.size() == 1);
+}

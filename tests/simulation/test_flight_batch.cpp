@@ -185,6 +185,63 @@ TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
     CHECK(jobs[2].legs[0].flight.ticks == 0);  // missed before the first tick
 }
 
+TEST_CASE("holds are judged at every tick of their last second, by place, angle and speed") {
+    const Problem problem = ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const FlightRules rules = rules_of(problem);
+    const double tick_s = model->tick().tick_s;
+    constexpr std::int64_t judged = 100;
+    Goal goal = problem.goal;
+    Random random(5);
+    std::vector<FlightJob> jobs, all;
+    for (int n = 0; n < 400; ++n) {
+        ReferencePoint at;
+        at.position[0] = 3 + random.uniform(-0.08, 0.08);
+        at.position[1] = 3.6 + random.uniform(-0.08, 0.08);
+        at.position[2] = -1.5707963267948966;
+        const double q[4] = {at.position[0] + random.uniform(-0.1, 0.1), at.position[1] + random.uniform(-0.1, 0.1), 0,
+                             at.position[2] + random.uniform(-0.1, 0.1)};
+        const double u[4] = {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0, random.uniform(-0.2, 0.2)};
+        all.push_back({model->state_at(q, u), {{{at, at, random.integer(80, 500), tick_s}}}, judged});
+    }
+    int too_fast = 0, elsewhere = 0, met = 0;
+    std::vector<std::int64_t> missed_at;
+    for (const FlightJob& job : all) {
+        const ReferenceSegment& segment = job.legs[0].segment;
+        FlightState state = job.start;
+        std::int64_t missed = -1;
+        bool breaks_rules = false;
+        for (std::int64_t tick = 0; tick <= segment.ticks() && missed < 0; ++tick) {
+            if (tick > 0) {
+                const ReferenceSegment one(segment.from(), segment.from(), 1, tick_s);
+                breaks_rules = breaks_rules || fly(*model, nullptr, rules, one, state).fault != FlightFault::none;
+            }
+            if (tick + judged >= segment.ticks() && !meets_goal(goal, model->tick().plant, state)) {
+                missed = tick;
+                ++(is_met(goal_error(goal, model->tick().plant, state.plant.q)) ? too_fast : elsewhere);
+            }
+        }
+        if (!breaks_rules) {
+            met += missed < 0 ? 1 : 0;
+            missed_at.push_back(missed);
+            jobs.push_back(job);
+        }
+    }
+    REQUIRE(too_fast > 20);
+    REQUIRE(elsewhere > 20);
+    REQUIRE(met > 20);
+    for (const auto& [instructions, threads] : ways_to_fly()) {
+        std::vector<FlightJob> flown = jobs;
+        FlightCrew(*model, nullptr, rules, &goal, threads, instructions).fly(flown);
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            CAPTURE(i, static_cast<int>(instructions), missed_at[i]);
+            REQUIRE(flown[i].fault() == (missed_at[i] < 0 ? FlightFault::none : FlightFault::goal_missed));
+            REQUIRE(flown[i].legs[0].flight.ticks ==
+                    (missed_at[i] < 0 ? jobs[i].legs[0].segment.ticks() : missed_at[i]));
+        }
+    }
+}
+
 TEST_CASE("a crew flies one batch after the other, empty ones too, and can be dismissed without any") {
     const Problem problem = ceiling_problem();
     const auto model = make_flight_model(problem);
