@@ -16,7 +16,8 @@ struct MapCell {
     std::uint16_t steps_z;  ///< intervals along z, a power of two
 };
 
-/// A layer of an AeroMap as plain arrays, for code that follows flights through it.
+/// A layer of an AeroMap as plain arrays, for code that follows flights through it. What kernels for wide instructions
+/// call here is always inlined: no copy of it that only some processors understand must reach the linker.
 struct MapView {
     double x_low_m, z_low_m, cells_per_m;
     std::uint32_t columns, rows;
@@ -25,7 +26,7 @@ struct MapView {
     const float* nodes;                ///< K, x running fastest within a cell
 
     /// Whether a place, in cells from the lower corner, has a cell. Written so that NaN has none.
-    [[nodiscard]] bool contains(double u, double w) const noexcept {
+    [[nodiscard, gnu::always_inline]] bool contains(double u, double w) const noexcept {
         return u >= 0 && w >= 0 && u < columns && w < rows;
     }
 };
@@ -52,7 +53,7 @@ inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, CellFlyability:
 
 /// The patch around a place given in cells from the layer's lower corner.
 /// @pre view.contains(u, w)
-[[nodiscard]] inline MapPatch patch_at(const MapView& view, double u, double w) noexcept {
+[[nodiscard, gnu::always_inline]] inline MapPatch patch_at(const MapView& view, double u, double w) noexcept {
     // u - i is exact and less than 1, and so is its product with a power of two: no index can leave its cell.
     const auto i = static_cast<std::uint32_t>(u);
     const auto k = static_cast<std::uint32_t>(w);

@@ -23,7 +23,7 @@ struct PlantModel {
 
     int rotor_count;
     /// The number under which the body stands behind the rotors: its hub is the centre between all of theirs.
-    [[nodiscard]] constexpr int body() const noexcept { return rotor_count; }
+    [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
     /// Hubs in the body frame, body() included.
     double rotor_x_m[max_rotors + 1], rotor_z_m[max_rotors + 1];
     /// Near the ground the air that rises between the rotors pushes the body at that centre (thesis (2.17)).

@@ -35,8 +35,8 @@ FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const S
 }
 
 std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_t count) const {
-    // A plain scan that keeps the best so far in a heap: beside edges of a tenth of a millisecond it does not show
-    // below a hundred thousand nodes.
+    // A plain scan that keeps the best so far in a heap: 15 % of an iteration at 50,000 nodes, far less at the
+    // thousands that a search of seconds has.
     using Candidate = std::pair<double, std::size_t>;
     std::vector<Candidate> best;
     best.reserve(count + 1);

@@ -30,7 +30,7 @@ class LaneMapEffect {
     explicit LaneMapEffect(const FlightKernelModel& model) : model_(model) {
         for (LanePatches& patches : patches_) {
             for (int lane = 0; lane < lane::pack_width; ++lane) {
-                enter(no_patch, patches, lane);
+                enter(nowhere, patches, lane);
             }
         }
     }
@@ -82,7 +82,7 @@ class LaneMapEffect {
             if (view.contains(u[lane], w[lane])) {
                 enter(patch_at(view, u[lane], w[lane]), patches, lane);
             } else {
-                enter(no_patch, patches, lane);
+                enter(nowhere, patches, lane);
                 outside |= 1U << static_cast<unsigned int>(lane);
             }
         }
@@ -95,6 +95,8 @@ class LaneMapEffect {
         }
         return result;
     }
+
+    static constexpr MapPatch nowhere = no_patch;  // a copy with internal linkage
 
     const FlightKernelModel& model_;
     mutable LanePatches patches_[max_rotors + 1];
