@@ -5,13 +5,16 @@
 #include <chrono>
 #include <optional>
 
+#include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/results.hpp"
+#include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/solution_file.hpp"
+#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -69,6 +72,9 @@ ExitCode run(const ExecuteArguments& arguments) {
     const OutputFolder folder(folder_for(arguments, problem));
     fly(problem, arguments.aero == "on", solution);
     const std::string json = write_results(folder, problem, arguments.problem, solution);
+    if (has_pages()) {
+        folder.write("report.html", page_of(folder.path(), 1, nullptr, cache_folder()));
+    }
     fmt::print("{}",
                arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {

@@ -9,6 +9,8 @@
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/solution_file.hpp"
 #include "downwash/problems/trajectory_csv.hpp"
+#include "downwash/problems/tree_csv.hpp"
+#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -95,6 +97,7 @@ std::string write_results(const OutputFolder& folder, const Problem& problem, co
     std::string json = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
     folder.write("effective.yaml", effective);
     folder.write("trajectory.csv", trajectory_csv(solution.execution.value_or(no_flight(problem.robot))));
+    folder.write("tree.csv", tree_csv(solution.tree));
     folder.write("solution.json", json);
     return json;
 }
@@ -150,7 +153,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
                   fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m before the goal region", o.cause,
                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
     }
-    table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, effective.yaml}");
+    table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
+    if (has_pages()) {
+        table.add("to look at", (folder / "report.html").string());
+    }
     return verdict + "\n\n" + table.text();
 }
 

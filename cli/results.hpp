@@ -14,7 +14,7 @@ namespace downwash::cli {
 /// Where results go unless --out says otherwise: downwash-out/NAME-VARIANT-SEED.
 [[nodiscard]] std::filesystem::path default_folder(const Problem& problem);
 
-/// Writes effective.yaml, trajectory.csv and, last, solution.json.
+/// Writes effective.yaml, trajectory.csv, tree.csv and, last, solution.json.
 /// @param problem_file as the user gave it
 /// @return the text of solution.json
 std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,

@@ -12,7 +12,9 @@
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
+#include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -44,6 +46,7 @@ ExitCode run(const SolveArguments& arguments) {
     SolveOptions options;
     options.threads = arguments.threads;
     options.stop_at_first_solution = arguments.stop_at_first;
+    options.keep_tree = true;
     options.stop = interruption.token();
     options.map_cache = arguments.no_cache ? std::filesystem::path() : cache_folder();
     Solution solution;
@@ -54,6 +57,9 @@ ExitCode run(const SolveArguments& arguments) {
         solution = solve(problem, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
+    if (has_pages()) {
+        folder.write("report.html", page_of(folder.path(), arguments.threads, solution.map, options.map_cache));
+    }
     fmt::print("{}", arguments.as_json ? json : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);
 }
@@ -62,9 +68,9 @@ ExitCode run(const SolveArguments& arguments) {
 
 void add_solve(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<SolveArguments>();
-    CLI::App* command = program.add_subcommand(
-        "solve",
-        "Plan, fly the plan with direct aerodynamics, and write solution.json, trajectory.csv, effective.yaml");
+    CLI::App* command = program.add_subcommand("solve",
+                                               "Plan, fly the plan with direct aerodynamics, and write solution.json, "
+                                               "trajectory.csv, tree.csv, effective.yaml");
     command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     arguments->planner.add_to(*command);
     command

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "downwash/base/base64.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/grids/base64.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
 // VTK's XML format for ImageData: a head in XML that names the arrays, and their numbers behind it in base64.

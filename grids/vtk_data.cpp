@@ -8,8 +8,8 @@
 #include <charconv>
 #include <cstdint>
 
+#include "downwash/base/base64.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/grids/base64.hpp"
 
 namespace downwash {
 namespace {

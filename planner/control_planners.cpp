@@ -15,6 +15,7 @@
 #include "downwash/planner/flight_space.hpp"
 #include "downwash/planner/ompl_parameters.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
+#include "downwash/planner/search_tree.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -159,7 +160,7 @@ class ControlSearch {
             flights_.flights().count_rejection("direct_flight");
             return Review::discarded;
         }
-        result_ = {Status::solved, std::move(plan), end->cost, 0, {}};
+        result_ = {Status::solved, std::move(plan), end->cost, 0, {}, {}};
         return Review::accepted;
     }
 
@@ -190,7 +191,11 @@ ControlResult plan_by_controls(std::string_view algorithm, std::uint32_t seed, c
     prepared.planner->setup();
     ControlSearch search(flights, hooks);
     search.run(prepared, definition);
-    return search.result();
+    ControlResult result = search.result();
+    if (hooks.keep_tree) {
+        result.tree = tree_of(*prepared.planner, [](const ob::State* state) { return point_of(state).rest; });
+    }
+    return result;
 }
 
 }  // namespace downwash::planning

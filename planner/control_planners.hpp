@@ -17,6 +17,7 @@ struct ControlResult {
     std::uint64_t iterations = 0;
     /// Without a plan that was accepted: from the place of rest that came nearest to the goal region [m].
     std::optional<double> nearest_approach_m;
+    std::vector<TreeNode> tree;  ///< if it was to be kept; a node is where its reference would come to rest
 };
 
 /// What a search over controls is told and asked while it runs.
@@ -25,6 +26,7 @@ struct ControlHooks {
     std::function<bool(std::uint64_t iteration)> is_over;
     /// Asked about every better plan; false discards it and the search goes on.
     std::function<bool(const Plan& plan, double cost, std::uint64_t iteration)> accept;
+    bool keep_tree = false;
 };
 
 /// OMPL's planners over controls on steered flights: `rrt`, `sst`, `kpiece1` or `est`. An iteration is one turn of the

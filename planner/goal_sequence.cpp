@@ -93,6 +93,13 @@ Problem part_of(const Problem& problem, const Goal& goal, const Course& before) 
     return part;
 }
 
+void add(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
+    const int begin = static_cast<int>(sum.size());
+    for (const TreeNode& node : part) {
+        sum.push_back({node.at, node.parent == TreeNode::no_parent ? TreeNode::no_parent : begin + node.parent});
+    }
+}
+
 void add(SearchRecord& sum, const SearchRecord& part) {
     sum.wall_s += part.wall_s;
     sum.flight_wall_s = part.flight_wall_s;
@@ -174,6 +181,7 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
             take_improvements(solution.planning, found.planning, course.cost);
         }
         add(solution.planning, found.planning);
+        add(solution.tree, found.tree);
         if (found.plan) {
             solution.plan = course.continued_by(*found.plan);
             solution.cost = course.cost + found.cost;

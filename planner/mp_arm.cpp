@@ -20,6 +20,7 @@
 #include "downwash/planner/ompl_parameters.hpp"
 #include "downwash/planner/ompl_space.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
+#include "downwash/planner/search_tree.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -219,6 +220,9 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
         return is_over;
     }));
 
+    if (hooks.keep_tree) {
+        result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
+    }
     result.states_checked = counts.states;
     result.refused_collision = counts.refused_collision;
     result.refused_bounds = counts.refused_bounds;

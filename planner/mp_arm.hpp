@@ -18,6 +18,7 @@ struct GeometricResult {
     std::uint64_t states_checked = 0;
     std::uint64_t refused_collision = 0;
     std::uint64_t refused_bounds = 0;
+    std::vector<TreeNode> tree;  ///< if it was to be kept
 };
 
 /// A glance at a running geometric search.
@@ -31,6 +32,7 @@ struct GeometricHooks {
     std::function<bool(const GeometricProgress&)> is_over;
     /// Told of every better path.
     std::function<void(double cost, std::uint64_t iteration)> on_improvement;
+    bool keep_tree = false;
 };
 
 /// MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics

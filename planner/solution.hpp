@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -75,6 +76,14 @@ struct SearchRecord {
     std::optional<Obstruction> obstruction;
 };
 
+/// A node of the tree that a search has grown.
+struct TreeNode {
+    static constexpr int no_parent = -1;
+
+    Waypoint at;
+    int parent = no_parent;  ///< in the same list
+};
+
 /// The answer to a problem.
 struct Solution {
     Status status = Status::none;
@@ -87,6 +96,8 @@ struct Solution {
     double cost = 0;            ///< the planner's own figure; 0 without a plan
     double execution_cost = 0;  ///< by the same objective in the flight with direct aerodynamics
     SearchRecord planning;
+    std::shared_ptr<const AeroMap> map;  ///< that the search flew in, for SolveOptions::map of another; empty: none
+    std::vector<TreeNode> tree;          ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;            ///< empty with Status::none
     std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
 };

@@ -9,6 +9,7 @@
 #include "downwash/planner/mp_arm.hpp"
 #include "downwash/planner/ompl_space.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
+#include "downwash/planner/search_tree.hpp"
 
 namespace downwash {
 namespace {
@@ -86,6 +87,7 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     planning::Random random(problem.planner.seed);
     Search search(problem, options, solution);
     planning::GeometricHooks hooks;
+    hooks.keep_tree = options.keep_tree;
     hooks.is_over = [&](const planning::GeometricProgress& progress) {
         search.report(progress.iteration, progress.nodes, progress.refused);
         return search.is_over() ||
@@ -96,6 +98,7 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
         search.improved(cost, iteration);
     };
     planning::GeometricResult result = planning::plan_geometrically(problem, model, space, random, hooks);
+    solution.tree = std::move(result.tree);
     SearchRecord& record = solution.planning;
     record.wall_s = search.seconds();
     record.iterations = result.iterations;
@@ -126,6 +129,7 @@ struct FlightSearch {
           goals(course.goals),
           model(with),
           solution(into),
+          keep_tree(options.keep_tree),
           search(of, options, into),
           space(of, with),
           random(of.planner.seed),
@@ -165,6 +169,7 @@ struct FlightSearch {
     std::vector<Goal> goals;  ///< up to the one that is searched for
     const FlightModel& model;
     Solution& solution;
+    bool keep_tree;
     Search search;
     planning::SearchSpace space;
     planning::Random random;
@@ -176,6 +181,7 @@ void search_by_controls(FlightSearch& common) {
     const PlannerSettings& settings = common.problem.planner;
     planning::SteeredFlights flights(common.problem, common.space, common.flights);
     planning::ControlHooks hooks;
+    hooks.keep_tree = common.keep_tree;
     hooks.is_over = [&](std::uint64_t iteration) {
         const planning::FlightStatistics& flown = common.flights.statistics();
         common.search.report(iteration, flown.edges, flown.rejections);
@@ -187,6 +193,7 @@ void search_by_controls(FlightSearch& common) {
     planning::ControlResult result =
         planning::plan_by_controls(settings.algorithm, settings.seed, flights, common.random, hooks);
     common.account(result.iterations);
+    common.solution.tree = std::move(result.tree);
     if (result.nearest_approach_m) {
         common.solution.planning.nearest_approach_m = result.nearest_approach_m;
         common.solution.planning.obstruction = common.flights.statistics().obstruction;
@@ -213,6 +220,10 @@ void search_by_flights(FlightSearch& common) {
 
     common.account(planner.iterations());
     Solution& solution = common.solution;
+    if (common.keep_tree) {
+        solution.tree = planning::tree_of(
+            planner, [&common](const ompl::base::State* state) { return planning::read(state, common.space); });
+    }
     if (planner.incumbent()) {
         solution.status = Status::solved;
         solution.plan = planner.incumbent()->plan;
@@ -258,6 +269,7 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
         const Stopwatch clock;
         map = options.map ? options.map : model->make_map(problem.bounds, options.threads, {}, options.map_cache);
         solution.planning.map_wall_s = clock.seconds();
+        solution.map = map;
     }
     const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
                             Solution& into) {

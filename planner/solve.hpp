@@ -30,6 +30,7 @@ struct SolveOptions {
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
     bool stop_at_first_solution = false;
+    bool keep_tree = false;              ///< also gives the search tree
     std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty
     std::filesystem::path map_cache;     ///< folder in which maps are kept between runs; empty: nowhere
 };

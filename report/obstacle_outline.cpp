@@ -9,6 +9,7 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/report/joined_rings.hpp"
 #include "downwash/report/mesh_section.hpp"
+#include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/planar_hull.hpp"
 
 namespace downwash {
@@ -50,37 +51,7 @@ std::vector<PlanePoint> section(const Polyhedron& solid) {
     return points.empty() ? points : convex_hull(std::move(points));
 }
 
-/// How an obstacle's own frame lies in the plane's coordinates.
-class Frame {
- public:
-    Frame(const Obstacle& obstacle, const PlaneOfMotion& plane, double lateral_m)
-        : obstacle_(obstacle), plane_(plane), lateral_m_(lateral_m) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            lane::sin_cos(obstacle.rpy_rad[i], sine_[i], cosine_[i]);
-        }
-    }
-
-    /// Rz(yaw) Ry(pitch) Rx(roll), then the plane's coordinates.
-    [[nodiscard]] Vector3 operator()(const Vector3& own_m) const {
-        Vector3 p = own_m;
-        p = {p[0], cosine_[0] * p[1] - sine_[0] * p[2], sine_[0] * p[1] + cosine_[0] * p[2]};
-        p = {cosine_[1] * p[0] + sine_[1] * p[2], p[1], -sine_[1] * p[0] + cosine_[1] * p[2]};
-        p = {cosine_[2] * p[0] - sine_[2] * p[1], sine_[2] * p[0] + cosine_[2] * p[1], p[2]};
-        for (std::size_t i = 0; i < 3; ++i) {
-            p[i] += obstacle_.center_m[i];
-        }
-        p = plane_.from_world(p);
-        return {p[0], p[1] - lateral_m_, p[2]};
-    }
-
- private:
-    const Obstacle& obstacle_;
-    const PlaneOfMotion& plane_;
-    double lateral_m_;
-    std::array<double, 3> sine_{}, cosine_{};
-};
-
-Polyhedron box_at(const Vector3& center_m, const Vector3& size_m, const Frame& frame) {
+Polyhedron box_at(const Vector3& center_m, const Vector3& size_m, const ObstacleFrame& frame) {
     Polyhedron solid;
     for (std::size_t corner = 0; corner < 8; ++corner) {
         const auto side = [&](std::size_t axis) { return ((corner >> axis) & 1U) != 0 ? 0.5 : -0.5; };
@@ -104,7 +75,7 @@ Vector3 scaled_to(const Vector3& a, double length) {
     return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
-Polyhedron prism_of(const Cylinder& cylinder, const Frame& frame) {
+Polyhedron prism_of(const Cylinder& cylinder, const ObstacleFrame& frame) {
     const Vector3 half = scaled_to(scaled_to(cylinder.axis, 1), cylinder.length_m / 2);
     const Vector3 other = std::abs(half[0]) < std::abs(half[1]) ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
     const Vector3 u = scaled_to(cross(half, other), cylinder.radius_m);
@@ -139,7 +110,7 @@ std::vector<PlanePoint> circle(const PlanePoint& center, double radius_m) {
 /// Fills in what of an outline depends on the kind of shape.
 class OutlineOf {
  public:
-    OutlineOf(const Frame& frame, ObstacleOutline& outline) : frame_(frame), outline_(outline) {}
+    OutlineOf(const ObstacleFrame& frame, ObstacleOutline& outline) : frame_(frame), outline_(outline) {}
 
     void operator()(const Box& box) const { add(box_at({0, 0, 0}, box.size_m, frame_)); }
     void operator()(const Cylinder& cylinder) const { add(prism_of(cylinder, frame_)); }
@@ -209,7 +180,7 @@ class OutlineOf {
         }
     }
 
-    const Frame& frame_;
+    const ObstacleFrame& frame_;
     ObstacleOutline& outline_;
 };
 
@@ -220,7 +191,7 @@ std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOf
     for (const Obstacle& obstacle : scene.obstacles()) {
         ObstacleOutline& outline = outlines.emplace_back();
         outline.name = obstacle.name;
-        const Frame frame(obstacle, plane, lateral_m);
+        const ObstacleFrame frame(obstacle, plane, lateral_m);
         std::visit(OutlineOf(frame, outline), obstacle.shape);
     }
     return outlines;

@@ -66,6 +66,37 @@ TEST_CASE("every algorithm solves an easy problem, twice with the same bytes") {
     });
 }
 
+TEST_CASE("every algorithm's tree hangs together, from the start on") {
+    for_all([](Variant variant, const AlgorithmInfo& algorithm) {
+        SolveOptions options;
+        options.stop_at_first_solution = true;
+        const Problem problem = with(variant, algorithm.name);
+        CHECK(solve(problem, options).tree.empty());
+        options.keep_tree = true;
+        const Solution solution = solve(problem, options);
+        REQUIRE(solution.tree.size() > 1);
+        const auto is_root = [](const TreeNode& node) { return node.parent == TreeNode::no_parent; };
+        const auto roots = std::count_if(solution.tree.begin(), solution.tree.end(), is_root);
+        CHECK(roots >= 1);
+        CHECK(roots < static_cast<std::ptrdiff_t>(solution.tree.size()));
+        CHECK(std::any_of(solution.tree.begin(), solution.tree.end(), [&](const TreeNode& node) {
+            return is_root(node) && node.at.x_m == Approx(problem.start.x_m) &&
+                   node.at.z_m == Approx(problem.start.z_m);
+        }));
+        for (const TreeNode& node : solution.tree) {
+            int parent = node.parent;
+            std::size_t steps = 0;
+            while (parent != TreeNode::no_parent && steps <= solution.tree.size()) {
+                REQUIRE(parent >= 0);
+                REQUIRE(static_cast<std::size_t>(parent) < solution.tree.size());
+                parent = solution.tree[static_cast<std::size_t>(parent)].parent;
+                ++steps;
+            }
+            REQUIRE(steps <= solution.tree.size());
+        }
+    });
+}
+
 TEST_CASE("no algorithm calls a walled problem solved") {
     for_all([](Variant variant, const AlgorithmInfo& algorithm) {
         Problem problem = with(variant, algorithm.name, test::walled_problem());

@@ -1,4 +1,4 @@
-#include "downwash/grids/base64.hpp"
+#include "downwash/base/base64.hpp"
 
 #include <array>
 #include <cstdint>

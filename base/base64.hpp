@@ -1,20 +1,20 @@
 #pragma once
 
-// Private to grids.
-
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "downwash/base/export.hpp"
+
 namespace downwash {
 
 /// Bytes as RFC 4648 writes them, padded, without line breaks.
-[[nodiscard]] std::string base64_text(std::string_view bytes);
+[[nodiscard]] DOWNWASH_EXPORT std::string base64_text(std::string_view bytes);
 
 /// The bytes behind a base64 text; empty when it is none: a length that is no multiple of 4, another letter, padding
 /// before the end.
-[[nodiscard]] std::optional<std::string> base64_bytes(std::string_view text);
+[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> base64_bytes(std::string_view text);
 
 /// Letters that stand for so many bytes.
 [[nodiscard]] constexpr std::size_t base64_letters(std::size_t bytes) noexcept {

@@ -1,0 +1,83 @@
+#include "downwash/report/number_table.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/line_faults.hpp"
+#include "downwash/base/text.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr std::size_t most_columns = 200;
+constexpr std::size_t most_cells = 20'000'000;
+
+void read_names(const CsvLines& lines, NumberTable& table, LineFaults& faults) {
+    lines.for_each_cell([&](std::string_view name, std::size_t column) {
+        if (std::find(table.names.begin(), table.names.end(), name) != table.names.end()) {
+            faults.add(lines.number(), column, "the column '" + excerpt(name) + "' is there twice");
+        }
+        if (table.names.size() == most_columns) {
+            faults.add(lines.number(), column, "more than " + std::to_string(most_columns) + " columns");
+            faults.throw_any();
+        }
+        table.names.emplace_back(name);
+    });
+    table.columns.resize(table.names.size());
+}
+
+void read_row(const CsvLines& lines, NumberTable& table, LineFaults& faults) {
+    std::size_t cells = 0;
+    lines.for_each_cell([&](std::string_view cell, std::size_t column) {
+        if (cells < table.columns.size()) {
+            const auto number = parse_number<double>(cell);
+            if (!number && !cell.empty()) {
+                faults.add(lines.number(), column, "'" + excerpt(cell) + "' is not a finite number");
+            }
+            table.columns[cells].push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
+        }
+        ++cells;
+    });
+    if (cells != table.columns.size()) {
+        faults.add(lines.number(),
+                   std::to_string(cells) + " cells under " + std::to_string(table.columns.size()) + " column names");
+        faults.throw_any();
+    }
+}
+
+}  // namespace
+
+const std::vector<double>* NumberTable::find(std::string_view name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+NumberTable read_number_table(std::string_view text, const std::string& file,
+                              const std::vector<std::string_view>& required) {
+    NumberTable table;
+    LineFaults faults(file);
+    CsvLines lines(text);
+    if (!lines.next()) {
+        faults.add(0, "the file is empty: expected a line of column names");
+        faults.throw_any();
+    }
+    read_names(lines, table, faults);
+    for (const std::string_view name : required) {
+        if (table.find(name) == nullptr) {
+            faults.add(lines.number(), "there is no column '" + std::string(name) + "'");
+        }
+    }
+    faults.throw_any();
+    while (lines.next()) {
+        if (table.rows() * table.columns.size() >= most_cells) {
+            faults.add(lines.number(), "more than " + std::to_string(most_cells) + " numbers");
+            break;
+        }
+        read_row(lines, table, faults);
+    }
+    faults.throw_any();
+    return table;
+}
+
+}  // namespace downwash

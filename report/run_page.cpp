@@ -1,0 +1,142 @@
+#include "downwash/report/run_page.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "downwash/base/version.hpp"
+#include "downwash/report/packed_numbers.hpp"
+#include "downwash/report/page_scene.hpp"
+#include "downwash/report/page_template.hpp"
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+        return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+    });
+}
+
+/// Rotors one behind the other have the same columns; they are stored once.
+Json flight_json(const NumberTable& flight) {
+    if (flight.rows() == 0) {
+        return {};
+    }
+    PackedNumbers packed;
+    std::vector<int> same_as;
+    for (std::size_t i = 0; i < flight.columns.size(); ++i) {
+        const auto end = flight.columns.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto twin = std::find_if(flight.columns.begin(), end,
+                                       [&](const auto& column) { return are_same(column, flight.columns[i]); });
+        same_as.push_back(twin == end ? -1 : static_cast<int>(twin - flight.columns.begin()));
+        if (twin == end) {
+            packed.add_smooth(flight.columns[i]);
+        }
+    }
+    return {{"rows", flight.rows()}, {"columns", flight.names}, {"same_as", same_as}, {"data", packed.text()}};
+}
+
+Json tree_json(const NumberTable& tree) {
+    if (tree.rows() == 0) {
+        return {};
+    }
+    PackedNumbers packed;
+    for (const char* name : {"x_m", "z_m", "arm_rad"}) {
+        const std::vector<double>& column = *tree.find(name);
+        packed.add(std::vector<float>(column.begin(), column.end()));
+    }
+    std::vector<std::int32_t> parents;
+    for (const double parent : *tree.find("parent")) {
+        parents.push_back(std::isnan(parent) ? -1 : static_cast<std::int32_t>(parent));
+    }
+    packed.add(parents);
+    return {{"nodes", tree.rows()}, {"data", packed.text()}};
+}
+
+/// What repeats the run to the byte, from within its folder.
+std::string command_of(const Json& solution) {
+    std::string command = "downwash solve effective.yaml";
+    const Json::json_pointer iterations("/planning/iterations");
+    if (solution.contains(iterations) && solution[iterations].is_number_unsigned() && solution[iterations] > 0) {
+        command += " --max-iterations " + solution[iterations].dump();
+    }
+    return command;
+}
+
+/// As it may stand within a script element: no `<`, no line separator that old JavaScript stumbles over. Outside of
+/// strings JSON has none of these letters.
+std::string harmless(const std::string& json) {
+    std::string text;
+    text.reserve(json.size());
+    for (const char letter : json) {
+        switch (letter) {
+            case '<':
+                text += "\\u003c";
+                break;
+            case '>':
+                text += "\\u003e";
+                break;
+            case '&':
+                text += "\\u0026";
+                break;
+            default:
+                text += letter;
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+bool has_pages() noexcept {
+    return !run_page_template().empty();
+}
+
+std::string run_page_data(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
+    const Problem& problem = run.problem;
+    const Json solution = Json::parse(run.solution_text);
+    const Json page{{"schema", "downwash/report/v1"},
+                    {"version", version()},
+                    {"command", command_of(solution)},
+                    {"solution", solution},
+                    {"effective_yaml", run.problem_text},
+                    {"description", problem.description},
+                    {"scene", scene_json(problem, Scene(problem.obstacles))},
+                    {"robot", robot_json(problem.robot)},
+                    {"start",
+                     {{"x_m", problem.start.x_m},
+                      {"z_m", problem.start.z_m},
+                      {"pitch_rad", problem.start.pitch_rad},
+                      {"arm_rad", problem.start.arm_rad}}},
+                    {"goals", goals_json(problem)},
+                    {"goal_order", goal_order(problem)},
+                    {"limits",
+                     {{"safety_margin_m", problem.planner.safety_margin_m},
+                      {"max_tilt_rad", problem.robot.controller.max_tilt_rad},
+                      {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
+                    {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
+                    {"flight", flight_json(run.flight)},
+                    {"tree", tree_json(run.tree)}};
+    constexpr int on_one_line = -1;
+    constexpr bool as_ascii = true;
+    return harmless(page.dump(on_one_line, ' ', as_ascii, Json::error_handler_t::replace));
+}
+
+std::string run_page(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
+    constexpr std::string_view gap = R"({"downwash":"run"})";
+    std::string page(run_page_template());
+    const std::size_t place = page.find(gap);
+    if (place == std::string::npos) {
+        throw std::logic_error("the page has no place for its data");
+    }
+    return page.replace(place, gap.size(), run_page_data(run, model, map));
+}
+
+}  // namespace downwash

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+
+#include "../support/scratch_folder.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/base/files.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/solution_file.hpp"
+#include "downwash/problems/trajectory_csv.hpp"
+#include "downwash/problems/tree_csv.hpp"
+
+namespace downwash::test {
+
+/// What `solve` leaves in a folder.
+class SolvedRun {
+ public:
+    explicit SolvedRun(Problem of = ceiling_problem()) : problem(std::move(of)) {
+        problem.planner.max_iterations = 200;
+        SolveOptions options;
+        options.keep_tree = true;
+        solution = solve(problem, options);
+        write_file(file("effective.yaml"), effective_yaml(problem, folder()));
+        write_file(file("trajectory.csv"), trajectory_csv(solution.execution.value()));
+        write_file(file("tree.csv"), tree_csv(solution.tree));
+        write_file(file("solution.json"),
+                   solution_json(solution, {problem.name, "problem.yaml", problem_sha256(problem)}));
+    }
+
+    [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
+    [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder() / name; }
+
+    Problem problem;
+    Solution solution;
+
+ private:
+    ScratchFolder scratch_;
+};
+
+}  // namespace downwash::test

@@ -1,0 +1,171 @@
+#include "downwash/report/run_page.hpp"
+
+#include <zlib.h>
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "downwash/base/base64.hpp"
+#include "solved_run.hpp"
+
+using namespace downwash;
+using nlohmann::json;
+using test::SolvedRun;
+
+namespace {
+
+json data_of(const SolvedRun& run) {
+    const RunRecord record = read_run(run.folder());
+    const auto model = make_flight_model(record.problem);
+    return json::parse(run_page_data(record, *model, run.solution.map.get()));
+}
+
+std::string unpacked(const json& text, std::size_t size) {
+    const std::string packed = base64_bytes(text.get<std::string>()).value();
+    std::string bytes(size, '\0');
+    auto written = static_cast<uLongf>(size);
+    REQUIRE(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &written, reinterpret_cast<const Bytef*>(packed.data()),
+                       packed.size()) == Z_OK);
+    REQUIRE(written == size);
+    return bytes;
+}
+
+/// The columns of a flight, by the rule that docs/results.md states.
+std::vector<std::vector<double>> columns_of(const json& flight) {
+    const auto rows = flight["rows"].get<std::size_t>();
+    const auto same_as = flight["same_as"].get<std::vector<int>>();
+    const auto stored = static_cast<std::size_t>(std::count(same_as.begin(), same_as.end(), -1));
+    const std::string bytes = unpacked(flight["data"], stored * rows * 8);
+    std::vector<std::vector<double>> columns;
+    std::size_t begin = 0;
+    for (const int twin : same_as) {
+        if (twin >= 0) {
+            columns.push_back(columns.at(static_cast<std::size_t>(twin)));
+            continue;
+        }
+        std::vector<double>& column = columns.emplace_back();
+        std::uint64_t bits = 0;
+        for (std::size_t row = 0; row < rows; ++row) {
+            for (std::size_t byte = 0; byte < 8; ++byte) {
+                bits ^= std::uint64_t{static_cast<unsigned char>(bytes[begin + byte * rows + row])} << (8 * byte);
+            }
+            column.push_back(std::bit_cast<double>(bits));
+        }
+        begin += rows * 8;
+    }
+    return columns;
+}
+
+template <class Number>
+Number number_at(const std::string& bytes, std::size_t index) {
+    Number number;
+    std::memcpy(&number, bytes.data() + index * sizeof(Number), sizeof(Number));
+    return number;
+}
+
+}  // namespace
+
+TEST_CASE("a page carries the flight to the last bit, and each column once") {
+    const SolvedRun run;
+    const RunRecord record = read_run(run.folder());
+    const json data = data_of(run);
+    CHECK(data["schema"] == "downwash/report/v1");
+    CHECK(data["flight"]["columns"] == json(record.flight.names));
+    const auto columns = columns_of(data["flight"]);
+    REQUIRE(columns.size() == record.flight.columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        CAPTURE(record.flight.names[i]);
+        CHECK(columns[i] == record.flight.columns[i]);
+    }
+    CHECK(data["flight"]["same_as"] != json(std::vector<int>(columns.size(), -1)));
+}
+
+TEST_CASE("a page carries the solution as it stands in its file, and the command that repeats it") {
+    const SolvedRun run;
+    const json data = data_of(run);
+    CHECK(data["solution"] == json::parse(read_run(run.folder()).solution_text));
+    CHECK(data["command"] == "downwash solve effective.yaml --max-iterations 200");
+    CHECK(data["goal_order"] == "single");
+    CHECK(data["goals"].size() == 1);
+}
+
+TEST_CASE("a page carries the tree with its parents") {
+    const SolvedRun run;
+    const json data = data_of(run);
+    const std::vector<TreeNode>& tree = run.solution.tree;
+    REQUIRE(data["tree"]["nodes"] == tree.size());
+    const std::string bytes = unpacked(data["tree"]["data"], tree.size() * 16);
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+        CHECK(number_at<float>(bytes, i) == static_cast<float>(tree[i].at.x_m));
+        CHECK(number_at<float>(bytes, tree.size() + i) == static_cast<float>(tree[i].at.z_m));
+        CHECK(number_at<std::int32_t>(bytes, 3 * tree.size() + i) == tree[i].parent);
+    }
+}
+
+TEST_CASE("a page's aero map is that of the first rotor within its steps") {
+    const SolvedRun run;
+    const json map = data_of(run)["map"];
+    const auto model = make_flight_model(run.problem);
+    const auto columns = map["columns"].get<std::size_t>();
+    const auto rows = map["rows"].get<std::size_t>();
+    const double low = map["factor_low"], high = map["factor_high"], cell_m = map["cell_m"];
+    CHECK(low <= 1);
+    CHECK(high > 1.05);
+    const std::string levels = unpacked(map["levels"], columns * rows);
+    std::size_t flyable = 0;
+    for (std::size_t i = 0; i < levels.size(); i += 7) {
+        const double x_m = map["x_low_m"].get<double>() + cell_m * static_cast<double>(i % columns);
+        const double z_m = map["z_low_m"].get<double>() + cell_m * static_cast<double>(i / columns);
+        const int level = static_cast<unsigned char>(levels[i]);
+        const Vector3 hub_m = run.problem.plane.to_world(x_m, model->rotor_lateral_m(0), z_m);
+        REQUIRE(model->effect(0).is_flyable(hub_m) == (level != 255));
+        if (level != 255) {
+            ++flyable;
+            REQUIRE(std::abs(low + (high - low) * level / 254 - model->effect(0).factor(hub_m)) <
+                    0.011 + (high - low) / 254);
+        }
+    }
+    CHECK(flyable > levels.size() / 14);
+}
+
+TEST_CASE("obstacles stand on a page as the plane cuts them, as they project, and as solids") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles.push_back({"ball", Sphere{0.5}, {-3, 4, 9}, {}});
+    const SolvedRun run(problem);
+    const json obstacles = data_of(run)["scene"]["obstacles"];
+    const json& ball = obstacles.back();
+    CHECK(ball["name"] == "ball");
+    CHECK(ball["kind"] == "sphere");
+    CHECK(ball["section"].empty());
+    CHECK(ball["projection"][0].size() == 96);
+    CHECK(ball["solid"]["sphere"]["center_m"] == json({-3., 4., 9.}));
+    CHECK_FALSE(obstacles[0]["section"].empty());
+    CHECK_FALSE(obstacles[0]["projection"].empty());
+}
+
+TEST_CASE("no text of a problem ends the script element that carries it") {
+    Problem problem = test::ceiling_problem();
+    problem.description = "</script><script>alert(1)</script> <!-- & \xE2\x80\xA8 \xF0\x9F\x98\x80 \xD7\xA9";
+    problem.obstacles[0].name = "</script>\"'";
+    const SolvedRun run(problem);
+    const RunRecord record = read_run(run.folder());
+    const auto model = make_flight_model(record.problem);
+    const std::string text = run_page_data(record, *model, nullptr);
+    CHECK(text.find_first_of("<>&") == std::string::npos);
+    CHECK(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
+    const json data = json::parse(text);
+    CHECK(data["description"] == problem.description);
+    CHECK(data["scene"]["obstacles"][0]["name"] == problem.obstacles[0].name);
+    CHECK(data["map"].is_null());
+    if (has_pages()) {
+        const std::string page = run_page(record, *model, nullptr);
+        CHECK(page.find(text) != std::string::npos);
+        CHECK(page.find("{\"downwash\":\"run\"}") == std::string::npos);
+    }
+}
