@@ -16,6 +16,7 @@ void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
 void add_aeromap(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
+void add_export(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 

@@ -88,6 +88,7 @@ ExitCode run(int argc, char** argv) {
     add_aeromap(program, action);
     add_bench(program, action);
     add_report(program, action);
+    add_export(program, action);
     add_planners(program, action);
     refuse_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
     if (const auto code = parse(program, argc, argv)) {

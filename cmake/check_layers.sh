@@ -18,6 +18,7 @@ controllers: base dynamics
 simulation:  base scene dynamics effects grids aeromap controllers
 planner:     base scene dynamics effects grids aeromap controllers simulation
 problems:    base scene dynamics effects grids aeromap controllers simulation planner
+exports:     base scene dynamics effects grids aeromap controllers simulation planner problems
 report:      base scene dynamics effects grids aeromap controllers simulation planner problems
 cli:         *
 bench:       *

@@ -28,6 +28,8 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(SQLite3 REQUIRED)
+list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
+find_package(GeographicLib REQUIRED)
 
 # OMPL 1.5.2 exports no target of its own.
 add_library(downwash_ompl INTERFACE)

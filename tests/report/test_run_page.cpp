@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "../support/solved_run.hpp"
 #include "downwash/base/base64.hpp"
-#include "solved_run.hpp"
 
 using namespace downwash;
 using nlohmann::json;

@@ -1,4 +1,4 @@
-#include "downwash/report/run_record.hpp"
+#include "downwash/problems/run_record.hpp"
 
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr int deepest_nesting = 32;
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
-    throw InputError({{"", file.string() + ": " + message}});
+    throw InputError({Fault{"", file.string() + ": " + message}});
 }
 
 std::string text_of(const fs::path& file) {
@@ -28,7 +28,7 @@ std::string text_of(const fs::path& file) {
     try {
         text = read_file(file, largest_file + 1);
     } catch (const FileError& fault) {
-        throw InputError({{"", file.string() + " " + fault.what()}});
+        throw InputError({Fault{"", file.string() + " " + fault.what()}});
     }
     if (text.size() > largest_file) {
         refuse(file, "larger than " + std::to_string(largest_file >> 20U) + " MiB, more than any run leaves behind");
@@ -36,7 +36,8 @@ std::string text_of(const fs::path& file) {
     return text;
 }
 
-void check_solution(const fs::path& file, const std::string& text) {
+/// @return whether there is a plan
+bool check_solution(const fs::path& file, const std::string& text) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
@@ -53,6 +54,8 @@ void check_solution(const fs::path& file, const std::string& text) {
     if (schema == solution.end() || *schema != solution_schema) {
         refuse(file, "its schema is not " + std::string(solution_schema));
     }
+    const auto plan = solution.find("plan");
+    return plan != solution.end() && !plan->is_null();
 }
 
 /// The parent of every node is a row of the table, or nothing.
@@ -62,8 +65,8 @@ void check_tree(const fs::path& file, const NumberTable& tree) {
     for (std::size_t i = 0; i < parents.size(); ++i) {
         const double parent = parents[i];
         if (!std::isnan(parent) && !(parent >= 0 && parent < rows && parent == std::floor(parent))) {
-            throw InputError({{"", file.string() + ":" + std::to_string(i + 2) + ": parent is " + to_text(parent) +
-                                       ", expected a row of this file, counted from 0"}});
+            throw InputError({Fault{"", file.string() + ":" + std::to_string(i + 2) + ": parent is " + to_text(parent) +
+                                            ", expected a row of this file, counted from 0"}});
         }
     }
 }
@@ -97,10 +100,13 @@ RunRecord read_run(const fs::path& folder) {
     RunRecord run;
     const fs::path solution = folder / "solution.json";
     run.solution_text = text_of(solution);
-    check_solution(solution, run.solution_text);
+    const bool has_plan = check_solution(solution, run.solution_text);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_problem(problem);
+    if (has_plan) {
+        run.plan = read_solution(solution.string(), run.problem).plan;
+    }
     const fs::path flight = folder / "trajectory.csv";
     run.flight = read_number_table(text_of(flight), flight.string(), flight_columns());
     check_flight(flight, run.flight);

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "../support/scratch_folder.hpp"
-#include "../support/test_problem.hpp"
 #include "downwash/base/files.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/solution_file.hpp"
 #include "downwash/problems/trajectory_csv.hpp"
 #include "downwash/problems/tree_csv.hpp"
+#include "scratch_folder.hpp"
+#include "test_problem.hpp"
 
 namespace downwash::test {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <string>
 
+#include "../support/solved_run.hpp"
 #include "downwash/base/fault.hpp"
-#include "downwash/report/run_record.hpp"
-#include "solved_run.hpp"
+#include "downwash/problems/run_record.hpp"
 
 using namespace downwash;
 using test::SolvedRun;

@@ -1,4 +1,4 @@
-#include "downwash/report/number_table.hpp"
+#include "downwash/problems/number_table.hpp"
 
 #include <algorithm>
 #include <limits>

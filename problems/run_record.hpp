@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/problem.hpp"
-#include "downwash/report/number_table.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/number_table.hpp"
 
 namespace downwash {
 
@@ -14,6 +16,7 @@ struct RunRecord {
     Problem problem;            ///< effective.yaml
     std::string problem_text;   ///< the same as text
     std::string solution_text;  ///< solution.json: well-formed, of the schema that this version writes
+    std::optional<Plan> plan;   ///< of the solution; empty without one
     NumberTable flight;         ///< trajectory.csv; no rows when nothing was flown
     NumberTable tree;           ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
 };

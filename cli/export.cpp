@@ -1,0 +1,95 @@
+#include <fmt/core.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/base/files.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/cli/commands.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/exports/export_format.hpp"
+
+namespace downwash::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+    std::string folder;
+    std::string format;
+    std::optional<std::string> out;
+    std::optional<double> rate_hz;
+    std::vector<double> origin;
+    double bearing_deg = 0;
+};
+
+const ExportFormat& format_named(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const ExportFormat& format : export_formats()) {
+        if (format.name == name) {
+            return format;
+        }
+        names.push_back(format.name);
+    }
+    throw UsageError(fmt::format("there is no format '{}': expected {}{}", excerpt(name), joined_names(names),
+                                 did_you_mean(name, names)));
+}
+
+ExportSettings settings_of(const ExportArguments& arguments) {
+    ExportSettings settings;
+    settings.rate_hz = arguments.rate_hz;
+    if (!arguments.origin.empty()) {
+        settings.origin = {arguments.origin[0], arguments.origin[1], arguments.origin[2], arguments.bearing_deg};
+    }
+    return settings;
+}
+
+ExitCode run(const ExportArguments& arguments) {
+    const ExportFormat& format = format_named(arguments.format);
+    const fs::path file =
+        arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / ("run" + std::string(format.extension));
+    const RunRecord record = read_run(arguments.folder);
+    try {
+        write_file(file, exported(record, format, settings_of(arguments)));
+    } catch (const FileError& fault) {
+        throw UsageError(file.string() + " " + fault.what());
+    }
+    fmt::print("{}\n", file.string());
+    return ExitCode::done;
+}
+
+std::string formats_help() {
+    std::string text = "what to write:";
+    for (const ExportFormat& format : export_formats()) {
+        text += fmt::format("\n{}: {}", format.name, format.description);
+    }
+    return text;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Action& action) {
+    const auto arguments = std::make_shared<ExportArguments>();
+    CLI::App* command = program.add_subcommand("export", "Write a run as a file that other programs read");
+    command->add_option("DIR", arguments->folder, "folder that `solve` or `execute` wrote to")->required();
+    command->add_option("--format", arguments->format, formats_help())->type_name("F")->required();
+    command->add_option("-o,--out", arguments->out, "the file; default run with the format's extension, in that folder")
+        ->type_name("FILE");
+    command->add_option("--rate", arguments->rate_hz, "set-points per second; default: the controller's rate")
+        ->type_name("HZ");
+    command
+        ->add_option("--origin", arguments->origin,
+                     "where the world frame lies, for qgc: latitude and longitude in degrees (WGS 84) and altitude in "
+                     "m above the ellipsoid")
+        ->type_name("LATITUDE LONGITUDE ALTITUDE")
+        ->expected(3);
+    command
+        ->add_option("--bearing", arguments->bearing_deg,
+                     "compass direction of the world's x axis, clockwise from north; default 0")
+        ->type_name("DEG");
+    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace downwash::cli

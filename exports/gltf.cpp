@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "downwash/base/version.hpp"
+#include "downwash/exports/formats.hpp"
+#include "downwash/exports/solid_surface.hpp"
+
+// glTF 2.0 in one binary file (Khronos, "glTF 2.0 Specification", 4.4): a head, a piece of JSON, a piece of numbers.
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Constants of OpenGL that the format uses.
+constexpr int unsigned_int_type = 5125, float_type = 5126;
+constexpr int vertex_buffer = 34962, index_buffer = 34963;
+constexpr int line_strip_mode = 3;
+
+void append(std::string& bytes, std::uint32_t word) {
+    for (int shift = 0; shift < 32; shift += 8) {
+        bytes.push_back(static_cast<char>((word >> shift) & 0xFFU));
+    }
+}
+
+struct Quaternion {
+    double x = 0, y = 0, z = 0, w = 1;
+
+    static Quaternion about_y(double angle_rad) { return {0, std::sin(angle_rad / 2), 0, std::cos(angle_rad / 2)}; }
+    static Quaternion about_z(double angle_rad) { return {0, 0, std::sin(angle_rad / 2), std::cos(angle_rad / 2)}; }
+
+    friend Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+        return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+    }
+};
+
+/// A document that grows node by node.
+class Gltf {
+ public:
+    enum Material { obstacle, vehicle, arm, path };
+
+    /// Numbers, `components` of them an element. @return the number of the accessor
+    std::size_t add_floats(const std::vector<float>& numbers, std::size_t components, bool is_vertex) {
+        Json least = Json::array(), most = Json::array();
+        for (std::size_t i = 0; i < components; ++i) {
+            float low = std::numeric_limits<float>::infinity(), high = -low;
+            for (std::size_t k = i; k < numbers.size(); k += components) {
+                low = std::min(low, numbers[k]);
+                high = std::max(high, numbers[k]);
+            }
+            least.push_back(low);
+            most.push_back(high);
+        }
+        for (const float number : numbers) {
+            append(bytes_, std::bit_cast<std::uint32_t>(number));
+        }
+        constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+        return add_accessor({{"componentType", float_type},
+                             {"count", numbers.size() / components},
+                             {"type", types[components]},
+                             {"min", std::move(least)},
+                             {"max", std::move(most)}},
+                            4 * numbers.size(), is_vertex ? vertex_buffer : 0);
+    }
+
+    std::size_t add_mesh(const Surface& surface, Material material) {
+        std::vector<float> vertices;
+        for (const Vector3& vertex_m : surface.vertices_m) {
+            vertices.insert(vertices.end(), {static_cast<float>(vertex_m[0]), static_cast<float>(vertex_m[1]),
+                                             static_cast<float>(vertex_m[2])});
+        }
+        const std::size_t positions = add_floats(vertices, 3, true);
+        for (const auto& triangle : surface.triangles) {
+            for (const std::uint32_t corner : triangle) {
+                append(bytes_, corner);
+            }
+        }
+        const std::size_t count = 3 * surface.triangles.size();
+        const std::size_t indices = add_accessor(
+            {{"componentType", unsigned_int_type}, {"count", count}, {"type", "SCALAR"}}, 4 * count, index_buffer);
+        return add_primitive({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", material}});
+    }
+
+    std::size_t add_line(const std::vector<float>& points) {
+        const std::size_t positions = add_floats(points, 3, true);
+        return add_primitive(
+            {{"attributes", {{"POSITION", positions}}}, {"mode", line_strip_mode}, {"material", path}});
+    }
+
+    std::size_t add_node(Json node) {
+        nodes_.push_back(std::move(node));
+        return nodes_.size() - 1;
+    }
+
+    /// Moves a node: `path` is "translation" or "rotation".
+    void animate(std::size_t node, const char* what, std::size_t times, std::size_t values) {
+        channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", what}}}});
+        samplers_.push_back({{"input", times}, {"output", values}});
+    }
+
+    /// @param root node that turns z up into the format's y up
+    [[nodiscard]] std::string text(std::size_t root, const std::string& name) const {
+        Json document{{"asset", {{"version", "2.0"}, {"generator", "downwash " + std::string(version())}}},
+                      {"scene", 0},
+                      {"scenes", {{{"name", name}, {"nodes", {root}}}}},
+                      {"nodes", nodes_},
+                      {"meshes", meshes_},
+                      {"materials", materials()},
+                      {"accessors", accessors_},
+                      {"bufferViews", views_},
+                      {"buffers", {{{"byteLength", bytes_.size()}}}}};
+        if (!channels_.empty()) {
+            document["animations"] = {{{"name", "flight"}, {"channels", channels_}, {"samplers", samplers_}}};
+        }
+        std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        constexpr std::uint32_t magic = 0x46546C67, format_version = 2;
+        constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
+        constexpr std::size_t head = 12, chunk_head = 8;
+        std::string file;
+        append(file, magic);
+        append(file, format_version);
+        append(file, static_cast<std::uint32_t>(head + 2 * chunk_head + json.size() + bytes_.size()));
+        append(file, static_cast<std::uint32_t>(json.size()));
+        append(file, json_chunk);
+        file += json;
+        append(file, static_cast<std::uint32_t>(bytes_.size()));
+        append(file, binary_chunk);
+        return file + bytes_;
+    }
+
+ private:
+    /// The bytes are those added last.
+    std::size_t add_accessor(Json accessor, std::size_t size, int target) {
+        Json view{{"buffer", 0}, {"byteOffset", bytes_.size() - size}, {"byteLength", size}};
+        if (target != 0) {
+            view["target"] = target;
+        }
+        accessor["bufferView"] = views_.size();
+        views_.push_back(std::move(view));
+        accessors_.push_back(std::move(accessor));
+        return accessors_.size() - 1;
+    }
+
+    std::size_t add_primitive(Json primitive) {
+        meshes_.push_back({{"primitives", {std::move(primitive)}}});
+        return meshes_.size() - 1;
+    }
+
+    static Json material(const char* name, std::initializer_list<double> color, double metallic) {
+        return {{"name", name},
+                {"pbrMetallicRoughness",
+                 {{"baseColorFactor", color}, {"metallicFactor", metallic}, {"roughnessFactor", 0.8}}},
+                {"doubleSided", true}};
+    }
+
+    /// In the order of Material.
+    static Json materials() {
+        return {material("obstacle", {0.62, 0.62, 0.6, 1}, 0), material("vehicle", {0.13, 0.25, 0.42, 1}, 0.2),
+                material("arm", {0.84, 0.37, 0, 1}, 0.2), material("path", {0, 0.45, 0.7, 1}, 0)};
+    }
+
+    std::string bytes_;
+    Json nodes_ = Json::array(), meshes_ = Json::array(), accessors_ = Json::array(), views_ = Json::array();
+    Json channels_ = Json::array(), samplers_ = Json::array();
+};
+
+Obstacle body_obstacle(const BodyShape& body) {
+    return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}};
+}
+
+std::vector<float> floats_of(const Quaternion& q) {
+    return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
+}
+
+/// Bodies, rotors and the joint with its arm.
+/// @return the nodes of vehicle and arm
+std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot) {
+    std::vector<std::size_t> parts;
+    for (const BodyShape& body : robot.body) {
+        parts.push_back(
+            gltf.add_node({{"name", "body"}, {"mesh", gltf.add_mesh(surface_of(body_obstacle(body)), Gltf::vehicle)}}));
+    }
+    constexpr double disc_thickness_m = 0.01;
+    for (const Vector3& hub_m : robot.rotors.positions_m) {
+        const Obstacle disc{"", Cylinder{robot.rotors.radius_m, disc_thickness_m}, hub_m, {}};
+        parts.push_back(gltf.add_node({{"name", "rotor"}, {"mesh", gltf.add_mesh(surface_of(disc), Gltf::vehicle)}}));
+    }
+    const Surface rod = rod_surface(robot.arm.length_m, robot.arm.radius_m);
+    const std::size_t arm = gltf.add_node({{"name", "arm"},
+                                           {"translation", {robot.arm.joint_x_m, 0., robot.arm.joint_z_m}},
+                                           {"rotation", floats_of(Quaternion::about_y(0))},
+                                           {"mesh", gltf.add_mesh(rod, Gltf::arm)}});
+    parts.push_back(arm);
+    const std::size_t vehicle = gltf.add_node({{"name", robot.name}, {"children", parts}});
+    return {vehicle, arm};
+}
+
+void append(std::vector<float>& list, const std::vector<float>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+}
+
+void append(std::vector<float>& list, const Vector3& point_m) {
+    for (const double coordinate : point_m) {
+        list.push_back(static_cast<float>(coordinate));
+    }
+}
+
+/// @return the node that shows the way
+std::size_t add_flight(Gltf& gltf, const RunRecord& run, std::size_t vehicle, std::size_t arm) {
+    const NumberTable& flight = run.flight;
+    std::vector<float> times, places, attitudes, arms;
+    const Quaternion heading = Quaternion::about_z(run.problem.plane.heading_rad());
+    for (std::size_t row = 0; row < flight.rows(); ++row) {
+        times.push_back(static_cast<float>((*flight.find("t_s"))[row]));
+        append(places, run.problem.plane.to_world((*flight.find("x_m"))[row], 0, (*flight.find("z_m"))[row]));
+        append(attitudes, floats_of(heading * Quaternion::about_y((*flight.find("pitch_rad"))[row])));
+        append(arms, floats_of(Quaternion::about_y((*flight.find("arm_rad"))[row])));
+    }
+    const std::size_t input = gltf.add_floats(times, 1, false);
+    gltf.animate(vehicle, "translation", input, gltf.add_floats(places, 3, false));
+    gltf.animate(vehicle, "rotation", input, gltf.add_floats(attitudes, 4, false));
+    gltf.animate(arm, "rotation", input, gltf.add_floats(arms, 4, false));
+    return gltf.add_node({{"name", "flight path"}, {"mesh", gltf.add_line(places)}});
+}
+
+}  // namespace
+
+std::string gltf_binary(const RunRecord& run, const ExportSettings&) {
+    Gltf gltf;
+    std::vector<std::size_t> children;
+    for (const Obstacle& obstacle : run.problem.obstacles) {
+        children.push_back(
+            gltf.add_node({{"name", obstacle.name}, {"mesh", gltf.add_mesh(surface_of(obstacle), Gltf::obstacle)}}));
+    }
+    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot);
+    children.push_back(vehicle);
+    if (run.flight.rows() > 1) {
+        children.push_back(add_flight(gltf, run, vehicle, arm));
+    }
+    constexpr double half_root = 0.70710678118654752;
+    const std::size_t root =
+        gltf.add_node({{"name", "z up"}, {"rotation", {-half_root, 0., 0., half_root}}, {"children", children}});
+    return gltf.text(root, run.problem.name);
+}
+
+}  // namespace downwash

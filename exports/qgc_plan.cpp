@@ -1,0 +1,123 @@
+#include <GeographicLib/LocalCartesian.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/exports/formats.hpp"
+
+// The file format of QGroundControl: docs.qgroundcontrol.com, "Plan File Format". Commands and their parameters are
+// MAVLink's.
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int takeoff_command = 22;         // MAV_CMD_NAV_TAKEOFF
+constexpr int waypoint_command = 16;        // MAV_CMD_NAV_WAYPOINT
+constexpr int relative_altitude_frame = 3;  // MAV_FRAME_GLOBAL_RELATIVE_ALT
+constexpr int relative_altitude_mode = 1;
+constexpr int px4_firmware = 12;    // MAV_AUTOPILOT_PX4
+constexpr int multirotor_type = 2;  // MAV_TYPE_QUADROTOR
+
+struct Geodetic {
+    double latitude_deg, longitude_deg, altitude_m;
+};
+
+/// Places of the world frame on the Earth.
+class OnEarth {
+ public:
+    explicit OnEarth(const GeodeticOrigin& origin)
+        : local_(origin.latitude_deg, origin.longitude_deg, origin.altitude_m),
+          sine_(std::sin(origin.bearing_deg / degrees_per_radian)),
+          cosine_(std::cos(origin.bearing_deg / degrees_per_radian)),
+          bearing_deg_(origin.bearing_deg) {}
+
+    [[nodiscard]] Geodetic at(const Vector3& world_m) const {
+        const double east_m = world_m[0] * sine_ - world_m[1] * cosine_;
+        const double north_m = world_m[0] * cosine_ + world_m[1] * sine_;
+        Geodetic place{};
+        local_.Reverse(east_m, north_m, world_m[2], place.latitude_deg, place.longitude_deg, place.altitude_m);
+        return place;
+    }
+
+    /// Clockwise from north, 0 to 360.
+    [[nodiscard]] double bearing_deg(double yaw_rad) const {
+        const double bearing_deg = std::remainder(bearing_deg_ - yaw_rad * degrees_per_radian, 360.);
+        return bearing_deg < 0 ? bearing_deg + 360 : bearing_deg;
+    }
+
+ private:
+    GeographicLib::LocalCartesian local_;
+    double sine_, cosine_, bearing_deg_;
+};
+
+void check(const GeodeticOrigin& origin) {
+    const bool is_sound = std::abs(origin.latitude_deg) <= 90 && std::abs(origin.longitude_deg) <= 180 &&
+                          std::abs(origin.altitude_m) <= 1e5 && std::abs(origin.bearing_deg) <= 360;
+    if (!is_sound) {
+        throw InputError(
+            {{"", "the origin is at latitude " + to_text(origin.latitude_deg) + ", longitude " +
+                      to_text(origin.longitude_deg) + ", altitude " + to_text(origin.altitude_m) + " m, bearing " +
+                      to_text(origin.bearing_deg) + ": expected -90 to 90, -180 to 180, -1e5 to 1e5 and -360 to 360"}});
+    }
+}
+
+Json item(int command, int number, double hold_s, double bearing_deg, const Geodetic& place, double height_m) {
+    constexpr double acceptance_radius_m = 0.2;
+    return {{"AMSLAltAboveTerrain", nullptr},
+            {"Altitude", height_m},
+            {"AltitudeMode", relative_altitude_mode},
+            {"autoContinue", true},
+            {"command", command},
+            {"doJumpId", number},
+            {"frame", relative_altitude_frame},
+            {"params",
+             {hold_s, command == waypoint_command ? acceptance_radius_m : 0., 0., bearing_deg, place.latitude_deg,
+              place.longitude_deg, height_m}},
+            {"type", "SimpleItem"}};
+}
+
+}  // namespace
+
+std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
+    if (!settings.origin) {
+        throw InputError(
+            {Fault{"", "a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE"}});
+    }
+    check(*settings.origin);
+    if (!run.plan) {
+        throw InputError({Fault{"", "this run found no plan, so there is nothing to fly"}});
+    }
+    const OnEarth earth(*settings.origin);
+    const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
+    Json items = Json::array();
+    for (std::size_t i = 0; i < run.plan->waypoints.size(); ++i) {
+        const Waypoint& corner = run.plan->waypoints[i];
+        const bool is_last = i + 1 == run.plan->waypoints.size();
+        const Vector3 world_m = run.problem.plane.to_world(corner.x_m, 0, corner.z_m);
+        items.push_back(item(i == 0 ? takeoff_command : waypoint_command, static_cast<int>(i) + 1,
+                             is_last ? run.problem.goal.hold_s : 0, bearing_deg, earth.at(world_m), world_m[2]));
+    }
+    const Geodetic home = earth.at({0, 0, 0});
+    const Json plan{{"fileType", "Plan"},
+                    {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
+                    {"groundStation", "QGroundControl"},
+                    {"mission",
+                     {{"cruiseSpeed", run.problem.motion.max_speed_m_s},
+                      {"firmwareType", px4_firmware},
+                      {"globalPlanAltitudeMode", relative_altitude_mode},
+                      {"hoverSpeed", run.problem.motion.max_speed_m_s},
+                      {"items", std::move(items)},
+                      {"plannedHomePosition", {home.latitude_deg, home.longitude_deg, home.altitude_m}},
+                      {"vehicleType", multirotor_type},
+                      {"version", 2}}},
+                    {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
+                    {"version", 1}};
+    constexpr int indent = 4;
+    return plan.dump(indent) + "\n";
+}
+
+}  // namespace downwash

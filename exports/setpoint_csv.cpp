@@ -1,0 +1,47 @@
+#include <cmath>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/exports/formats.hpp"
+
+namespace downwash {
+namespace {
+
+void append(std::string& row, std::initializer_list<double> numbers) {
+    for (const double number : numbers) {
+        row += (row.empty() ? "" : ",") + to_text(number);
+    }
+}
+
+void append(std::string& row, const Vector3& vector) {
+    append(row, {vector[0], vector[1], vector[2]});
+}
+
+}  // namespace
+
+std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings) {
+    if (!run.plan) {
+        throw InputError({Fault{"", "this run found no plan, so there is nothing to fly"}});
+    }
+    const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
+    return setpoints(*run.plan, run.problem.plane, end_s,
+                     settings.rate_hz.value_or(run.problem.robot.controller.rate_hz));
+}
+
+std::string setpoint_csv(const RunRecord& run, const ExportSettings& settings) {
+    std::string text =
+        "t_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,ax_m_s2,ay_m_s2,az_m_s2,yaw_rad,arm_rad,arm_rate_rad_s,"
+        "arm_acceleration_rad_s2\n";
+    for (const Setpoint& point : setpoints_of(run, settings)) {
+        std::string row;
+        append(row, {point.t_s});
+        append(row, point.position_m);
+        append(row, point.velocity_m_s);
+        append(row, point.acceleration_m_s2);
+        append(row, {point.yaw_rad, point.arm_rad, point.arm_rate_rad_s, point.arm_acceleration_rad_s2});
+        text += row + '\n';
+    }
+    return text;
+}
+
+}  // namespace downwash

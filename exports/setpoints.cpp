@@ -1,0 +1,89 @@
+#include "downwash/exports/setpoints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/controllers/quintic.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double most_setpoints = 1e6;
+constexpr double greatest_rate_hz = 10000;
+
+/// The reference at a time between two knots, or held after the last.
+class Reference {
+ public:
+    explicit Reference(const Plan& plan) : plan_(plan) {}
+
+    /// Times must not fall.
+    [[nodiscard]] ReferencePoint at(double t_s) {
+        const auto& knots = plan_.reference;
+        const auto begin_s = [&](std::size_t knot) { return static_cast<double>(knots[knot].tick) * plan_.tick_s; };
+        while (segment_ + 1 < knots.size() && t_s >= begin_s(segment_ + 1)) {
+            ++segment_;
+        }
+        if (segment_ + 1 == knots.size()) {
+            ReferencePoint held = knots.back().point;
+            std::fill(std::begin(held.velocity), std::end(held.velocity), 0);
+            std::fill(std::begin(held.acceleration), std::end(held.acceleration), 0);
+            return held;
+        }
+        const ReferenceKnot& from = knots[segment_];
+        const ReferenceKnot& to = knots[segment_ + 1];
+        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan_.tick_s);
+        ReferencePoint point;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto at = controllers::quintic_at(segment.coefficients()[axis],
+                                                    (t_s - begin_s(segment_)) * segment.inverse_duration_1_s(),
+                                                    segment.inverse_duration_1_s());
+            point.position[axis] = at.position;
+            point.velocity[axis] = at.velocity;
+            point.acceleration[axis] = at.acceleration;
+        }
+        return point;
+    }
+
+ private:
+    const Plan& plan_;
+    std::size_t segment_ = 0;
+};
+
+Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
+    return {vector[0] * plane.cos_heading(), vector[0] * plane.sin_heading(), vector[1]};
+}
+
+}  // namespace
+
+std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, double end_s, double rate_hz) {
+    if (!(rate_hz > 0 && rate_hz <= greatest_rate_hz)) {
+        throw InputError({Fault{"", "the rate is " + to_text(rate_hz) + " Hz, expected above 0 and at most 10000 Hz"}});
+    }
+    end_s = std::max(end_s, plan.duration_s());
+    if (end_s * rate_hz > most_setpoints) {
+        throw InputError({Fault{"", to_text(end_s, 6) + " s at " + to_text(rate_hz) +
+                                        " Hz are more than a million set-points; "
+                                        "lower the rate"}});
+    }
+    std::vector<double> times_s;
+    constexpr double nearly = 1e-9;  // of a period: the end counts once
+    for (std::int64_t i = 0; static_cast<double>(i) < end_s * rate_hz - nearly; ++i) {
+        times_s.push_back(static_cast<double>(i) / rate_hz);
+    }
+    times_s.push_back(end_s);
+
+    Reference reference(plan);
+    std::vector<Setpoint> points;
+    points.reserve(times_s.size());
+    for (const double t_s : times_s) {
+        const ReferencePoint at = reference.at(t_s);
+        points.push_back({t_s, plane.to_world(at.position[0], 0, at.position[1]), in_world(plane, at.velocity),
+                          in_world(plane, at.acceleration), plane.heading_rad(), at.position[2], at.velocity[2],
+                          at.acceleration[2]});
+    }
+    return points;
+}
+
+}  // namespace downwash
