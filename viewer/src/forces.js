@@ -46,11 +46,11 @@ export function make_forces(model, clock, view) {
             set_attributes(head, {d: "M2 0L-7 -4L-7 4Z", transform: `translate(${to[0]} ${to[1]}) rotate(${angle})`});
             // Two numbers beside each other would touch on a small screen.
             const aside = Math.sign(group.x_m) * Math.max(0, 22 - Math.abs(group.x_m) * view.pixels_per_m);
-            set_attributes(text, {x: to[0] + aside, y: to[1] - 7});
+            set_attributes(text, {x: to[0] + aside, y: to[1] - 9});
             text.textContent = `×${number(factor, ".2f")}`;
         });
     };
-    return {element, draw, meters_per_n};
+    return {element, draw, meters_per_n, words: arrows.map(({text}) => text)};
 }
 
 /** What the arrows mean, in words. */

@@ -25,6 +25,8 @@ export function quantity(value, specifier, unit) {
 
 export const meters = (value) => quantity(value, ".3f", "m");
 export const place = (value) => quantity(value, ".2f", "m");
+/** A point of the plane. */
+export const point = (x_m, z_m) => `x\u00a0${place(x_m)}, z\u00a0${place(z_m)}`;
 export const seconds = (value) => quantity(value, ".2f", "s");
 export const degrees = (radians) => quantity((radians * 180) / Math.PI, ".1f", "°").replace("\u00a0", "");
 

@@ -39,6 +39,20 @@ export class Placement {
     }
 }
 
+/** What moves has the right of way: words that stand still vanish below it. */
+export function give_way(words, moving) {
+    const box_of = (element) => {
+        const x = Number(element.getAttribute("x")), y = Number(element.getAttribute("y"));
+        const half = width_of(element.textContent) / 2;
+        return [x - half, y - line_height / 2, x + half, y + line_height / 2];
+    };
+    const taken = moving.map(box_of);
+    for (const element of words.querySelectorAll(".word")) {
+        const box = box_of(element);
+        element.style.visibility = taken.some((other) => overlaps(box, other)) ? "hidden" : "";
+    }
+}
+
 /** Extent of rings. */
 export function extent_of(rings) {
     const points = rings.flat();
@@ -47,7 +61,7 @@ export function extent_of(rings) {
 }
 
 const word = (kind, x, y, text, title) => s("text", {class: `word ${kind}`, x, y, dy: "0.35em", "text-anchor": "middle"},
-    text, title ? s("title", null, title) : null);
+    text, title && title !== text ? s("title", null, title) : null);
 
 export function draw_obstacle_names(view, obstacles, placement) {
     const shown = view.shown;
@@ -66,13 +80,15 @@ export function draw_obstacle_names(view, obstacles, placement) {
         const [left, top] = view.to_pixels(seen.x_m[0], seen.z_m[1]);
         const [right, bottom] = view.to_pixels(seen.x_m[1], seen.z_m[0]);
         const x = (left + right) / 2, y = (top + bottom) / 2, half = width_of(text) / 2 + 6;
-        const candidates = [
-            [x, y], [(left + x) / 2, y], [(x + right) / 2, y], [left + half, y], [right - half, y],
-            [x, top - 9], [x, bottom + 9], [right + half, y], [left - half, y],
-        ];
+        // Inside first, from the middle outwards; then around.
+        const shares = [0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75];
+        const room = Math.max(0, (right - left) / 2 - half);
+        const inside = [0, -0.3, 0.3].flatMap((up) => shares.map((share) => [x + share * room, y + up * (bottom - top)]));
+        const around = [[x, top - 9], [x, bottom + 9], [right + half, y], [left - half, y]];
+        const candidates = right - left > 2 * half - 12 && bottom - top > line_height ? [...inside, ...around] : [...around, [x, y]];
         const found = placement.find(text, candidates);
         if (found) {
-            marks.push(word(is_cut ? "of-section" : "of-projection", ...found, text, obstacle.name));
+            marks.push(word(is_cut ? "of-section" : "of-projection", ...found, text, text.endsWith("…\u2069") ? obstacle.name : null));
         }
     }
     return marks;

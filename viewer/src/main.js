@@ -19,13 +19,13 @@ function show_trouble(page, error, theme) {
         : `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
     page.replaceChildren(
         h("header", {class: "head"}, h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash"), theme.element)),
-        h("main", null, h("p", {class: "trouble", role: "alert"}, text)), make_foot(null));
+        h("main", null, h("p", {class: "page-trouble", role: "alert"}, text)), make_foot(null));
 }
 
 function assemble(page, model, theme) {
     const clock = model.data ? make_clock(model.data.t_s) : null;
-    const scene = make_scene(model, clock);
     const playback = clock ? make_playback(model, clock) : null;
+    const scene = make_scene(model, clock, playback);
     const plots = clock ? make_plots(model, clock, playback) : null;
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"),
@@ -36,13 +36,12 @@ function assemble(page, model, theme) {
                 h("div", {class: "scene-side"},
                     h("h2", null, clock ? "Flight" : "Scene"),
                     scene.element,
-                    playback?.element,
                     clock ? make_readout(model, clock) : null,
                     h("p", {class: "hint muted screen-only"}, clock
                         ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. "
-                        : "", "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; in focus: + − 0 and W A S D.")),
+                        : "", "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; in focus: + − 0 and W A S D."),
+                    make_obstacle_table(model)),
                 plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time"), plots.element) : null),
-            make_obstacle_table(model),
             make_search(model),
             make_view3d(model, clock, theme),
             make_repeat(model)),
@@ -108,6 +107,7 @@ async function run() {
     });
     Object.freeze(api);
     await painted();
+    performance.mark("downwash-ready");
     return true;
 }
 

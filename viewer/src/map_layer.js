@@ -53,14 +53,15 @@ export function make_color_bar(map) {
         });
         return h("div", {class: `bar only-${theme}`, style: `background: linear-gradient(to right, ${stops.join(", ")})`});
     };
-    const ticks = share.ticks(5);
+    const is_apart = (tick) => Math.min(tick - factor_low, factor_high - tick) > 0.12 * (factor_high - factor_low);
+    const ticks = [factor_low, ...share.ticks(5).filter(is_apart), factor_high];
     return h("div", {class: "color-bar"},
-        h("div", {class: "color-bar-name"}, `Thrust factor of rotor ${map.rotor}, level`),
+        h("div", {class: "color-bar-name"}, "Aero factor: thrust over thrust in free air"),
         h("div", {class: "color-bar-scale", role: "img",
             "aria-label": `Colours from factor ${number(factor_low, ".2f")} to ${number(factor_high, ".2f")}; free air, 1, has the colour of the paper`},
             gradient("light"), gradient("dark"),
-            ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, ".1f")))),
+            ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, tick === factor_low || tick === factor_high ? ".2~f" : ".1f")))),
         h("div", {class: "color-bar-note"},
             h("span", {class: "swatch blocked"}), "not flyable",
-            h("span", {class: "muted"}, `in the rotor's plane, ${place(map.lateral_m)} from the plane of motion`)));
+            h("span", {class: "muted"}, `of rotor ${map.rotor} there, ${place(map.lateral_m)} beside the plane of motion`)));
 }

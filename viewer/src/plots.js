@@ -4,6 +4,7 @@ import {scaleLinear} from "d3-scale";
 import {h, once_a_frame, s, set_attributes} from "./dom.js";
 import {number, seconds} from "./format.js";
 import {plots_of, range_of} from "./series.js";
+import {keep_sized} from "./sizing.js";
 
 const margin = {left: 46, right: 10, top: 6, bottom: 18};
 const height = 92;
@@ -48,6 +49,12 @@ class TimePlot {
     constructor(plot, model) {
         this.plot = plot;
         this.model = model;
+        const ranges = plot.lines.map((each) => range_of(each.values));
+        const greatest = Math.max(...ranges.flatMap(({low, high}) => [Math.abs(low), Math.abs(high)]));
+        this.limits = (plot.limits ?? []).filter(({value, if_near}) => !if_near || Math.abs(value) < 2 * greatest);
+        const all = [...ranges.flatMap(({low, high}) => [low, high]), ...this.limits.map((limit) => limit.value),
+            ...(plot.from_zero ? [0] : [])].filter(Number.isFinite);
+        const far = (plot.limits ?? []).filter((limit) => !this.limits.includes(limit)).map((limit) => limit.value);
         this.values = plot.lines.map(() => h("output", {class: "value"}));
         this.cursor = s("path", {class: "cursor"});
         this.dots = plot.lines.map((each) => s("circle", {class: `dot ${each.style}`, r: 3}));
@@ -56,13 +63,11 @@ class TimePlot {
         this.element = h("figure", {class: "plot", "data-plot": plot.id},
             h("figcaption", null,
                 h("span", {class: "plot-title"}, plot.title, h("span", {class: "unit"}, plot.unit === "1" ? "" : ` [${plot.unit}]`)),
+                far.length > 0 ? h("span", {class: "muted"}, `limit ±${number(Math.abs(far[0]), "~r")}${plot.unit}, beyond the plot`) : null,
                 plot.lines.map((each, index) => h("span", {class: "entry"},
                     plot.lines.length > 1 ? h("span", {class: `key ${each.style}`, "aria-hidden": "true"}) : null,
                     each.name ? h("span", {class: "name"}, each.name) : null, this.values[index]))),
             this.svg);
-        const ranges = plot.lines.map((each) => range_of(each.values));
-        const all = [...ranges.flatMap(({low, high}) => [low, high]), ...(plot.limits ?? []).map((limit) => limit.value),
-            ...(plot.from_zero ? [0] : [])].filter(Number.isFinite);
         const low = Math.min(...all), high = Math.max(...all);
         const pad = high > low ? 0.05 * (high - low) : Math.max(0.05 * Math.abs(high), 0.5);
         this.domain = [plot.from_zero && low === 0 ? 0 : low - pad, high + pad];
@@ -76,8 +81,8 @@ class TimePlot {
         const {x, y} = this;
         const t_s = model.data.t_s;
         const ticks_x = x.ticks(Math.max(3, Math.round(width / 90))), ticks_y = y.ticks(3);
-        const text_y = y.tickFormat(3);
-        const parts = [];
+        const text_y = (v) => y.tickFormat(3)(v).replace("-", "−").replace(/,/g, "\u202f");
+        const parts = [], names = [];
         if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
             parts.push(s("rect", {class: "hold-band", x: x(model.hold_from_s), y: margin.top,
                 width: x(model.end_s) - x(model.hold_from_s), height: bottom - margin.top}));
@@ -88,13 +93,16 @@ class TimePlot {
         parts.push(...ticks_x.map((t, i) => s("text", {class: "tick", x: x(t), y: bottom + 13,
             "text-anchor": i === 0 ? "start" : "middle"}, i === ticks_x.length - 1 && width - x(t) > 40 ? `${t} s` : String(t))));
         parts.push(...ticks_y.map((v) => s("text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"},
-            text_y(v).replace("-", "−"))));
-        for (const limit of plot.limits ?? []) {
+            text_y(v))));
+        for (const limit of this.limits) {
             parts.push(s("path", {class: "limit", d: `M${margin.left} ${y(limit.value)}H${width - margin.right}`}));
             if (limit.name) {
                 const is_high = y(limit.value) < margin.top + 14;
-                parts.push(s("text", {class: "limit-name", x: width - margin.right - 4, y: y(limit.value) + (is_high ? 11 : -4),
-                    "text-anchor": "end"}, `${limit.name} ${number(limit.value, "~r")}${plot.unit === "°" ? "" : "\u00a0"}${plot.unit}`));
+                // At the end where the line is farther away.
+                const values = plot.lines[0].values, last = values[values.length - 1];
+                const is_left = Math.abs(values[0] - limit.value) > Math.abs(last - limit.value);
+                names.push(s("text", {class: "limit-name", x: is_left ? margin.left + 5 : width - margin.right - 4,
+                    y: y(limit.value) + (is_high ? 11 : -4), "text-anchor": is_left ? "start" : "end"}, `${limit.name} ${number(limit.value, "~r")}${plot.unit === "°" ? "" : "\u00a0"}${plot.unit}`));
             }
         }
         plot.lines.forEach((each) => parts.push(s("path", {class: `line ${each.style}`,
@@ -103,7 +111,7 @@ class TimePlot {
             parts.push(s("path", {class: "failure-line", d: `M${x(model.end_s)} ${margin.top}V${bottom}`}));
         }
         this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-        this.still.replaceChildren(...parts);
+        this.still.replaceChildren(...parts, ...names);
     }
 
     show(row) {
@@ -170,17 +178,10 @@ export function make_plots(model, clock, playback) {
         plot.svg.addEventListener("pointerup", () => { dragged = null; });
         plot.svg.addEventListener("pointercancel", () => { dragged = null; });
     }
-    let width = 0;
-    new ResizeObserver(([entry]) => {
-        const next = Math.round(entry.contentRect.width);
-        if (next > 0 && next !== width) {
-            width = next;
-            plots.forEach((plot) => {
-                plot.resize(width);
-                plot.show(clock.row);
-            });
-        }
-    }).observe(plots[0].svg);
+    keep_sized(plots[0].svg, 330, (width) => plots.forEach((plot) => {
+        plot.resize(width);
+        plot.show(clock.row);
+    }));
     const show = once_a_frame(() => plots.forEach((plot) => plot.show(clock.row)));
     let speak_later = 0;
     clock.follow(() => {

@@ -28,10 +28,16 @@ export function make_readout(model, clock) {
             row_of("arm", of("arm_rad", degrees), of("ref_arm_rad", degrees)),
             row_of("pitch", of("pitch_rad", degrees), none()),
             row_of("end effector x", of("ee_x_m", meters), none()),
-            row_of("end effector z", of("ee_z_m", meters), none()),
-            row_of("clearance", of("clearance_m", meters), none()),
-            row_of("power", of("power_w", (v) => quantity(v, ".0f", "W")), none()),
-            row_of("energy so far", of("energy_j", (v) => quantity(v, ",.0f", "J")), none())));
+            row_of("end effector z", of("ee_z_m", meters), none())));
+    const error_at = (row) => Math.hypot(data.x_m[row] - data.ref_x_m[row], data.z_m[row] - data.ref_z_m[row]);
+    const flight = h("table", {class: "numbers"},
+        h("caption", null, "Flight"),
+        h("tbody", null,
+            row_of("tracking error", cell((row) => meters(error_at(row)))),
+            row_of("clearance", of("clearance_m", meters)),
+            row_of("speed", cell((row) => quantity(Math.hypot(data.vx_m_s?.[row], data.vz_m_s?.[row]), ".2f", "m/s"))),
+            row_of("power", of("power_w", (v) => quantity(v, ".0f", "W"))),
+            row_of("energy so far", of("energy_j", (v) => quantity(v, ",.0f", "J")))));
     const count = robot.rotors.positions_m.length;
     const rotors = h("table", {class: "numbers"},
         h("caption", null, "Rotors"),
@@ -47,5 +53,5 @@ export function make_readout(model, clock) {
                 cell((row) => quantity(command[row] * factor[row], ".2f", "N")));
         })));
     clock.follow((row) => updates.forEach((update) => update(row)));
-    return h("div", {class: "readout screen-only", role: "group", "aria-label": "Numbers of the moment shown"}, state, rotors);
+    return h("div", {class: "readout screen-only", role: "group", "aria-label": "Numbers of the moment shown"}, state, flight, rotors);
 }

@@ -2,11 +2,12 @@
 
 import {h, s} from "./dom.js";
 import {forces_note, make_forces} from "./forces.js";
-import {place, quantity, seconds} from "./format.js";
-import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times} from "./labels.js";
+import {point, quantity, seconds} from "./format.js";
+import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times, extent_of, give_way} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
+import {keep_sized} from "./sizing.js";
 import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
 import {View} from "./view.js";
@@ -41,11 +42,11 @@ function describe(model) {
     const obstacles = scene.obstacles.length;
     const cut = scene.obstacles.filter((o) => o.section.length > 0).length;
     const flight = model.data
-        ? ` The flight takes ${seconds(model.end_s)} and ends at x ${place(model.data.x_m[model.rows - 1])}, z ${place(model.data.z_m[model.rows - 1])}.`
+        ? ` The flight takes ${seconds(model.end_s)} and ends at ${point(model.data.x_m[model.rows - 1], model.data.z_m[model.rows - 1])}.`
         : " There is no flight.";
     return `The plane of motion to scale, side view: ${obstacles} obstacles, ${cut} of them cut by the plane; ` +
-        `start at x ${place(start.x_m)}, z ${place(start.z_m)}; ` +
-        goals.map((g, i) => `goal ${goals.length > 1 ? i + 1 : ""} at x ${place(g.x_m)}, z ${place(g.z_m)}`).join(", ") + "." +
+        `start at ${point(start.x_m, start.z_m)}; ` +
+        goals.map((g, i) => `goal ${goals.length > 1 ? i + 1 : ""} at ${point(g.x_m, g.z_m)}`).join(", ") + "." +
         `${flight} The numbers stand in the tables of this page.`;
 }
 
@@ -53,10 +54,18 @@ function describe(model) {
 function draw_trouble(view, x_m, z_m) {
     const [x, y] = view.to_pixels(x_m, z_m);
     return s("g", {class: "trouble-mark", transform: `translate(${x} ${y})`},
-        s("circle", {r: 11}), s("path", {d: "M-5 -5L5 5M-5 5L5 -5"}));
+        s("circle", {r: 10}), s("path", {d: "M-4 -4L4 4M-4 4L4 -4"}));
 }
 
-export function make_scene(model, clock) {
+/** Words stay off the bodies of snapshots. */
+function body_box(view, robot, x_m, z_m) {
+    const {x_m: across, z_m: up} = extent_of(robot.bodies.map((body) => body.outline));
+    const [left, top] = view.to_pixels(x_m + across[0], z_m + up[1]);
+    const [right, bottom] = view.to_pixels(x_m + across[1], z_m + up[0]);
+    return [left, top, right, bottom];
+}
+
+export function make_scene(model, clock, playback) {
     const {data, robot, rotor_groups, scene, solution} = model;
     const view = new View(padded(scene.bounds), data ? opening_of(model) : padded(scene.bounds), describe(model));
     make_hatches(view);
@@ -135,6 +144,9 @@ export function make_scene(model, clock) {
             const [x, y] = view.to_pixels(...trouble);
             placement.reserve([x - 12, y - 12, x + 12, y + 12]);
         }
+        for (const row of shown.snapshots ? rows : []) {
+            placement.reserve(body_box(view, robot, data.x_m[row], data.z_m[row]));
+        }
         marks.push(...draw_place_names(view, model, placement));
         if (shown.snapshots) {
             marks.push(...draw_snapshot_times(view, model, rows, placement));
@@ -143,13 +155,19 @@ export function make_scene(model, clock) {
             groups.names.replaceChildren(...draw_obstacle_names(view, scene.obstacles, placement));
         }
         words.replaceChildren(...marks, ...(groups.names ? [groups.names] : []));
-        forces?.draw();
+        move_words();
     });
+    const move_words = () => {
+        if (forces) {
+            forces.draw();
+            give_way(words, shown.forces ? forces.words : []);
+        }
+    };
     clock?.follow((row) => {
         flown.move(pose_at(data, row));
         ghost.move(reference_at(data, row));
         if (view.width) {
-            forces.draw();
+            move_words();
         }
     });
 
@@ -164,26 +182,25 @@ export function make_scene(model, clock) {
     const element = h("figure", {class: "scene"},
         h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"), switches),
         frame,
+        playback?.element,
         h("figcaption", null,
             model.map ? make_color_bar(model.map) : null,
             make_legend(model, forces)));
-    new ResizeObserver(([entry]) => {
-        const width = Math.round(entry.contentRect.width);
-        if (width > 0 && width !== view.width) {
-            view.resize(width);
-        }
-    }).observe(frame);
+    keep_sized(frame, 690, (width) => view.resize(width));
     return {element, view, shown, flown};
 }
 
 function make_legend(model, forces) {
-    const entry = (key, ...text) => h("span", {class: "entry"}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
+    const entry = (key, text, where = "") => h("span", {class: `entry ${where}`}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
     const beside = model.scene.obstacles.some((o) => o.section.length === 0);
+    const cut = model.scene.obstacles.some((o) => o.section.length > 0);
     return h("div", {class: "legend"},
         model.data ? [entry("snapshots", "flown, vehicle and arm"), entry("snapshots planned", "planned: the reference, drawn level"),
-            entry("flown", "flown path"), entry("planned", "planned path"), entry("tip", "end effector")] : null,
-        model.tree ? h("span", {class: "entry tree-entry"}, h("span", {class: "key tree", "aria-hidden": "true"}), "search tree") : null,
-        entry("section", "obstacle, cut"),
+            // On screens these stand beside their switches.
+            entry("flown", "flown path", "print-only"), entry("planned", "planned path", "print-only"),
+            entry("tip", "end-effector path", "print-only")] : null,
+        model.tree ? entry("tree", "search tree", "print-only tree-entry") : null,
+        cut ? entry("section", "obstacle, cut") : null,
         beside ? entry("projection", "obstacle beside the plane") : null,
         entry("goal", "goal region"),
         model.is_cut_short || (!model.data && model.solution.planning?.obstruction)

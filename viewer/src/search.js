@@ -3,6 +3,7 @@
 import {scaleLinear, scaleLog} from "d3-scale";
 import {h, s} from "./dom.js";
 import {cost, meters, number, quantity, seconds} from "./format.js";
+import {keep_sized} from "./sizing.js";
 import {cause_text} from "./words.js";
 
 const margin = {left: 62, right: 12, top: 10, bottom: 34};
@@ -19,7 +20,7 @@ function draw_costs(svg, model, width) {
     const low = Math.min(...costs), high = Math.max(...costs), pad = 0.08 * (high - low) || 0.05 * high || 1;
     const y = scaleLinear().domain([Math.max(0, low - pad), high + pad]).range([bottom, margin.top]).nice(4);
     const ticks_x = x.ticks().filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
-    const shown_x = ticks_x.length >= 2 ? ticks_x : x.ticks(4);
+    const shown_x = ticks_x.length >= 2 ? ticks_x : [...new Set([x.ticks()[0], ...ticks_x, end])];
     let d = `M${x(steps[0].wall_s)} ${y(costs[0])}`;
     steps.slice(1).forEach((step) => {
         d += `H${x(step.wall_s)}V${y(step.cost)}`;
@@ -31,7 +32,7 @@ function draw_costs(svg, model, width) {
         s("path", {class: "grid-lines", d: [...shown_x.map((t) => `M${x(t)} ${margin.top}V${bottom}`),
             ...y.ticks(4).map((v) => `M${margin.left} ${y(v)}H${right}`)].join("")}),
         s("path", {class: "grid-lines strong", d: minor}),
-        ...shown_x.map((t) => s("text", {class: "tick", x: x(t), y: bottom + 15, "text-anchor": "middle"}, number(t, "~r"))),
+        ...shown_x.map((t) => s("text", {class: "tick", x: x(t), y: bottom + 15, "text-anchor": "middle"}, number(t, ".3~r"))),
         ...y.ticks(4).map((v) => s("text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"}, number(v, v >= 1000 ? ",.0f" : "~r"))),
         s("text", {class: "axis-name", x: (margin.left + right) / 2, y: height - 4, "text-anchor": "middle"}, "wall time of the search [s], logarithmic"),
         s("text", {class: "axis-name", transform: `translate(11 ${(margin.top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle"},
@@ -59,14 +60,7 @@ function make_costs(model) {
                 h("thead", null, h("tr", null, h("th", {scope: "col"}, "after"), h("th", {scope: "col"}, "iteration"), h("th", {scope: "col"}, "cost"))),
                 h("tbody", null, steps.map((step) => h("tr", null, h("td", null, quantity(step.wall_s, ".3f", "s")),
                     h("td", null, number(step.iteration, ",d")), h("td", null, cost(step.cost, model.cost_unit))))))));
-    let width = 0;
-    new ResizeObserver(([entry]) => {
-        const next = Math.round(entry.contentRect.width);
-        if (next > 0 && next !== width) {
-            width = next;
-            draw_costs(svg, model, width);
-        }
-    }).observe(svg);
+    keep_sized(svg, 330, (width) => draw_costs(svg, model, width));
     return card;
 }
 

@@ -7,14 +7,14 @@ const in_degrees = (values) => values.map((v) => (v * 180) / Math.PI);
 function names_of(rotors, count) {
     const numbers = rotors.map((rotor) => rotor + 1);
     if (numbers.length === count && count > 1) {
-        return "all rotors";
+        return "all";
     }
-    return `${numbers.length > 1 ? "rotors" : "rotor"} ${numbers.join(", ")}`;
+    return numbers.join(", ");
 }
 
 /**
  * @typedef {{name: string, values: Float64Array, style: string}} Line
- * @typedef {{name: string, value: number}} Limit
+ * @typedef {{name: string, value: number, if_near?: boolean}} Limit one that is `if_near` may not flatten the line
  * @typedef {{id: string, title: string, unit: string, lines: Line[], limits?: Limit[], from_zero?: boolean,
  *            text: (value: number) => string}} Plot
  * @returns {Plot[]}
@@ -36,13 +36,14 @@ export function plots_of(model) {
             lines: [{name: "", values: error_m, style: "flown"}]},
         {id: "pitch", title: "Pitch, nose down", unit: "°", text: as_degrees,
             lines: [{name: "", values: in_degrees(data.pitch_rad), style: "flown"}],
-            limits: Number.isFinite(tilt) ? [{name: "limit", value: (tilt * 180) / Math.PI}, {name: "", value: (-tilt * 180) / Math.PI}] : []},
-        {id: "arm", title: "Arm angle, 90° hangs down", unit: "°", text: as_degrees,
+            limits: Number.isFinite(tilt) ? [{name: "limit", value: (tilt * 180) / Math.PI, if_near: true},
+                {name: "limit", value: (-tilt * 180) / Math.PI, if_near: true}] : []},
+        {id: "arm", title: "Arm, 90° is down", unit: "°", text: as_degrees,
             lines: [{name: "flown", values: in_degrees(data.arm_rad), style: "flown"},
                 {name: "reference", values: in_degrees(data.ref_arm_rad), style: "planned"}]},
-        {id: "thrust", title: "Thrust command", unit: "N", text: (v) => quantity(v, ".2f", "N"), lines: rotor_lines(model.commands),
+        {id: "thrust", title: "Thrust command by rotor", unit: "N", text: (v) => quantity(v, ".2f", "N"), lines: rotor_lines(model.commands),
             limits: [{name: "greatest", value: robot.rotors.max_thrust_n}, {name: "least", value: robot.rotors.min_thrust_n}]},
-        {id: "factor", title: "Aero factor", unit: "1", text: (v) => number(v, ".3f"), lines: rotor_lines(model.factors)},
+        {id: "factor", title: "Aero factor by rotor", unit: "1", text: (v) => number(v, ".3f"), lines: rotor_lines(model.factors)},
         {id: "clearance", title: "Clearance", unit: "m", from_zero: true, text: meters,
             lines: [{name: "", values: data.clearance_m, style: "flown"}],
             limits: margin > 0 ? [{name: "safety margin", value: margin}] : []},

@@ -1,7 +1,7 @@
 // The head of the page: what came of it, and the key figures.
 
 import {foreign, h} from "./dom.js";
-import {cost, degrees, meters, number, place, quantity, seconds} from "./format.js";
+import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
 import {cause_text, outcome_text, variants} from "./words.js";
 
 /** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
@@ -18,8 +18,8 @@ export function verdict_of(model) {
         const lines = [`${stopped}The planner holds this plan for a solution; flown${flown || " with aerodynamics evaluated directly"}, it ${outcome_text(outcome)}.`];
         if (model.is_cut_short) {
             const last = rows - 1;
-            lines.push(`It breaks off after ${seconds(data.t_s[last])}, with the vehicle at x ${place(data.x_m[last])}, z ${place(data.z_m[last])}, ` +
-                `the end effector at x ${place(data.ee_x_m[last])}, z ${place(data.ee_z_m[last])}` +
+            lines.push(`It breaks off after ${seconds(data.t_s[last])}, with the vehicle at ${point(data.x_m[last], data.z_m[last])}, ` +
+                `the end effector at ${point(data.ee_x_m[last], data.ee_z_m[last])}` +
                 `${Number.isFinite(data.clearance_m[last]) ? ` and ${meters(data.clearance_m[last])} of clearance` : ""}, ` +
                 `${meters(Math.hypot(data.x_m[last] - data.ref_x_m[last], data.z_m[last] - data.ref_z_m[last]))} from its reference.`);
         } else if (outcome === "goal_missed") {
@@ -40,7 +40,7 @@ export function verdict_of(model) {
     }
     if (stop) {
         lines.push(`Of the ways into the goal region the nearest was refused because it ${cause_text(stop.cause)}, ` +
-            `at x ${place(stop.x_m)}, z ${place(stop.z_m)}, arm ${degrees(stop.arm_rad)}, ${place(stop.goal_distance_m)} before the goal region.`);
+            `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ${place(stop.goal_distance_m)} before the goal region.`);
     }
     if (lines.length === 0) {
         const most = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0];
@@ -74,14 +74,17 @@ function figures_of(model) {
     if (execution) {
         add("Duration", seconds(execution.duration_s), model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
         add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
-        add("Least clearance", Number.isFinite(execution.min_clearance_m) ? meters(execution.min_clearance_m) : "no obstacles",
-            report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` : "");
+        add("Least clearance", meters(execution.min_clearance_m),
+            model.scene.obstacles.length === 0 ? "no obstacles" : report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` : "");
         add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "worst over the last second");
-        add("Greatest tracking error", meters(execution.max_tracking_error_m), "position");
+        add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"), execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
     }
+    if (Number.isFinite(planning?.nearest_approach_m)) {
+        add("Nearest approach", meters(planning.nearest_approach_m), "to the goal region");
+    }
     const first = planning?.first_solution_wall_s;
-    add("First solution", Number.isFinite(first) ? `after ${quantity(first, ".3f", "s")}` : "none", `search ${seconds(planning?.wall_s)}`);
+    add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none", `search ${seconds(planning?.wall_s)}`);
     add("Iterations", number(planning?.iterations, ",d"),
         planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges flown` : "");
     return list;
@@ -92,7 +95,7 @@ function goals_list({solution, goals}) {
     if (visits.length < 2) {
         return null;
     }
-    return h("ol", {class: "goal-visits"}, visits.map(({met, error_m}, i) =>
+    return h("ul", {class: "goal-visits"}, visits.map(({met, error_m}, i) =>
         h("li", null, `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
 }
 
