@@ -1,6 +1,7 @@
 // Words in the scene, in pixels above the drawing: they keep their size and get out of each other's way.
 
 import {isolated, s} from "./dom.js";
+import {extent_of} from "./numbers.js";
 import {goal_region} from "./surroundings.js";
 
 const line_height = 14;
@@ -51,13 +52,6 @@ export function give_way(words, moving) {
         const box = box_of(element);
         element.style.visibility = taken.some((other) => overlaps(box, other)) ? "hidden" : "";
     }
-}
-
-/** Extent of rings. */
-export function extent_of(rings) {
-    const points = rings.flat();
-    const x = points.map((p) => p[0]), z = points.map((p) => p[1]);
-    return {x_m: [Math.min(...x), Math.max(...x)], z_m: [Math.min(...z), Math.max(...z)]};
 }
 
 const word = (kind, x, y, text, title) => s("text", {class: `word ${kind}`, x, y, dy: "0.35em", "text-anchor": "middle"},

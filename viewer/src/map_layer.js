@@ -60,7 +60,7 @@ export function make_color_bar(map) {
         h("div", {class: "color-bar-scale", role: "img",
             "aria-label": `Colours from factor ${number(factor_low, ".2f")} to ${number(factor_high, ".2f")}; free air, 1, has the colour of the paper`},
             gradient("light"), gradient("dark"),
-            ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, tick === factor_low || tick === factor_high ? ".2~f" : ".1f")))),
+            ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, Math.abs(10 * tick - Math.round(10 * tick)) < 1e-6 ? ".1f" : ".2f")))),
         h("div", {class: "color-bar-note"},
             h("span", {class: "swatch blocked"}), "not flyable",
             h("span", {class: "muted"}, `of rotor ${map.rotor} there, ${place(map.lateral_m)} beside the plane of motion`)));

@@ -2,6 +2,7 @@
 
 import {s} from "./dom.js";
 import {pose_at, reference_at} from "./model.js";
+import {between_knots, range_of} from "./numbers.js";
 import {vehicle_at} from "./vehicle.js";
 
 /** Rows that a line needs: one per millimetre of way. */
@@ -18,7 +19,21 @@ function line(x_m, z_m) {
     return d;
 }
 
-export const draw_planned = ({data}) => s("path", {class: "path planned", d: line(data.ref_x_m, data.ref_z_m)});
+/** Where a flight broke off, the rest of the plan is taken from its knots. */
+export function draw_planned({data, solution, end_s}) {
+    const knots = solution.plan?.reference ?? [];
+    const from_s = data ? end_s : -Infinity;
+    const x_m = [], z_m = [];
+    for (let i = 1; i < knots.length; ++i) {
+        const start_s = Math.max(from_s, knots[i - 1].t_s);
+        for (let step = 0; step <= 60 && start_s < knots[i].t_s; ++step) {
+            const [x, z] = between_knots(knots[i - 1], knots[i], start_s + (step / 60) * (knots[i].t_s - start_s));
+            x_m.push(x);
+            z_m.push(z);
+        }
+    }
+    return s("path", {class: "path planned", d: (data ? line(data.ref_x_m, data.ref_z_m) : "") + line(x_m, z_m)});
+}
 export const draw_flown = ({data}) => s("path", {class: "path flown", d: line(data.x_m, data.z_m)});
 export const draw_tip = ({data}) => s("path", {class: "path tip", d: line(data.ee_x_m, data.ee_z_m)});
 
@@ -49,8 +64,8 @@ export function snapshot_rows({data, rows, robot}) {
         way[i] = way[i - 1] + Math.hypot(data.ref_x_m[i] - data.ref_x_m[i - 1], data.ref_z_m[i] - data.ref_z_m[i - 1],
             half_arm * (data.ref_arm_rad[i] - data.ref_arm_rad[i - 1]));
     }
-    const reach = robot.bodies.flatMap((body) => body.outline.map(([x]) => x));
-    const width = Math.max(0.3, Math.max(...reach) - Math.min(...reach));
+    const reach = range_of(robot.bodies.flatMap((body) => body.outline.map(([x]) => x)));
+    const width = Math.max(0.3, reach.high - reach.low);
     const steps = Math.min(9, Math.max(1, Math.round(way[rows - 1] / (1.5 * width))));
     const picked = [];
     for (let step = 0, row = 0; step <= steps; ++step) {

@@ -3,7 +3,8 @@
 import {scaleLinear} from "d3-scale";
 import {h, once_a_frame, s, set_attributes} from "./dom.js";
 import {number, seconds} from "./format.js";
-import {plots_of, range_of} from "./series.js";
+import {range_of} from "./numbers.js";
+import {plots_of} from "./series.js";
 import {keep_sized} from "./sizing.js";
 
 const margin = {left: 46, right: 10, top: 6, bottom: 18};

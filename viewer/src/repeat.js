@@ -4,7 +4,7 @@ import d3_licence from "../licences/d3.txt";
 import three_licence from "../licences/three.txt";
 import {foreign, h} from "./dom.js";
 import {place} from "./format.js";
-import {extent_of} from "./labels.js";
+import {extent_of} from "./numbers.js";
 import {variants} from "./words.js";
 
 /** Copying by the clipboard where a page from a file may, else by a selection. */

@@ -3,9 +3,10 @@
 import {h, s} from "./dom.js";
 import {forces_note, make_forces} from "./forces.js";
 import {point, quantity, seconds} from "./format.js";
-import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times, extent_of, give_way} from "./labels.js";
+import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
+import {extent_of, range_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
 import {keep_sized} from "./sizing.js";
 import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
@@ -26,8 +27,8 @@ function opening_of(model) {
         z.push(model.data.z_m[row]);
     }
     const around = (values) => {
-        const low = Math.min(...values) - 1.25 * reach, high = Math.max(...values) + 1.25 * reach;
-        return [low, high];
+        const {low, high} = range_of(values);
+        return [low - 1.25 * reach, high + 1.25 * reach];
     };
     return {x_m: around(x), z_m: around(z)};
 }
@@ -88,8 +89,10 @@ export function make_scene(model, clock, playback) {
         layer("tree", "Search tree", "tree", !data, () => draw_tree(model), under);
     }
     let forces = null;
-    if (data) {
+    if (data || solution.plan) {
         layer("planned", "Planned path", "planned", true, () => [draw_planned(model), ...draw_waypoints(model)]);
+    }
+    if (data) {
         layer("flown", "Flown path", "flown", true, () => draw_flown(model));
         layer("tip", "End-effector path", "tip", true, () => draw_tip(model));
         layer("snapshots", "Snapshots", "snapshots", true, () => draw_snapshots(model, rows));

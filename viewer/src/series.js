@@ -53,19 +53,3 @@ export function plots_of(model) {
     ];
     return plots.filter((plot) => plot.lines.some((line) => line.values.some(Number.isFinite)));
 }
-
-/** Least and greatest finite value, and where. */
-export function range_of(values) {
-    let low = Infinity, high = -Infinity, low_row = 0, high_row = 0;
-    for (let i = 0; i < values.length; ++i) {
-        if (values[i] < low) {
-            low = values[i];
-            low_row = i;
-        }
-        if (values[i] > high) {
-            high = values[i];
-            high_row = i;
-        }
-    }
-    return {low, high, low_row, high_row};
-}

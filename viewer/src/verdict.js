@@ -2,7 +2,7 @@
 
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
-import {cause_text, outcome_text, variants} from "./words.js";
+import {cause_text, knowledge, outcome_text, variants} from "./words.js";
 
 /** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
 export function verdict_of(model) {
@@ -14,16 +14,25 @@ export function verdict_of(model) {
         return {kind: "good", mark: "✓", title: "Solved, and it flies",
             lines: [`${stopped}The flight of the plan${flown} ${outcome_text(outcome)}.`]};
     }
-    if (solution.status === "solved" && execution) {
-        const lines = [`${stopped}The planner holds this plan for a solution; flown${flown || " with aerodynamics evaluated directly"}, it ${outcome_text(outcome)}.`];
+    if (solution.status === "solved" && !execution) {
+        return {kind: "none", mark: "?", title: "A plan was found, but it was not flown", lines: stopped ? [stopped] : []};
+    }
+    if (solution.status === "solved") {
+        const lines = [];
+        const how = `${stopped}Flown${flown || " with aerodynamics evaluated directly"}, it`;
         if (model.is_cut_short) {
             const last = rows - 1;
-            lines.push(`It breaks off after ${seconds(data.t_s[last])}, with the vehicle at ${point(data.x_m[last], data.z_m[last])}, ` +
-                `the end effector at ${point(data.ee_x_m[last], data.ee_z_m[last])}` +
-                `${Number.isFinite(data.clearance_m[last]) ? ` and ${meters(data.clearance_m[last])} of clearance` : ""}, ` +
-                `${meters(Math.hypot(data.x_m[last] - data.ref_x_m[last], data.z_m[last] - data.ref_z_m[last]))} from its reference.`);
+            const clearance = Number.isFinite(data.clearance_m[last]) ? `${meters(data.clearance_m[last])} of clearance and ` : "";
+            lines.push(`${how} breaks off after ${seconds(data.t_s[last])}: the vehicle at ${point(data.x_m[last], data.z_m[last])}, ` +
+                `the end effector at ${point(data.ee_x_m[last], data.ee_z_m[last])}, with ${clearance}` +
+                `${meters(Math.hypot(data.x_m[last] - data.ref_x_m[last], data.z_m[last] - data.ref_z_m[last]))} off its reference.`);
         } else if (outcome === "goal_missed") {
-            lines.push(`The goal error over the last second is ${meters(execution.goal_error_m)}${tolerance_text(model)}.`);
+            lines.push(`${how} ends with a goal error of ${meters(execution.goal_error_m)}${tolerance_text(model)}, worst over the last second.`);
+        } else {
+            lines.push(`${how} ${outcome_text(outcome)}.`);
+        }
+        if (knowledge[solution.variant]) {
+            lines.push(`The search, ${String(solution.variant).toUpperCase()}, reckoned with ${knowledge[solution.variant]}.`);
         }
         return {kind: "bad", mark: "✕", title: `A plan was found, but its flight ${outcome_text(outcome)}`, lines};
     }
@@ -110,7 +119,8 @@ export function make_head(model, theme_switch) {
         report.description ? h("p", {class: "description", tabindex: report.description.length > 400 ? "0" : null}, foreign(report.description)) : null,
         h("p", {class: "facts"},
             fact("variant", h("span", {title: variants[solution.variant] ?? null}, String(solution.variant).toUpperCase())),
-            fact("algorithm", solution.algorithm), fact("objective", model.objective), fact("seed", String(solution.seed))));
+            fact("algorithm", solution.algorithm), fact("objective", model.objective), fact("seed", String(solution.seed)),
+            model.goals.length > 1 ? fact("goals", `${model.goals.length}, ${report.goal_order === "any_of" ? "any of them" : "in turn"}`) : null));
 }
 
 export function make_verdict(model) {

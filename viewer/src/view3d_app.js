@@ -2,6 +2,8 @@
 
 import {OrbitControls} from "orbit-controls";
 import * as three from "three";
+import {pose_at} from "./model.js";
+import {range_of} from "./numbers.js";
 
 const palettes = {
     light: {paper: "#f7f8f9", obstacle: "#a9b0b8", edge: "#5d6770", vehicle: "#30363d", flown: "#c2510a", planned: "#30363d", tip: "#00805e", goal: "#a3397a"},
@@ -98,10 +100,10 @@ function draw_vehicle(robot, paint) {
     body.add(link);
     return {
         body,
-        move(data, row) {
-            body.position.set(data.x_m[row], 0, data.z_m[row]);
-            body.rotation.y = data.pitch_rad[row];
-            link.rotation.y = data.arm_rad[row];
+        move({x_m, z_m, pitch_rad, arm_rad}) {
+            body.position.set(x_m, 0, z_m);
+            body.rotation.y = pitch_rad;
+            link.rotation.y = arm_rad;
         },
     };
 }
@@ -133,16 +135,16 @@ export function start(stage, model, clock) {
         ball.position.set(goal.x_m ?? 0, 0, goal.z_m ?? 0);
         world.add(ball);
     }
-    let vehicle = null;
+    const vehicle = draw_vehicle(robot, paint);
+    vehicle.move({pitch_rad: 0, ...(model.solution.planning?.obstruction ?? model.start)});
+    world.add(vehicle.body);
     if (data) {
         world.add(draw_line(data.x_m, data.z_m, "flown", paint, false), draw_line(data.ref_x_m, data.ref_z_m, "planned", paint, true),
             draw_line(data.ee_x_m, data.ee_z_m, "tip", paint, false));
-        vehicle = draw_vehicle(robot, paint);
-        world.add(vehicle.body);
     }
 
-    const xs = data ? [Math.min(...data.x_m), Math.max(...data.x_m)] : scene.bounds.x_m;
-    const zs = data ? [Math.min(...data.z_m), Math.max(...data.z_m)] : scene.bounds.z_m;
+    const extent = (values) => [range_of(values).low, range_of(values).high];
+    const xs = data ? extent(data.x_m) : scene.bounds.x_m, zs = data ? extent(data.z_m) : scene.bounds.z_m;
     const target = new three.Vector3((xs[0] + xs[1]) / 2, 0, (zs[0] + zs[1]) / 2);
     const far = 0.75 * Math.max(6, xs[1] - xs[0], zs[1] - zs[0]);
     const camera = new three.PerspectiveCamera(45, 2, 0.05, 40 * far);
@@ -208,7 +210,7 @@ export function start(stage, model, clock) {
     }).observe(stage);
     home();
     clock?.follow((row) => {
-        vehicle.move(data, row);
+        vehicle.move(pose_at(data, row));
         render();
     });
     return {

@@ -24,6 +24,13 @@ export const outcomes = {
 
 export const outcome_text = (outcome) => outcomes[outcome] ?? String(outcome).replace(/_/g, " ");
 
+/** What the search reckoned with. */
+export const knowledge = {
+    "mp-arm": "geometry only",
+    "mp-arm-da": "dynamics in free air, not aerodynamics",
+    "mp-arm-ada": "dynamics and aerodynamics",
+};
+
 export const variants = {
     "mp-arm": "the tree knows geometry only",
     "mp-arm-da": "the tree flies, in free air",
