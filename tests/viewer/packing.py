@@ -1,4 +1,4 @@
-"""The packed parts of a page's data, written independently of the program: docs of the format are in viewer/README.md."""
+"""The packed parts of a page's data, written independently of the program that reads and the one that writes them."""
 
 import base64
 import json

@@ -11,8 +11,11 @@ import csv
 import json
 import math
 import os
+import sys
 
 import numpy as np
+
+sys.dont_write_bytecode = True
 
 from packing import flight_json, packed, tree_json, write_page
 from shapes import ball, box, pipe, rectangle, wedge

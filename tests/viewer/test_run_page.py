@@ -207,33 +207,65 @@ class Moving(BrowserTest):
         self.assertAlmostEqual(after, up, places=6)  # equal axes
         self.assert_tip_is_where_the_flight_says(columns)
 
-    def test_the_wheel_zooms_a_scene_in_focus_and_scrolls_the_page_before(self):
+    def mouse(self, kind, x, y, **more):
+        self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": kind, "x": x, "y": y, "button": "none" if kind == "mouseWheel" else "left",
+            "buttons": 0 if kind in ("mouseReleased", "mouseWheel") else 1, "clickCount": 1, **more})
+
+    def drag(self, x, y, to_x, to_y):
+        self.mouse("mousePressed", x, y)
+        for share in (0.3, 0.6, 1):
+            self.mouse("mouseMoved", x + share * (to_x - x), y + share * (to_y - y))
+        self.mouse("mouseReleased", to_x, to_y)
+        self.browser.settle()
+
+    def test_the_mouse_moves_the_scene_and_zooms_it_once_it_was_clicked(self):
         self.open("solved")
+        self.js("document.querySelector('.scene-svg').scrollIntoView()")
         width = "const [a] = downwash.pixels(0, 9), [b] = downwash.pixels(1, 9); return b - a"
-        wheel = ("const svg = document.querySelector('.scene-svg'), b = svg.getBoundingClientRect();"
-                 "const e = new WheelEvent('wheel', {deltaY: -200, clientX: b.left + 300, clientY: b.top + 150, bubbles: true, cancelable: true});"
-                 "svg.dispatchEvent(e); return e.defaultPrevented")
-        before = self.js(width)
-        self.assertFalse(self.js(wheel))
-        self.js("document.querySelector('.scene-svg').focus()")
-        self.assertTrue(self.js(wheel))
+        x, y = self.middle_of(".scene-svg")
+        before, scroll = self.js(width), self.js("return scrollY")
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+        time.sleep(0.3)
+        self.assertEqual(self.js(width), before)  # the page scrolls
+        self.assertLess(self.js("return scrollY"), scroll)
+        x, y = self.middle_of(".scene-svg")
+        at = self.js("return downwash.pixels(0, 9)")
+        self.drag(x, y, x + 60, y - 25)
+        moved = self.js("return downwash.pixels(0, 9)")
+        self.assertAlmostEqual(moved[0] - at[0], 60, delta=1)
+        self.assertAlmostEqual(moved[1] - at[1], -25, delta=1)
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+        time.sleep(0.3)
         self.browser.settle()
         self.assertGreater(self.js(width), 1.1 * before)
+        self.js("[...document.querySelectorAll('.zoom-tools button')].find(b => b.textContent === 'Flight').click()")
+        self.browser.settle()
+        self.assertAlmostEqual(self.js(width), before, places=6)
 
-    def test_a_press_in_a_plot_moves_vehicle_and_slider(self):
+    def test_a_drag_in_a_plot_moves_vehicle_and_slider(self):
         columns = self.open("solved")
         for plot, share in (("tracking", 0.3), ("factor", 0.7)):
-            self.js("const svg = document.querySelector(`[data-plot=${arguments[0]}] svg`), b = svg.getBoundingClientRect();"
-                    "const at = {clientX: b.left + arguments[1] * b.width, clientY: b.top + 20, button: 0, pointerId: 1, bubbles: true};"
-                    "svg.setPointerCapture = () => {}; svg.dispatchEvent(new PointerEvent('pointerdown', at));"
-                    "svg.dispatchEvent(new PointerEvent('pointerup', at))", plot, share)
-            self.browser.settle()
+            self.js("document.querySelector(`[data-plot=${arguments[0]}]`).scrollIntoView({block: 'center'})", plot)
+            left, top, width = self.js("const b = document.querySelector(`[data-plot=${arguments[0]}] svg`).getBoundingClientRect();"
+                                       "return [b.left, b.top + 30, b.width]", plot)
+            self.drag(left + 0.5 * width, top, left + share * width, top + 5)
             row = self.js("return downwash.row")
             self.assertAlmostEqual(row / self.js("return downwash.rows"), share, delta=0.1)
             self.assertEqual(int(self.js("return document.querySelector('input.time').value")), row)
             self.assert_tip_is_where_the_flight_says(columns)
             cursors = self.js("return [...document.querySelectorAll('.cursor')].map(c => c.getAttribute('d').split(' ')[0])")
             self.assertEqual(len(set(cursors)), 1)
+            drawn = self.middle_of(f"[data-plot={plot}] .cursor")[0]
+            self.assertAlmostEqual(drawn, left + share * width, delta=2)
+
+    def test_the_pointer_says_what_is_below_it(self):
+        self.open("solved")
+        self.js("document.querySelector('.scene-svg').scrollIntoView()")
+        for place, words in (((-3, 9.5), "factor 1.0"), ((0, 10.5), "not flyable")):
+            x, y = self.js("return downwash.pixels(...arguments)", *place)
+            self.mouse("mouseMoved", x, y, buttons=0, button="none")
+            self.assertIn(words, self.js("return document.querySelector('.pointer-text').textContent"))
 
     def test_keys(self):
         self.open("solved")

@@ -82,7 +82,8 @@ export function draw_obstacle_names(view, obstacles, placement) {
         const candidates = right - left > 2 * half - 12 && bottom - top > line_height ? [...inside, ...around] : [...around, [x, y]];
         const found = placement.find(text, candidates);
         if (found) {
-            marks.push(word(is_cut ? "of-section" : "of-projection", ...found, text, text.endsWith("…\u2069") ? obstacle.name : null));
+            const is_inside = found[1] > top && found[1] < bottom && found[0] > left && found[0] < right;
+            marks.push(word(`${is_cut ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text, text.endsWith("…\u2069") ? obstacle.name : null));
         }
     }
     return marks;

@@ -37,9 +37,11 @@ function assemble(page, model, theme) {
                     h("h2", null, clock ? "Flight" : "Scene"),
                     scene.element,
                     clock ? make_readout(model, clock) : null,
-                    h("p", {class: "hint muted screen-only"}, clock
+                    h("p", {class: "hint for-keys muted screen-only"}, clock
                         ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. "
                         : "", "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; in focus: + − 0 and W A S D."),
+                    h("p", {class: "hint for-fingers muted screen-only"}, "Two fingers zoom and move the scene",
+                        clock ? "; a finger along a plot moves the vehicle." : "."),
                     make_obstacle_table(model)),
                 plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time"), plots.element) : null),
             make_search(model),

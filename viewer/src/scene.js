@@ -8,6 +8,7 @@ import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
 import {extent_of, range_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
+import {make_pointer_text} from "./pointer.js";
 import {keep_sized} from "./sizing.js";
 import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
@@ -181,7 +182,7 @@ export function make_scene(model, clock, playback) {
         button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
         data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
         button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
-    const frame = h("div", {class: "scene-frame"}, view.svg, tools);
+    const frame = h("div", {class: "scene-frame"}, view.svg, tools, make_pointer_text(view, model.map));
     const element = h("figure", {class: "scene"},
         h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"), switches),
         frame,
