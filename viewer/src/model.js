@@ -1,0 +1,126 @@
+// What the rest of the page works on: the data, checked and decoded once.
+
+import {Trouble, decode_flight, decode_map, decode_tree} from "./decode.js";
+
+export const schema = "downwash/report/v1";
+
+/** The object between the tags, or a Trouble that says why there is none. */
+export function read_report(text) {
+    let report;
+    try {
+        report = JSON.parse(text);
+    } catch (error) {
+        throw new Trouble(`The data of this page cannot be read: the file is damaged (${error.message}).`);
+    }
+    if (report?.downwash === "run") {
+        throw new Trouble("This page is an empty template: no run was put into it.");
+    }
+    if (report?.schema !== schema) {
+        throw new Trouble(`The data of this page is “${report?.schema ?? "without a schema"}”; this page shows ${schema}.`);
+    }
+    for (const key of ["solution", "scene", "robot", "start", "goals"]) {
+        if (typeof report[key] !== "object" || report[key] === null) {
+            throw new Trouble(`The data of this page is incomplete: “${key}” is missing.`);
+        }
+    }
+    return report;
+}
+
+const needed_columns = [
+    "t_s", "ref_x_m", "ref_z_m", "ref_arm_rad", "x_m", "z_m", "pitch_rad", "arm_rad",
+    "clearance_m", "ee_x_m", "ee_z_m", "power_w", "energy_j",
+];
+
+/** Rotors that coincide in the plane of motion, as indices into the robot's list. */
+function group_rotors(positions) {
+    const groups = new Map();
+    positions.forEach(([x, , z], index) => {
+        const key = `${x} ${z}`;
+        if (!groups.has(key)) {
+            groups.set(key, {x_m: x, z_m: z, rotors: []});
+        }
+        groups.get(key).rotors.push(index);
+    });
+    return [...groups.values()];
+}
+
+/** What each rotor's columns are, alike ones put together: lines that would cover each other are one line. */
+function rotor_lines(data, count, suffix) {
+    const lines = [];
+    for (let rotor = 0; rotor < count; ++rotor) {
+        const values = data[`rotor_${rotor + 1}_${suffix}`];
+        if (!values) {
+            continue;
+        }
+        const twin = lines.find((line) => line.values === values);
+        if (twin) {
+            twin.rotors.push(rotor);
+        } else {
+            lines.push({rotors: [rotor], values});
+        }
+    }
+    return lines;
+}
+
+function unit_of(objective) {
+    return {energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? "";
+}
+
+function objective_text(objective) {
+    return typeof objective === "string"
+        ? objective
+        : Object.entries(objective ?? {}).map(([name, weight]) => `${weight} × ${name}`).join(" + ");
+}
+
+/** @param {any} report */
+export async function build_model(report) {
+    const [data, tree, levels] = await Promise.all([
+        report.flight ? decode_flight(report.flight) : null,
+        report.tree ? decode_tree(report.tree) : null,
+        report.map ? decode_map(report.map) : null,
+    ]);
+    const rows = data ? report.flight.rows : 0;
+    if (data) {
+        const missing = needed_columns.filter((name) => !data[name]);
+        if (missing.length > 0 || rows < 1) {
+            throw new Trouble(`The flight of this page lacks ${missing.join(", ") || "rows"}.`);
+        }
+    }
+    const {solution, robot} = report;
+    const knots = solution.plan?.reference ?? [];
+    const outcome = solution.execution?.outcome ?? null;
+    return {
+        report, solution, robot, data, rows, tree,
+        scene: report.scene,
+        map: levels ? {...report.map, levels} : null,
+        goals: report.goals,
+        start: report.start,
+        outcome,
+        is_good: solution.status === "solved" && outcome === "ok",
+        /** The flight ended before its time: its last row is the offending one. */
+        is_cut_short: data !== null && ["collision", "unstable", "left_flyable_area"].includes(outcome),
+        hold_from_s: knots.length > 0 ? knots[knots.length - 1].t_s : null,
+        cost_unit: unit_of(solution.objective),
+        objective: objective_text(solution.objective),
+        rotor_groups: group_rotors(robot.rotors.positions_m),
+        commands: data ? rotor_lines(data, robot.rotors.positions_m.length, "cmd_n") : [],
+        factors: data ? rotor_lines(data, robot.rotors.positions_m.length, "aero_factor") : [],
+        end_s: data ? data.t_s[rows - 1] : 0,
+    };
+}
+
+/** Vehicle, arm and reference in row `row`. */
+export function pose_at(data, row) {
+    return {x_m: data.x_m[row], z_m: data.z_m[row], pitch_rad: data.pitch_rad[row], arm_rad: data.arm_rad[row]};
+}
+
+/** The reference has no pitch: it is drawn level. */
+export function reference_at(data, row) {
+    return {x_m: data.ref_x_m[row], z_m: data.ref_z_m[row], pitch_rad: 0, arm_rad: data.ref_arm_rad[row]};
+}
+
+/** A point (a, c) of the body frame in the plane of motion. */
+export function to_plane(pose, [a, c]) {
+    const cos = Math.cos(pose.pitch_rad), sin = Math.sin(pose.pitch_rad);
+    return [pose.x_m + a * cos + c * sin, pose.z_m - a * sin + c * cos];
+}

@@ -1,0 +1,214 @@
+// The scene: what can be switched on and off, and the vehicle at the moment shown.
+
+import {h, s} from "./dom.js";
+import {forces_note, make_forces} from "./forces.js";
+import {point, quantity, seconds} from "./format.js";
+import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way} from "./labels.js";
+import {draw_map, make_color_bar} from "./map_layer.js";
+import {pose_at, reference_at} from "./model.js";
+import {extent_of, range_of} from "./numbers.js";
+import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
+import {make_pointer_text} from "./pointer.js";
+import {keep_sized} from "./sizing.js";
+import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
+import {make_vehicle, vehicle_at} from "./vehicle.js";
+import {View} from "./view.js";
+
+/** What matters: start, goals, flight, with the reach of the arm; all of the bounds where nothing flew. */
+function opening_of(model) {
+    const {bounds} = model.scene;
+    if (!model.data) {
+        return bounds;
+    }
+    const reach = model.robot.arm.length_m;
+    const regions = model.goals.map((goal) => goal_region(goal, bounds));
+    const x = [model.start.x_m, ...regions.map((r) => r.x_m)], z = [model.start.z_m, ...regions.map((r) => r.z_m)];
+    for (let row = 0; row < model.rows; row += 5) {
+        x.push(model.data.x_m[row]);
+        z.push(model.data.z_m[row]);
+    }
+    const around = (values) => {
+        const {low, high} = range_of(values);
+        return [low - 1.25 * reach, high + 1.25 * reach];
+    };
+    return {x_m: around(x), z_m: around(z)};
+}
+
+function padded({x_m, z_m}) {
+    const pad = 0.04 * Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]);
+    return {x_m: [x_m[0] - pad, x_m[1] + pad], z_m: [z_m[0] - pad, z_m[1] + pad]};
+}
+
+function describe(model) {
+    const {scene, start, goals} = model;
+    const obstacles = scene.obstacles.length;
+    const cut = scene.obstacles.filter((o) => o.section.length > 0).length;
+    const flight = model.data
+        ? ` The flight takes ${seconds(model.end_s)} and ends at ${point(model.data.x_m[model.rows - 1], model.data.z_m[model.rows - 1])}.`
+        : " There is no flight.";
+    return `The plane of motion to scale, side view: ${obstacles} obstacles, ${cut} of them cut by the plane; ` +
+        `start at ${point(start.x_m, start.z_m)}; ` +
+        goals.map((g, i) => `goal ${goals.length > 1 ? i + 1 : ""} at ${point(g.x_m, g.z_m)}`).join(", ") + "." +
+        `${flight} The numbers stand in the tables of this page.`;
+}
+
+/** A cross where the flight broke off or the search was stopped. */
+function draw_trouble(view, x_m, z_m) {
+    const [x, y] = view.to_pixels(x_m, z_m);
+    return s("g", {class: "trouble-mark", transform: `translate(${x} ${y})`},
+        s("circle", {r: 10}), s("path", {d: "M-4 -4L4 4M-4 4L4 -4"}));
+}
+
+/** Words stay off the bodies of snapshots. */
+function body_box(view, robot, x_m, z_m) {
+    const {x_m: across, z_m: up} = extent_of(robot.bodies.map((body) => body.outline));
+    const [left, top] = view.to_pixels(x_m + across[0], z_m + up[1]);
+    const [right, bottom] = view.to_pixels(x_m + across[1], z_m + up[0]);
+    return [left, top, right, bottom];
+}
+
+export function make_scene(model, clock, playback) {
+    const {data, robot, rotor_groups, scene, solution} = model;
+    const view = new View(padded(scene.bounds), data ? opening_of(model) : padded(scene.bounds), describe(model));
+    make_hatches(view);
+    const rows = data ? snapshot_rows(model) : [];
+    const obstruction = solution.planning?.obstruction ?? null;
+
+    const surroundings = s("g", null, draw_bounds(scene.bounds), draw_obstacles(scene.obstacles));
+    const current = s("g", {class: "current"});
+    const words = s("g", {class: "words"}), moving_words = s("g", {class: "moving-words"});
+    view.overlay.append(words, moving_words);
+
+    /** @type {{id: string, name: string, swatch: string, on: boolean, draw: () => SVGElement | SVGElement[], into: SVGElement}[]} */
+    const layers = [];
+    const under = s("g"), over = s("g");
+    const layer = (id, name, swatch, on, draw, into = over) => layers.push({id, name, swatch, on, draw, into});
+    if (model.map) {
+        layer("map", "Aero map", "map", true, () => draw_map(model.map), view.raster);
+    }
+    if (model.tree) {
+        layer("tree", "Search tree", "tree", !data, () => draw_tree(model), under);
+    }
+    let forces = null;
+    if (data || solution.plan) {
+        layer("planned", "Planned path", "planned", true, () => [draw_planned(model), ...draw_waypoints(model)]);
+    }
+    if (data) {
+        layer("flown", "Flown path", "flown", true, () => draw_flown(model));
+        layer("tip", "End-effector path", "tip", true, () => draw_tip(model));
+        layer("snapshots", "Snapshots", "snapshots", true, () => draw_snapshots(model, rows));
+        forces = make_forces(model, clock, view);
+        layer("forces", "Thrust", "forces", true, () => forces.element, moving_words);
+    }
+    if (scene.obstacles.length > 0) {
+        layer("names", "Obstacle names", "names", true, () => s("g"), words);
+    }
+    view.world.append(surroundings, under, draw_start(model), draw_goals(model), over, current);
+
+    const shown = {};
+    const groups = {};
+    const switches = layers.map(({id, name, swatch, on, draw, into}) => {
+        groups[id] = s("g", {"data-layer": id});
+        into.append(groups[id]);
+        const show = (is_on) => {
+            shown[id] = is_on;
+            if (is_on && !groups[id].hasChildNodes()) {
+                groups[id].append(...[draw()].flat());
+            }
+            groups[id].style.display = is_on ? "" : "none";
+        };
+        show(on);
+        return h("label", {class: "layer"},
+            h("input", {type: "checkbox", "data-toggle": id, checked: on, onchange: ({target}) => {
+                show(target.checked);
+                view.redraw_soon();
+            }}),
+            h("span", {class: `key ${swatch}`, "aria-hidden": "true"}), name);
+    });
+
+    const flown = data ? make_vehicle(robot, rotor_groups, "flown now") : null;
+    const ghost = data ? make_vehicle(robot, rotor_groups, "planned now") : null;
+    if (data) {
+        current.append(ghost.element, flown.element);
+    } else if (obstruction) {
+        current.append(vehicle_at(robot, rotor_groups, "obstructed",
+            {x_m: obstruction.x_m, z_m: obstruction.z_m, pitch_rad: 0, arm_rad: obstruction.arm_rad}));
+    }
+
+    view.follow(() => {
+        const scale = view.pixels_per_m;
+        view.svg.style.setProperty("--arm-width", `${Math.max(2.2, 2 * robot.arm.radius_m * scale)}px`);
+        view.svg.style.setProperty("--disc-width", `${Math.min(4, Math.max(1.6, 0.035 * scale))}px`);
+        const placement = new Placement(view.inside);
+        const marks = [];
+        const trouble = model.is_cut_short ? [data.x_m[model.rows - 1], data.z_m[model.rows - 1]]
+            : !data && obstruction ? [obstruction.x_m, obstruction.z_m] : null;
+        if (trouble) {
+            marks.push(draw_trouble(view, ...trouble));
+            const [x, y] = view.to_pixels(...trouble);
+            placement.reserve([x - 12, y - 12, x + 12, y + 12]);
+        }
+        for (const row of shown.snapshots ? rows : []) {
+            placement.reserve(body_box(view, robot, data.x_m[row], data.z_m[row]));
+        }
+        marks.push(...draw_place_names(view, model, placement));
+        if (shown.snapshots) {
+            marks.push(...draw_snapshot_times(view, model, rows, placement));
+        }
+        if (shown.names) {
+            groups.names.replaceChildren(...draw_obstacle_names(view, scene.obstacles, placement));
+        }
+        words.replaceChildren(...marks, ...(groups.names ? [groups.names] : []));
+        move_words();
+    });
+    const move_words = () => {
+        if (forces) {
+            forces.draw();
+            give_way(words, shown.forces ? forces.words : []);
+        }
+    };
+    clock?.follow((row) => {
+        flown.move(pose_at(data, row));
+        ghost.move(reference_at(data, row));
+        if (view.width) {
+            move_words();
+        }
+    });
+
+    const button = (text, label, act) => h("button", {type: "button", class: "small", title: label, "aria-label": label, onclick: act}, text);
+    const everything = padded(scene.bounds);
+    const tools = h("div", {class: "zoom-tools screen-only", role: "group", "aria-label": "Zoom"},
+        button("+", "Zoom in", () => view.zoom_by(1.4)),
+        button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
+        data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
+        button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
+    const frame = h("div", {class: "scene-frame"}, view.svg, tools, make_pointer_text(view, model.map));
+    const element = h("figure", {class: "scene"},
+        h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"), switches),
+        frame,
+        playback?.element,
+        h("figcaption", null,
+            model.map ? make_color_bar(model.map) : null,
+            make_legend(model, forces)));
+    keep_sized(frame, 690, (width) => view.resize(width));
+    return {element, view, shown, flown};
+}
+
+function make_legend(model, forces) {
+    const entry = (key, text, where = "") => h("span", {class: `entry ${where}`}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
+    const beside = model.scene.obstacles.some((o) => o.section.length === 0);
+    const cut = model.scene.obstacles.some((o) => o.section.length > 0);
+    return h("div", {class: "legend"},
+        model.data ? [entry("snapshots", "flown, vehicle and arm"), entry("snapshots planned", "planned: the reference, drawn level"),
+            // On screens these stand beside their switches.
+            entry("flown", "flown path", "print-only"), entry("planned", "planned path", "print-only"),
+            entry("tip", "end-effector path", "print-only")] : null,
+        model.tree ? entry("tree", "search tree", "print-only tree-entry") : null,
+        cut ? entry("section", "obstacle, cut") : null,
+        beside ? entry("projection", "obstacle beside the plane") : null,
+        entry("goal", "goal region"),
+        model.is_cut_short || (!model.data && model.solution.planning?.obstruction)
+            ? entry("trouble", model.data ? "where the flight breaks off" : "nearest way to the goal, refused here") : null,
+        forces ? h("span", {class: "note"}, forces_note(model), ` ${quantity(10, "d", "N")} are `,
+            `${quantity(10 * forces.meters_per_n, ".2f", "m")} long.`) : null);
+}

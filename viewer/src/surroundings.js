@@ -1,0 +1,77 @@
+// Obstacles, bounds, goals and the start: what stands still.
+
+import {s} from "./dom.js";
+import {ring, vehicle_at} from "./vehicle.js";
+
+const rings = (list) => list.map(ring).join("");
+
+/** Hatching keeps its width in pixels whatever the zoom. */
+export function make_hatches(view) {
+    const hatch = (id, step, angle) => s("pattern", {id, width: step, height: step, patternUnits: "userSpaceOnUse"},
+        s("path", {class: id, d: `M0 ${step / 2}H${step}`}));
+    const beside = hatch("hatch-beside", 6), blocked = hatch("hatch-blocked", 5);
+    view.svg.querySelector("defs").append(beside, blocked);
+    view.follow(() => {
+        const unit = 1 / view.pixels_per_m;
+        beside.setAttribute("patternTransform", `scale(${unit}) rotate(45)`);
+        blocked.setAttribute("patternTransform", `scale(${unit}) rotate(-45)`);
+    });
+}
+
+export function draw_obstacles(obstacles) {
+    const beside = obstacles.map((obstacle) =>
+        s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
+    const cut = obstacles.filter((obstacle) => obstacle.section.length > 0).map((obstacle) =>
+        s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}));
+    return s("g", {class: "obstacles"}, beside, cut);
+}
+
+export function draw_bounds({x_m, z_m}) {
+    return s("rect", {class: "bounds", x: x_m[0], y: z_m[0], width: x_m[1] - x_m[0], height: z_m[1] - z_m[0]});
+}
+
+/** Where a goal is, free coordinates drawn over the whole extent; null where it has no tolerance. */
+export function goal_region(goal, bounds) {
+    const is_free_x = !Number.isFinite(goal.x_m), is_free_z = !Number.isFinite(goal.z_m);
+    const half_x = is_free_x ? (bounds.x_m[1] - bounds.x_m[0]) / 2 : goal.tolerance_x_m;
+    const half_z = is_free_z ? (bounds.z_m[1] - bounds.z_m[0]) / 2 : goal.tolerance_z_m;
+    const x_m = is_free_x ? (bounds.x_m[0] + bounds.x_m[1]) / 2 : goal.x_m;
+    const z_m = is_free_z ? (bounds.z_m[0] + bounds.z_m[1]) / 2 : goal.z_m;
+    const shape = goal.region ?? (half_x === half_z ? "disc" : "rectangle");
+    return {x_m, z_m, half_x, half_z, shape: is_free_x || is_free_z ? "rectangle" : shape};
+}
+
+function draw_region({x_m, z_m, half_x, half_z, shape}) {
+    if (!(half_x > 0) || !(half_z > 0)) {
+        return s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: 0.08});
+    }
+    return shape === "disc"
+        ? s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: half_x})
+        : s("rect", {class: "goal-region", x: x_m - half_x, y: z_m - half_z, width: 2 * half_x, height: 2 * half_z});
+}
+
+/** The way an end effector has to point at the goal: a shaft that ends at the centre. */
+function draw_direction({x_m, z_m, direction_rad}) {
+    const x = Math.cos(direction_rad), z = -Math.sin(direction_rad);
+    return s("path", {class: "goal-direction", d: `M${x_m - 0.7 * x} ${z_m - 0.7 * z}L${x_m} ${z_m}`});
+}
+
+export function draw_goals(model) {
+    const {goals, robot, rotor_groups} = model;
+    return s("g", {class: "goals"}, goals.map((goal) => {
+        const region = goal_region(goal, model.scene.bounds);
+        const parts = [draw_region(region)];
+        if (goal.kind === "state") {
+            parts.push(vehicle_at(robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
+                {x_m: region.x_m, z_m: region.z_m, pitch_rad: 0, arm_rad: goal.arm_rad ?? 0}));
+        } else if (Number.isFinite(goal.direction_rad)) {
+            parts.push(draw_direction(goal));
+        }
+        return s("g", null, parts);
+    }));
+}
+
+export function draw_start({start, robot, rotor_groups}) {
+    return s("g", {class: "start"}, vehicle_at(robot, rotor_groups, "wanted at-start",
+        {x_m: start.x_m, z_m: start.z_m, pitch_rad: 0, arm_rad: start.arm_rad}));
+}
