@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/scene/shapes.hpp"
 
 namespace downwash {
@@ -18,9 +19,9 @@ struct Surface {
 
 /// The surface of an obstacle in the world frame. Round shapes become polyhedra whose corners lie on them: cylinders of
 /// 48 sides, spheres of 24 rings.
-[[nodiscard]] Surface surface_of(const Obstacle& obstacle);
+[[nodiscard]] DOWNWASH_EXPORT Surface surface_of(const Obstacle& obstacle);
 
 /// That of a vertical or slanting rod of a robot: a cylinder of 24 sides from the origin along x.
-[[nodiscard]] Surface rod_surface(double length_m, double radius_m);
+[[nodiscard]] DOWNWASH_EXPORT Surface rod_surface(double length_m, double radius_m);
 
 }  // namespace downwash

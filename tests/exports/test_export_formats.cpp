@@ -1,0 +1,194 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <sstream>
+#include <string>
+
+#include "../support/solved_run.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/exports/export_format.hpp"
+#include "downwash/exports/setpoints.hpp"
+
+using namespace downwash;
+using nlohmann::json;
+
+namespace {
+
+/// One run for all tests, in a plane that is not the world's.
+const RunRecord& record() {
+    static const RunRecord run = [] {
+        const test::SolvedRun solved;
+        return read_run(solved.folder());
+    }();
+    return run;
+}
+
+std::string written(const char* format, const RunRecord& run = record(), const ExportSettings& settings = {}) {
+    for (const ExportFormat& one : export_formats()) {
+        if (one.name == format) {
+            return exported(run, one, settings);
+        }
+    }
+    throw std::logic_error("there is no such format");
+}
+
+std::vector<double> numbers_of(const pugi::xml_node& array) {
+    std::istringstream text(array.text().get());
+    std::vector<double> numbers;
+    for (double number = 0; text >> number;) {
+        numbers.push_back(number);
+    }
+    return numbers;
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t place) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + place, sizeof(word));
+    return word;
+}
+
+ExportSettings at(double latitude_deg, double longitude_deg, double bearing_deg) {
+    ExportSettings settings;
+    settings.origin = {latitude_deg, longitude_deg, 100, bearing_deg};
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("ROS messages hold the set-points of vehicle and arm at the same times") {
+    ExportSettings settings;
+    settings.rate_hz = 20;
+    const json messages = json::parse(written("ros", record(), settings));
+    const json& vehicle = messages["multi_dof_joint_trajectory"]["points"];
+    const json& arm = messages["joint_trajectory"]["points"];
+    const auto expected = setpoints(*record().plan, record().problem.plane, record().flight.find("t_s")->back(), 20);
+    REQUIRE(vehicle.size() == expected.size());
+    REQUIRE(arm.size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const json& time = vehicle[i]["time_from_start"];
+        CHECK(arm[i]["time_from_start"] == time);
+        CHECK(time["sec"].get<double>() + 1e-9 * time["nanosec"].get<double>() == Approx(expected[i].t_s));
+        CHECK(vehicle[i]["transforms"][0]["translation"]["z"] == expected[i].position_m[2]);
+        CHECK(vehicle[i]["velocities"][0]["linear"]["x"] == expected[i].velocity_m_s[0]);
+        CHECK(arm[i]["positions"][0] == expected[i].arm_rad);
+    }
+    CHECK(messages["multi_dof_joint_trajectory"]["joint_names"].size() == vehicle[0]["transforms"].size());
+}
+
+TEST_CASE("a mission lies where the scene does") {
+    // A degree of latitude and of longitude at 47 degrees north on WGS 84 [m], from its series.
+    constexpr double latitude_m = 111169.3, longitude_m = 76055.9;
+    const double bearing_deg = GENERATE(0., 90., 210.);
+    const json plan = json::parse(written("qgc", record(), at(47, 8, bearing_deg)));
+    CHECK(plan["fileType"] == "Plan");
+    const json& items = plan["mission"]["items"];
+    REQUIRE(items.size() == record().plan->waypoints.size());
+    CHECK(items[0]["command"] == 22);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const Waypoint& corner = record().plan->waypoints[i];
+        const json& params = items[i]["params"];
+        const double angle_rad = bearing_deg / 57.295779513082320877;
+        CHECK((params[4].get<double>() - 47) * latitude_m == Approx(corner.x_m * std::cos(angle_rad)).margin(0.01));
+        CHECK((params[5].get<double>() - 8) * longitude_m == Approx(corner.x_m * std::sin(angle_rad)).margin(0.01));
+        CHECK(params[6] == corner.z_m);
+        CHECK(params[3].get<double>() == Approx(bearing_deg).margin(1e-9));
+        CHECK(items[i]["doJumpId"] == i + 1);
+    }
+    CHECK(items.back()["params"][0] == record().problem.goal.hold_s);
+}
+
+TEST_CASE("a mission without a sound origin is refused") {
+    CHECK_THROWS_AS(written("qgc"), InputError);
+    CHECK_THROWS_AS(written("qgc", record(), at(91, 0, 0)), InputError);
+    CHECK_THROWS_AS(written("qgc", record(), at(std::nan(""), 0, 0)), InputError);
+}
+
+TEST_CASE("VTK's flight holds every column at every point of both ways") {
+    pugi::xml_document document;
+    REQUIRE(document.load_string(written("vtp").c_str()));
+    const pugi::xml_node piece = document.child("VTKFile").child("PolyData").child("Piece");
+    const std::size_t rows = record().flight.rows();
+    CHECK(piece.attribute("NumberOfPoints").as_ullong() == 2 * rows);
+    const auto points = numbers_of(piece.child("Points").child("DataArray"));
+    REQUIRE(points.size() == 6 * rows);
+    CHECK(points[3 * (rows - 1)] == record().flight.find("x_m")->back());
+    CHECK(points.back() == record().flight.find("ee_z_m")->back());
+    std::size_t arrays = 0;
+    for (const pugi::xml_node& array : piece.child("PointData").children()) {
+        const auto numbers = numbers_of(array);
+        REQUIRE(numbers.size() == 2 * rows);
+        CHECK(numbers[7] == record().flight.find(array.attribute("Name").value())->at(7));
+        ++arrays;
+    }
+    CHECK(arrays == record().flight.columns.size());
+}
+
+TEST_CASE("VTK's scene says of every triangle whose it is") {
+    pugi::xml_document document;
+    REQUIRE(document.load_string(written("vtp-scene").c_str()));
+    const pugi::xml_node piece = document.child("VTKFile").child("PolyData").child("Piece");
+    const auto triangles = piece.attribute("NumberOfPolys").as_ullong();
+    CHECK(triangles == 12 * record().problem.obstacles.size());  // boxes
+    CHECK(numbers_of(piece.child("CellData").child("DataArray")).size() == triangles);
+    CHECK(numbers_of(piece.child("Polys").child("DataArray")).size() == 3 * triangles);
+}
+
+TEST_CASE("glTF moves vehicle and arm along the flight") {
+    const std::string file = written("glb");
+    REQUIRE(file.substr(0, 4) == "glTF");
+    CHECK(word_at(file, 4) == 2);
+    CHECK(word_at(file, 8) == file.size());
+    const std::size_t json_size = word_at(file, 12);
+    CHECK(json_size % 4 == 0);
+    const json document = json::parse(file.substr(20, json_size));
+    const std::size_t begin = 20 + json_size + 8;
+    CHECK(word_at(file, begin - 8) == document["buffers"][0]["byteLength"]);
+    const auto number = [&](const json& accessor, std::size_t index) {
+        float value = 0;
+        const auto offset = document["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"];
+        std::memcpy(&value, file.data() + begin + offset.get<std::size_t>() + 4 * index, 4);
+        return static_cast<double>(value);
+    };
+    const json& animation = document["animations"][0];
+    REQUIRE(animation["channels"].size() == 3);
+    const std::size_t last = record().flight.rows() - 1;
+    for (const json& channel : animation["channels"]) {
+        const json& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+        const json& output = document["accessors"][sampler["output"].get<std::size_t>()];
+        CHECK(document["accessors"][sampler["input"].get<std::size_t>()]["count"] == last + 1);
+        const std::string node = document["nodes"][channel["target"]["node"].get<std::size_t>()]["name"];
+        if (channel["target"]["path"] == "translation") {
+            CHECK(number(output, 3 * last) == Approx(record().flight.find("x_m")->back()));
+            CHECK(number(output, 3 * last + 2) == Approx(record().flight.find("z_m")->back()));
+        } else {
+            // About y, which points to the left: positive is nose down.
+            const char* angle = node == "arm" ? "arm_rad" : "pitch_rad";
+            CHECK(number(output, 4 * last + 1) ==
+                  Approx(std::sin(record().flight.find(angle)->back() / 2)).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("a run without a plan has nothing to fly, but a scene") {
+    RunRecord none = record();
+    none.plan.reset();
+    for (auto& column : none.flight.columns) {
+        column.clear();
+    }
+    for (const char* format : {"csv", "ros", "vtp"}) {
+        CHECK_THROWS_AS(written(format, none), InputError);
+    }
+    CHECK_THROWS_AS(written("qgc", none, at(47, 8, 0)), InputError);
+    CHECK_FALSE(written("vtp-scene", none).empty());
+    CHECK(written("glb", none).substr(0, 4) == "glTF");
+}
+
+TEST_CASE("equal runs are exported to equal bytes") {
+    for (const ExportFormat& format : export_formats()) {
+        CAPTURE(format.name);
+        CHECK(exported(record(), format, at(47, 8, 0)) == exported(record(), format, at(47, 8, 0)));
+    }
+}
