@@ -7,8 +7,9 @@ const rings = (list) => list.map(ring).join("");
 
 /** Hatching keeps its width in pixels whatever the zoom. */
 export function make_hatches(view) {
-    const hatch = (id, step, angle) => s("pattern", {id, width: step, height: step, patternUnits: "userSpaceOnUse"},
-        s("path", {class: id, d: `M0 ${step / 2}H${step}`}));
+    const hatch = (id, step, angle) =>
+        s("pattern", {id, width: step, height: step, patternUnits: "userSpaceOnUse"},
+          s("path", {class: id, d: `M0 ${step / 2}H${step}`}));
     const beside = hatch("hatch-beside", 6), blocked = hatch("hatch-blocked", 5);
     view.svg.querySelector("defs").append(beside, blocked);
     view.follow(() => {
@@ -19,10 +20,11 @@ export function make_hatches(view) {
 }
 
 export function draw_obstacles(obstacles) {
-    const beside = obstacles.map((obstacle) =>
-        s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
-    const cut = obstacles.filter((obstacle) => obstacle.section.length > 0).map((obstacle) =>
-        s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}));
+    const beside = obstacles.map(
+        (obstacle) => s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
+    const cut =
+        obstacles.filter((obstacle) => obstacle.section.length > 0)
+            .map((obstacle) => s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}));
     return s("g", {class: "obstacles"}, beside, cut);
 }
 
@@ -45,9 +47,9 @@ function draw_region({x_m, z_m, half_x, half_z, shape}) {
     if (!(half_x > 0) || !(half_z > 0)) {
         return s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: 0.08});
     }
-    return shape === "disc"
-        ? s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: half_x})
-        : s("rect", {class: "goal-region", x: x_m - half_x, y: z_m - half_z, width: 2 * half_x, height: 2 * half_z});
+    return shape === "disc" ?
+        s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: half_x}) :
+        s("rect", {class: "goal-region", x: x_m - half_x, y: z_m - half_z, width: 2 * half_x, height: 2 * half_z});
 }
 
 /** The way an end effector has to point at the goal: a shaft that ends at the centre. */
@@ -62,7 +64,8 @@ export function draw_goals(model) {
         const region = goal_region(goal, model.scene.bounds);
         const parts = [draw_region(region)];
         if (goal.kind === "state") {
-            parts.push(vehicle_at(robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
+            parts.push(vehicle_at(
+                robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
                 {x_m: region.x_m, z_m: region.z_m, pitch_rad: 0, arm_rad: goal.arm_rad ?? 0}));
         } else if (Number.isFinite(goal.direction_rad)) {
             parts.push(draw_direction(goal));
@@ -72,6 +75,9 @@ export function draw_goals(model) {
 }
 
 export function draw_start({start, robot, rotor_groups}) {
-    return s("g", {class: "start"}, vehicle_at(robot, rotor_groups, "wanted at-start",
-        {x_m: start.x_m, z_m: start.z_m, pitch_rad: 0, arm_rad: start.arm_rad}));
+    return s(
+        "g", {class: "start"},
+        vehicle_at(
+            robot, rotor_groups, "wanted at-start",
+            {x_m: start.x_m, z_m: start.z_m, pitch_rad: 0, arm_rad: start.arm_rad}));
 }
