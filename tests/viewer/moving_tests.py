@@ -146,6 +146,13 @@ class Moving(page_test.BrowserTest):
                                 "return getComputedStyle(g).display !== 'none' && g.childNodes.length > 0", layer)
                 self.assertEqual(shown, wanted, layer)
 
+    def test_goals_and_obstacles_have_their_shapes(self):
+        self.open("solids")
+        self.assertEqual(self.every(".goal-region", "e.tagName"), ["rect", "rect", "circle"])
+        self.assertEqual(len([d for d in self.every(".section-line", "e.getAttribute('d')") if d]), 1)
+        self.assertEqual(len(self.every("path.projection", "1")), 11)
+        self.assertEqual(len(self.every("path.section", "1")), 9)  # without the two girders beside the plane
+
     def test_arrows_are_command_times_factor(self):
         columns = self.open("solved")
         self.set_time(10)

@@ -237,12 +237,15 @@ def open_air_report():
 
 
 def solids_report():
-    """Every kind of solid, three goals in turn, rotors that do not coincide."""
+    """Every kind of solid, an open surface too large for the page, three goals in turn, rotors that do not coincide."""
     report = solved_report()
     report["scene"]["obstacles"] += [pipe("pipe", 0.5, 6, [-6, 0, 6]), ball("tank", 1, [6, 0.4, 4]),
+                                     {"name": "sheet", "kind": "mesh", "section": [], "solid": None,
+                                      "section_lines": [[[-9, 5], [-7, 4.5], [-5, 5]]],
+                                      "projection": [[[-9, 5], [-7, 4.5], [-5, 5]]]},
                                      wedge("slope", [[7, 0], [11, 0], [11, 3]], 2, packed)]
     report["goals"] = [{"kind": "state", "x_m": -6, "z_m": 9.1, "arm_rad": 0.8,
-                        "tolerance_x_m": 0.1, "tolerance_z_m": 0.3},
+                        "tolerance_x_m": 0.1, "tolerance_z_m": 0.1, "is_disc": False},
                        {"kind": "end_effector", "x_m": -1, "z_m": 8.9, "tolerance_x_m": 0.2, "tolerance_z_m": 0.1,
                         "direction_rad": -1.57}, report["goals"][0]]
     report["goal_order"] = "in_turn"

@@ -58,8 +58,8 @@ export function draw_obstacle_names(view, obstacles, placement) {
     const shown = view.shown;
     const marks = [];
     for (const obstacle of obstacles) {
-        const is_cut = obstacle.section.length > 0;
-        const whole = extent_of(is_cut ? obstacle.section : obstacle.projection);
+        const is_filled = obstacle.section.length > 0;
+        const whole = extent_of(is_filled ? obstacle.section : obstacle.projection);
         const seen = {
             x_m: [Math.max(whole.x_m[0], shown.x_m[0]), Math.min(whole.x_m[1], shown.x_m[1])],
             z_m: [Math.max(whole.z_m[0], shown.z_m[0]), Math.min(whole.z_m[1], shown.z_m[1])],
@@ -83,7 +83,7 @@ export function draw_obstacle_names(view, obstacles, placement) {
         if (found) {
             const is_inside = found[1] > top && found[1] < bottom && found[0] > left && found[0] < right;
             marks.push(word(
-                `${is_cut ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text,
+                `${is_filled ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text,
                 text.endsWith("…\u2069") ? obstacle.name : null));
         }
     }

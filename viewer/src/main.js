@@ -92,8 +92,10 @@ async function run() {
         time: {
             get: () => clock?.time_s ?? null,
             set: (time_s) => {
-                playback.slider.value = String(clock.row_at(time_s));
-                playback.slider.dispatchEvent(new Event("input"));
+                if (clock) {
+                    playback.slider.value = String(clock.row_at(time_s));
+                    playback.slider.dispatchEvent(new Event("input"));
+                }
             },
         },
         is_playing: {get: () => playback?.is_playing ?? false},

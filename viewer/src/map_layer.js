@@ -57,16 +57,15 @@ export function make_color_bar(map) {
             "div", {class: `bar only-${theme}`, style: `background: linear-gradient(to right, ${stops.join(", ")})`});
     };
     const is_apart = (tick) => Math.min(tick - factor_low, factor_high - tick) > 0.12 * (factor_high - factor_low);
-    const ticks = [factor_low, ...share.ticks(5).filter(is_apart), factor_high];
+    const ticks = [...new Set([factor_low, ...share.ticks(5).filter(is_apart), factor_high])];
+    const is_coarse = (tick) => Math.abs(10 * tick - Math.round(10 * tick)) < 1e-6;
+    const digits = ticks.every(is_coarse) ? ".1f" : ".2f";
     const label = `Colours from factor ${number(factor_low, ".2f")} to ${number(factor_high, ".2f")}; ` +
         "free air, 1, has the colour of the paper";
     return h(
         "div", {class: "color-bar"}, h("div", {class: "color-bar-name"}, "Aero factor: thrust over thrust in free air"),
         h("div", {class: "color-bar-scale", role: "img", "aria-label": label}, gradient("light"), gradient("dark"),
-          ticks.map(
-              (tick) =>
-                  h("span", {class: "tick", style: `left: ${share(tick)}%`},
-                    number(tick, Math.abs(10 * tick - Math.round(10 * tick)) < 1e-6 ? ".1f" : ".2f")))),
+          ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, digits)))),
         h("div", {class: "color-bar-note"}, h("span", {class: "swatch blocked"}), "not flyable",
           h("span", {class: "muted"},
             `of rotor ${map.rotor} there, ${place(map.lateral_m)} beside the plane of motion`)));

@@ -7,6 +7,9 @@ const speeds = [0.25, 0.5, 1, 2, 4];
 
 /** Keys act on the whole page, except where a control has its own use for them. */
 function has_own_use(target, key) {
+    if (!(target instanceof Element)) {
+        return false;
+    }
     if (target.closest("select, textarea, input[type=text], [data-own-keys]")) {
         return true;
     }

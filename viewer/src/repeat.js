@@ -6,6 +6,7 @@ import three_licence from "../licences/three.txt";
 import {foreign, h} from "./dom.js";
 import {place} from "./format.js";
 import {extent_of} from "./numbers.js";
+import {is_cut} from "./surroundings.js";
 import {variants} from "./words.js";
 
 /** Copying by the clipboard where a page from a file may, else by a selection. */
@@ -57,7 +58,7 @@ export function make_obstacle_table({scene}) {
                 const {x_m, z_m} = extent_of(obstacle.projection);
                 return h(
                     "tr", null, h("th", {scope: "row", class: "foreign-name"}, foreign(obstacle.name)),
-                    h("td", null, obstacle.kind), h("td", null, obstacle.section.length > 0 ? "cuts it" : "beside it"),
+                    h("td", null, obstacle.kind), h("td", null, is_cut(obstacle) ? "cuts it" : "beside it"),
                     h("td", null, range_text(x_m)), h("td", null, range_text(z_m)));
             })))));
 }

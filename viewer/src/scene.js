@@ -10,7 +10,7 @@ import {extent_of, range_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
 import {make_pointer_text} from "./pointer.js";
 import {keep_sized} from "./sizing.js";
-import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
+import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, is_cut, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
 import {View} from "./view.js";
 
@@ -41,7 +41,7 @@ function padded({x_m, z_m}) {
 
 function describe(model) {
     const {scene, start, goals, data, rows} = model;
-    const cut = scene.obstacles.filter((obstacle) => obstacle.section.length > 0).length;
+    const cut = scene.obstacles.filter(is_cut).length;
     const goal_texts =
         goals.map(({x_m, z_m}, index) => `goal${goals.length > 1 ? ` ${index + 1}` : ""} at ${point(x_m, z_m)}`);
     const sentences = [
@@ -211,8 +211,8 @@ export function make_scene(model, clock, playback) {
 function make_legend(model, forces) {
     const entry = (key, text, where = "") =>
         h("span", {class: `entry ${where}`}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
-    const beside = model.scene.obstacles.some((o) => o.section.length === 0);
-    const cut = model.scene.obstacles.some((o) => o.section.length > 0);
+    const beside = model.scene.obstacles.some((obstacle) => !is_cut(obstacle));
+    const cut = model.scene.obstacles.some(is_cut);
     return h(
         "div", {class: "legend"},
         model.data ?

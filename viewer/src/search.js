@@ -71,7 +71,8 @@ function make_costs(model) {
     if (steps.length === 0) {
         return h(
             "div", {class: "card"}, h("h3", null, "Cost over time"),
-            h("p", {class: "muted"}, "No plan was found, so there is no cost to show."));
+            h("p", {class: "muted"},
+              "No plan was found, so there is no cost to show. What blocked it stands at the top and is marked in the scene."));
     }
     const last = steps[steps.length - 1];
     const told = (step) => `${cost(step.cost, model.cost_unit)} after ${seconds(step.wall_s)}`;

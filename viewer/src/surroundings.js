@@ -19,12 +19,19 @@ export function make_hatches(view) {
     });
 }
 
+/** Open surfaces have no inside: where the plane meets them there are lines. */
+const open_lines = (obstacle) =>
+    (obstacle.section_lines ?? []).map((line) => `M${line.map(([x, z]) => `${x} ${z}`).join("L")}`).join("");
+
+export const is_cut = (obstacle) => obstacle.section.length > 0 || (obstacle.section_lines ?? []).length > 0;
+
 export function draw_obstacles(obstacles) {
     const beside = obstacles.map(
         (obstacle) => s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
-    const cut =
-        obstacles.filter((obstacle) => obstacle.section.length > 0)
-            .map((obstacle) => s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}));
+    const cut = obstacles.filter(is_cut).map(
+        (obstacle) =>
+            s("g", null, s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}),
+              s("path", {class: "section-line", d: open_lines(obstacle)})));
     return s("g", {class: "obstacles"}, beside, cut);
 }
 
@@ -39,7 +46,7 @@ export function goal_region(goal, bounds) {
     const half_z = is_free_z ? (bounds.z_m[1] - bounds.z_m[0]) / 2 : goal.tolerance_z_m;
     const x_m = is_free_x ? (bounds.x_m[0] + bounds.x_m[1]) / 2 : goal.x_m;
     const z_m = is_free_z ? (bounds.z_m[0] + bounds.z_m[1]) / 2 : goal.z_m;
-    const shape = goal.region ?? (half_x === half_z ? "disc" : "rectangle");
+    const shape = goal.is_disc ?? half_x === half_z ? "disc" : "rectangle";
     return {x_m, z_m, half_x, half_z, shape: is_free_x || is_free_z ? "rectangle" : shape};
 }
 

@@ -47,7 +47,7 @@ export function make_view3d(model, clock, theme) {
             const app = (await load_app()).start(stage, model, clock);
             app.set_theme(document.documentElement.dataset.theme);
             theme.follow(app.set_theme);
-            stage.view = app;
+            stage.view = app;  // for tests
             button.remove();
             status.textContent = "Drag to turn, wheel or pinch to come nearer, right button or two fingers to move. " +
                 "With the view in focus: W A S D turn, + and − come nearer, 0 goes back.";

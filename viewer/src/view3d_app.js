@@ -105,7 +105,7 @@ function draw_line(xs, zs, name, paint, dashed) {
 function draw_vehicle(robot, paint) {
     const {rotors, arm} = robot;
     const body = new three.Group();
-    robot.bodies.forEach(({solid}) => body.add(draw_solid(solid, "vehicle", paint, 0.25)));
+    robot.bodies.filter(({solid}) => solid).forEach(({solid}) => body.add(draw_solid(solid, "vehicle", paint, 0.25)));
     const metal = new three.MeshLambertMaterial(),
           disc = new three.MeshBasicMaterial({transparent: true, opacity: 0.55, side: three.DoubleSide});
     paint(metal, "vehicle");
@@ -160,7 +160,17 @@ export function start(stage, model, clock) {
     const sun = new three.DirectionalLight(0xffffff, 0.45);
     sun.position.set(-6, -14, 18);
     world.add(sun);
-    scene.obstacles.forEach(({solid}) => world.add(draw_solid(solid, "obstacle", paint, 0.42)));
+    for (const {solid, section, projection} of scene.obstacles) {
+        if (solid) {
+            world.add(draw_solid(solid, "obstacle", paint, 0.42));
+        } else {
+            // Too large a mesh for a page: its outline in the plane of motion stands for it.
+            for (const ring of section.length > 0 ? section : projection) {
+                const closed = [...ring, ring[0]];
+                world.add(draw_line(closed.map(([x]) => x), closed.map(([, z]) => z), "edge", paint, false));
+            }
+        }
+    }
     for (const goal of goals) {
         const radius = Math.max(0.06, goal.tolerance_x_m ?? 0.1);
         const material = new three.MeshBasicMaterial({transparent: true, opacity: 0.6});
