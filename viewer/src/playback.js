@@ -33,93 +33,93 @@ export function make_playback(model, clock) {
         value: 0,
         "aria-label": "Time of the flight"
     });
-    const readout = h("output", {class: "time-text", for: "time"});
-        const play = h("button", {type: "button", class: "play", "aria-label": "Play"});
-        const speed =
-            h("select", {"aria-label": "Speed"},
-              speeds.map((value) => h("option", {value, selected: value === 1}, `${value}×`)));
-        let playing = null;
+    const readout = h("span", {class: "time-text"});
+    const play = h("button", {type: "button", class: "play", "aria-label": "Play"});
+    const speed =
+        h("select", {"aria-label": "Speed"},
+          speeds.map((value) => h("option", {value, selected: value === 1}, `${value}×`)));
+    let playing = null;
 
-        const show_state = () => {
-            play.textContent = playing ? "❚❚" : "▶";
-            play.setAttribute("aria-label", playing ? "Pause" : "Play");
-        };
-        const pause = () => {
-            if (playing) {
-                cancelAnimationFrame(playing.frame);
-                playing = null;
-                show_state();
-            }
-        };
-        const advance = (now) => {
-            // Seconds of flight, counted from where it was started: rounding to rows does not add up.
-            playing.time_s += ((now - playing.last_ms) / 1000) * Number(speed.value);
-            playing.last_ms = now;
-            clock.set(clock.row_at(playing.time_s));
-            if (playing.time_s >= clock.times_s[clock.rows - 1]) {
-                pause();
-            } else {
-                playing.frame = requestAnimationFrame(advance);
-            }
-        };
-        const start = () => {
-            if (clock.row === clock.rows - 1) {
-                clock.set(0);
-            }
-            playing = {time_s: clock.time_s, last_ms: performance.now(), frame: requestAnimationFrame(advance)};
+    const show_state = () => {
+        play.textContent = playing ? "❚❚" : "▶";
+        play.setAttribute("aria-label", playing ? "Pause" : "Play");
+    };
+    const pause = () => {
+        if (playing) {
+            cancelAnimationFrame(playing.frame);
+            playing = null;
             show_state();
-        };
-        const toggle = () => (playing ? pause() : start());
-        const go = (row) => {
+        }
+    };
+    const advance = (now) => {
+        // Seconds of flight, counted from where it was started: rounding to rows does not add up.
+        playing.time_s += ((now - playing.last_ms) / 1000) * Number(speed.value);
+        playing.last_ms = now;
+        clock.set(clock.row_at(playing.time_s));
+        if (playing.time_s >= clock.times_s[clock.rows - 1]) {
             pause();
-            clock.set(row);
-        };
-
-        play.addEventListener("click", toggle);
-        slider.addEventListener("input", () => go(Number(slider.value)));
-        document.addEventListener("keydown", (pressed) => {
-            if (pressed.ctrlKey || pressed.metaKey || pressed.altKey || has_own_use(pressed.target, pressed.key)) {
-                return;
-            }
-            const second = pressed.shiftKey;
-            const later = (direction) => second ? clock.row_at(clock.time_s + direction) : clock.row + direction;
-            const acts = {
-                " ": toggle,
-                ArrowRight: () => go(later(1)),
-                ArrowUp: () => go(later(1)),
-                ArrowLeft: () => go(later(-1)),
-                ArrowDown: () => go(later(-1)),
-                Home: () => go(0),
-                End: () => go(clock.rows - 1),
-            };
-            // Up and down scroll the page unless the slider itself has the focus.
-            const is_scrolling = ["ArrowUp", "ArrowDown"].includes(pressed.key) && pressed.target !== slider;
-            if (acts[pressed.key] && !is_scrolling) {
-                pressed.preventDefault();
-                acts[pressed.key]();
-            }
-        });
-        clock.follow((row) => {
-            slider.value = String(row);
-            slider.setAttribute("aria-valuetext", `${seconds(clock.time_s)} of ${seconds(model.end_s)}`);
-            slider.style.setProperty("--share", clock.rows > 1 ? row / (clock.rows - 1) : 0);
-            readout.textContent = seconds(clock.time_s);
-        });
+        } else {
+            playing.frame = requestAnimationFrame(advance);
+        }
+    };
+    const start = () => {
+        if (clock.row === clock.rows - 1) {
+            clock.set(0);
+        }
+        playing = {time_s: clock.time_s, last_ms: performance.now(), frame: requestAnimationFrame(advance)};
         show_state();
+    };
+    const toggle = () => (playing ? pause() : start());
+    const go = (row) => {
+        pause();
+        clock.set(row);
+    };
 
-        const share = (time_s) =>
-            `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${(time_s / (model.end_s || 1)).toFixed(5)})`;
-        const marks = [];
-        if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
-            marks.push(h("span", {class: "mark hold", style: share(model.hold_from_s)}, "hold"));
+    play.addEventListener("click", toggle);
+    slider.addEventListener("input", () => go(Number(slider.value)));
+    document.addEventListener("keydown", (pressed) => {
+        if (pressed.ctrlKey || pressed.metaKey || pressed.altKey || has_own_use(pressed.target, pressed.key)) {
+            return;
         }
-        if (model.is_cut_short) {
-            marks.push(h("span", {class: "mark failure", style: share(model.end_s)}, "✕"));
+        const second = pressed.shiftKey;
+        const later = (direction) => second ? clock.row_at(clock.time_s + direction) : clock.row + direction;
+        const acts = {
+            " ": toggle,
+            ArrowRight: () => go(later(1)),
+            ArrowUp: () => go(later(1)),
+            ArrowLeft: () => go(later(-1)),
+            ArrowDown: () => go(later(-1)),
+            Home: () => go(0),
+            End: () => go(clock.rows - 1),
+        };
+        // Up and down scroll the page unless the slider itself has the focus.
+        const is_scrolling = ["ArrowUp", "ArrowDown"].includes(pressed.key) && pressed.target !== slider;
+        if (acts[pressed.key] && !is_scrolling) {
+            pressed.preventDefault();
+            acts[pressed.key]();
         }
-        const element =
-            h("div", {class: "playback screen-only", role: "group", "aria-label": "Playback"}, play,
-              h("div", {class: "time-track"}, slider, h("div", {class: "marks", "aria-hidden": "true"}, marks)),
-              h("span", {class: "time-box"}, readout, h("span", {class: "muted"}, ` / ${seconds(model.end_s)}`)),
-              h("label", {class: "speed"}, h("span", {class: "visually-hidden"}, "Speed"), speed));
-        return {element, slider, toggle, pause, get is_playing() { return playing !== null; }};
+    });
+    clock.follow((row) => {
+        slider.value = String(row);
+        slider.setAttribute("aria-valuetext", `${seconds(clock.time_s)} of ${seconds(model.end_s)}`);
+        slider.style.setProperty("--share", clock.rows > 1 ? row / (clock.rows - 1) : 0);
+        readout.textContent = seconds(clock.time_s);
+    });
+    show_state();
+
+    const share = (time_s) =>
+        `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${(time_s / (model.end_s || 1)).toFixed(5)})`;
+    const marks = [];
+    if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
+        marks.push(h("span", {class: "mark hold", style: share(model.hold_from_s)}, "hold"));
+    }
+    if (model.is_cut_short) {
+        marks.push(h("span", {class: "mark failure", style: share(model.end_s)}, "✕"));
+    }
+    const element =
+        h("div", {class: "playback screen-only", role: "group", "aria-label": "Playback"}, play,
+          h("div", {class: "time-track"}, slider, h("div", {class: "marks", "aria-hidden": "true"}, marks)),
+          h("span", {class: "time-box"}, readout, h("span", {class: "muted"}, ` / ${seconds(model.end_s)}`)),
+          h("label", {class: "speed"}, h("span", {class: "visually-hidden"}, "Speed"), speed));
+    return {element, slider, toggle, pause, get is_playing() { return playing !== null; }};
 }

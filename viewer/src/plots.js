@@ -65,7 +65,7 @@ class TimePlot {
             ...(plot.from_zero ? [0] : [])
         ].filter(Number.isFinite);
         const far = (plot.limits ?? []).filter((limit) => !this.limits.includes(limit)).map((limit) => limit.value);
-        this.values = plot.lines.map(() => h("output", {class: "value"}));
+        this.values = plot.lines.map(() => h("span", {class: "value"}));
         this.cursor = s("path", {class: "cursor"});
         this.dots = plot.lines.map((each) => s("circle", {class: `dot ${each.style}`, r: 3}));
         this.still = s("g");
