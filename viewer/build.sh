@@ -16,8 +16,8 @@ trap 'rm -rf "$parts"' EXIT
 
 # Browsers of early 2023: the first that can inflate in Firefox and Safari.
 bundle() {
-    NODE_PATH=/usr/share/nodejs esbuild "$@" --bundle --minify --charset=utf8 --legal-comments=none --log-level=warning \
-        --format=iife --target=chrome110,firefox113,safari16.4
+    NODE_PATH=/usr/share/nodejs esbuild "$@" --bundle --minify --charset=utf8 --legal-comments=none \
+        --log-level=warning --format=iife --target=chrome110,firefox113,safari16.4
 }
 bundle src/main.js --loader:.txt=text --outfile="$parts/page.js"
 bundle src/page.css --outfile="$parts/page.css"

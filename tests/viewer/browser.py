@@ -17,14 +17,15 @@ class Browser:
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         options = webdriver.ChromeOptions()
         options.binary_location = os.environ.get("CHROMIUM", "/usr/bin/chromium")
-        for argument in ("--headless=new", "--hide-scrollbars", "--disable-gpu-sandbox", "--force-device-scale-factor=1",
+        for argument in ("--headless=new", "--hide-scrollbars", "--force-device-scale-factor=1",
                          "--disable-background-networking", "--disable-component-update", "--no-first-run",
                          f"--user-data-dir={self.profile.name}", f"--window-size={width},{height}", *arguments):
             options.add_argument(argument)
         if os.geteuid() == 0:
             options.add_argument("--no-sandbox")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(service=Service(os.environ.get("CHROMEDRIVER", "/usr/bin/chromedriver")), options=options)
+        service = Service(os.environ.get("CHROMEDRIVER", "/usr/bin/chromedriver"))
+        self.driver = webdriver.Chrome(service=service, options=options)
         self.driver.set_script_timeout(60)
         self.resize(width, height)
 
@@ -76,5 +77,6 @@ class Browser:
         return base64.b64decode(self.driver.execute_cdp_cmd("Page.captureScreenshot", parameters)["data"])
 
     def pdf(self):
-        return base64.b64decode(self.driver.execute_cdp_cmd(
-            "Page.printToPDF", {"printBackground": False, "preferCSSPageSize": True, "paperWidth": 8.27, "paperHeight": 11.69})["data"])
+        a4 = {"paperWidth": 8.27, "paperHeight": 11.69}
+        printed = self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": False, **a4})
+        return base64.b64decode(printed["data"])

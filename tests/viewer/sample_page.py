@@ -160,7 +160,8 @@ def solved_report(duration_s=19.58, end=(1.62, 9.51, -0.295)):
         "variant": "mp-arm-ada", "algorithm": "rrt-star", "objective": "energy", "seed": 1, "version": "0.1.0",
         "threads": 2, "cost": energy - 27.9,
         "planning": planning_json([(0.07, 36, energy * 1.8), (0.24, 84, energy * 1.45), (0.47, 196, energy * 1.29),
-                                   (0.89, 348, energy * 1.07), (4.48, 1636, energy * 1.003), (5.1, 1788, energy - 27.9)]),
+                                   (0.89, 348, energy * 1.07), (4.48, 1636, energy * 1.003),
+                                   (5.1, 1788, energy - 27.9)]),
         "plan": {"waypoints": [{k: knot[k] for k in ("x_m", "z_m", "arm_rad")} for knot in knots], "reference": knots},
         "execution": {"aero": True, "outcome": "ok", "min_clearance_m": float(np.min(column["clearance_m"])),
                       "energy_j": energy, "duration_s": float(column["t_s"][-1]), "cost": energy,
@@ -226,7 +227,8 @@ def open_air_report():
     names, columns = invented_flight([(-4, 3, 1.57), (5, 6, 0)], [0, 8], 13, [])
     report["solution"]["objective"] = {"energy": 1, "time": 50}
     report["scene"] = {"bounds": {"x_m": [-8, 8], "z_m": [0, 9]}, "obstacles": []}
-    report.update(map=None, tree=None, description="", flight=flight_json(names, columns), _columns=dict(zip(names, columns)),
+    report.update(map=None, tree=None, description="", flight=flight_json(names, columns),
+                  _columns=dict(zip(names, columns)),
                   start={"x_m": -4, "z_m": 3, "arm_rad": 1.57},
                   goals=[{"kind": "state", "x_m": 5, "z_m": 6, "arm_rad": None}],
                   limits={"safety_margin_m": 0, "max_tilt_rad": None})
@@ -235,17 +237,22 @@ def open_air_report():
 
 
 def solids_report():
-    """Every kind of solid, three goals in turn, rotors that do not coincide."""
+    """Every kind of solid, an open surface too large for the page, three goals in turn, rotors that do not coincide."""
     report = solved_report()
     report["scene"]["obstacles"] += [pipe("pipe", 0.5, 6, [-6, 0, 6]), ball("tank", 1, [6, 0.4, 4]),
+                                     {"name": "sheet", "kind": "mesh", "section": [], "solid": None,
+                                      "section_lines": [[[-9, 5], [-7, 4.5], [-5, 5]]],
+                                      "projection": [[[-9, 5], [-7, 4.5], [-5, 5]]]},
                                      wedge("slope", [[7, 0], [11, 0], [11, 3]], 2, packed)]
-    report["goals"] = [{"kind": "state", "x_m": -6, "z_m": 9.1, "arm_rad": 0.8, "tolerance_x_m": 0.1, "tolerance_z_m": 0.3},
+    report["goals"] = [{"kind": "state", "x_m": -6, "z_m": 9.1, "arm_rad": 0.8,
+                        "tolerance_x_m": 0.1, "tolerance_z_m": 0.1, "is_disc": False},
                        {"kind": "end_effector", "x_m": -1, "z_m": 8.9, "tolerance_x_m": 0.2, "tolerance_z_m": 0.1,
                         "direction_rad": -1.57}, report["goals"][0]]
     report["goal_order"] = "in_turn"
     report["solution"]["execution"]["goals"] = [{"met": True, "error_m": 0.05}, {"met": True, "error_m": 0.09},
                                                 {"met": True, "error_m": 0.0887}]
-    report["robot"]["rotors"]["positions_m"] = [[0.35, 0.3, 0.06], [0.25, -0.3, 0.06], [-0.25, 0.3, 0.06], [-0.35, -0.3, 0.06]]
+    report["robot"]["rotors"]["positions_m"] = [[0.35, 0.3, 0.06], [0.25, -0.3, 0.06],
+                                                [-0.25, 0.3, 0.06], [-0.35, -0.3, 0.06]]
     return report
 
 

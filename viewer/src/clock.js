@@ -7,12 +7,8 @@ export function make_clock(times_s) {
     return {
         times_s,
         rows: times_s.length,
-        get row() {
-            return row;
-        },
-        get time_s() {
-            return times_s[row];
-        },
+        get row() { return row; },
+        get time_s() { return times_s[row]; },
         set(wanted) {
             const next = Math.min(times_s.length - 1, Math.max(0, Math.round(wanted)));
             if (next !== row) {

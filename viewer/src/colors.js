@@ -16,7 +16,8 @@ function mix(stops, share) {
     const at = Math.min(1, Math.max(0, share)) * (stops.length - 1);
     const index = Math.min(stops.length - 2, Math.floor(at));
     const part = (color, i) => parseInt(color.slice(1 + 2 * i, 3 + 2 * i), 16);
-    return [0, 1, 2].map((i) => part(stops[index], i) + (at - index) * (part(stops[index + 1], i) - part(stops[index], i)));
+    return [0, 1, 2].map(
+        (i) => part(stops[index], i) + (at - index) * (part(stops[index + 1], i) - part(stops[index], i)));
 }
 
 /** @returns {[number, number, number]} red, green, blue of a thrust factor */

@@ -13,8 +13,7 @@ export async function inflate(base64, what, format = "deflate") {
     if (typeof DecompressionStream === "undefined") {
         throw new Trouble(
             "This browser cannot unpack the data of the page: it lacks DecompressionStream. " +
-                "Chromium 80, Firefox 113 and Safari 16.4 or newer have it."
-        );
+            "Chromium 80, Firefox 113 and Safari 16.4 or newer have it.");
     }
     try {
         const text = atob(base64.trim());
@@ -31,7 +30,8 @@ export async function inflate(base64, what, format = "deflate") {
 
 function expect_bytes(buffer, bytes, what) {
     if (buffer.byteLength !== bytes) {
-        throw new Trouble(`${what} of this page has ${buffer.byteLength} bytes where ${bytes} belong: the file is damaged.`);
+        throw new Trouble(
+            `${what} of this page has ${buffer.byteLength} bytes where ${bytes} belong: the file is damaged.`);
     }
 }
 
@@ -76,7 +76,9 @@ export async function decode_flight(flight) {
     return Object.fromEntries(columns.map((name, index) => [name, decoded[index]]));
 }
 
-/** @returns {Promise<{nodes: number, x_m: Float32Array, z_m: Float32Array, arm_rad: Float32Array, parent: Int32Array}>} */
+/**
+ * @returns {Promise<{nodes: number, x_m: Float32Array, z_m: Float32Array, arm_rad: Float32Array, parent: Int32Array}>}
+ */
 export async function decode_tree(tree) {
     const n = tree.nodes;
     const buffer = await inflate(tree.data, "The search tree");

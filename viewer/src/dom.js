@@ -18,9 +18,7 @@ function fill(element, attributes, children) {
 }
 
 /** @returns {HTMLElement} */
-export function h(tag, attributes, ...children) {
-    return fill(document.createElement(tag), attributes, children);
-}
+export function h(tag, attributes, ...children) { return fill(document.createElement(tag), attributes, children); }
 
 /** @returns {SVGElement} */
 export function s(tag, attributes, ...children) {
@@ -28,14 +26,13 @@ export function s(tag, attributes, ...children) {
 }
 
 /** Text of others: isolated, so that its direction of writing stays its own. */
-export function foreign(text) {
-    return h("bdi", null, String(text));
-}
+export function foreign(text) { return h("bdi", null, String(text)); }
 
 /** In SVG, where there is no <bdi>: Unicode's isolates. */
 export function isolated(text, most = 200) {
     const characters = [...String(text)];
-    return `\u2068${characters.length > most ? characters.slice(0, most - 1).join("") + "…" : characters.join("")}\u2069`;
+    const shown = characters.length > most ? characters.slice(0, most - 1).join("") + "…" : characters.join("");
+    return `\u2068${shown}\u2069`;
 }
 
 export function set_attributes(element, attributes) {

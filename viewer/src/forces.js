@@ -28,10 +28,10 @@ export function make_forces(model, clock, view) {
     // The longest arrow is about as long as the arm, so that arrows belong to the vehicle at any zoom.
     const meters_per_n = (0.85 * robot.arm.length_m) / most_n;
     const arrows = rotor_groups.map(() => ({
-        shaft: s("path", {class: "force"}),
-        head: s("path", {class: "force-head"}),
-        text: s("text", {class: "word of-force", "text-anchor": "middle"}),
-    }));
+                                        shaft: s("path", {class: "force"}),
+                                        head: s("path", {class: "force-head"}),
+                                        text: s("text", {class: "word of-force", "text-anchor": "middle"}),
+                                    }));
     const element = s("g", {class: "forces"}, arrows.map(({shaft, head, text}) => s("g", null, shaft, head, text)));
     const draw = () => {
         const row = clock.row, pose = pose_at(data, row);
@@ -56,9 +56,9 @@ export function make_forces(model, clock, view) {
 /** What the arrows mean, in words. */
 export function forces_note({rotor_groups}) {
     const shared = rotor_groups.filter((group) => group.rotors.length > 1)
-        .map((group) => group.rotors.map((rotor) => rotor + 1).join(" and "));
+                       .map((group) => group.rotors.map((rotor) => rotor + 1).join(" and "));
     const note = "Arrows: thrust of the rotors, command times aero factor; the number is the factor.";
-    return shared.length > 0
-        ? `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean factor.`
-        : note;
+    return shared.length > 0 ?
+        `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean factor.` :
+        note;
 }

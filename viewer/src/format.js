@@ -31,6 +31,4 @@ export const seconds = (value) => quantity(value, ".2f", "s");
 export const degrees = (radians) => quantity((radians * 180) / Math.PI, ".1f", "°").replace("\u00a0", "");
 
 /** Costs span from parts of a metre to a hundred kilojoules. */
-export function cost(value, unit) {
-    return quantity(value, Math.abs(value) >= 1000 ? ",.0f" : ".4~g", unit);
-}
+export function cost(value, unit) { return quantity(value, Math.abs(value) >= 1000 ? ",.0f" : ".4~g", unit); }

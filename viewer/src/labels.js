@@ -9,9 +9,7 @@ const name_length = 26;
 
 const width_of = (text) => Math.min(220, 6.6 * [...text].length);
 
-function overlaps(a, b) {
-    return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
-}
+function overlaps(a, b) { return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]; }
 
 /** Places words one after the other; those that find no room stay away (their names stand in the table below). */
 export class Placement {
@@ -20,9 +18,7 @@ export class Placement {
         this.taken = [];
     }
 
-    reserve(box) {
-        this.taken.push(box);
-    }
+    reserve(box) { this.taken.push(box); }
 
     /** @returns {[number, number] | null} the middle of the first candidate with room */
     find(text, candidates) {
@@ -54,15 +50,16 @@ export function give_way(words, moving) {
     }
 }
 
-const word = (kind, x, y, text, title) => s("text", {class: `word ${kind}`, x, y, dy: "0.35em", "text-anchor": "middle"},
-    text, title && title !== text ? s("title", null, title) : null);
+const word = (kind, x, y, text, title) =>
+    s("text", {class: `word ${kind}`, x, y, dy: "0.35em", "text-anchor": "middle"}, text,
+      title && title !== text ? s("title", null, title) : null);
 
 export function draw_obstacle_names(view, obstacles, placement) {
     const shown = view.shown;
     const marks = [];
     for (const obstacle of obstacles) {
-        const is_cut = obstacle.section.length > 0;
-        const whole = extent_of(is_cut ? obstacle.section : obstacle.projection);
+        const is_filled = obstacle.section.length > 0;
+        const whole = extent_of(is_filled ? obstacle.section : obstacle.projection);
         const seen = {
             x_m: [Math.max(whole.x_m[0], shown.x_m[0]), Math.min(whole.x_m[1], shown.x_m[1])],
             z_m: [Math.max(whole.z_m[0], shown.z_m[0]), Math.min(whole.z_m[1], shown.z_m[1])],
@@ -77,13 +74,17 @@ export function draw_obstacle_names(view, obstacles, placement) {
         // Inside first, from the middle outwards; then around.
         const shares = [0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75];
         const room = Math.max(0, (right - left) / 2 - half);
-        const inside = [0, -0.3, 0.3].flatMap((up) => shares.map((share) => [x + share * room, y + up * (bottom - top)]));
+        const inside =
+            [0, -0.3, 0.3].flatMap((up) => shares.map((share) => [x + share * room, y + up * (bottom - top)]));
         const around = [[x, top - 9], [x, bottom + 9], [right + half, y], [left - half, y]];
-        const candidates = right - left > 2 * half - 12 && bottom - top > line_height ? [...inside, ...around] : [...around, [x, y]];
+        const candidates =
+            right - left > 2 * half - 12 && bottom - top > line_height ? [...inside, ...around] : [...around, [x, y]];
         const found = placement.find(text, candidates);
         if (found) {
             const is_inside = found[1] > top && found[1] < bottom && found[0] > left && found[0] < right;
-            marks.push(word(`${is_cut ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text, text.endsWith("…\u2069") ? obstacle.name : null));
+            marks.push(word(
+                `${is_filled ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text,
+                text.endsWith("…\u2069") ? obstacle.name : null));
         }
     }
     return marks;
@@ -93,8 +94,10 @@ export function draw_obstacle_names(view, obstacles, placement) {
 export function draw_place_names(view, model, placement) {
     const around = ([x, y], reach, text) => {
         const half = width_of(text) / 2 + 4;
-        return [[x, y - reach - 9], [x, y + reach + 9], [x - reach - half, y], [x + reach + half, y],
-            [x, y - reach - 22], [x, y + reach + 22], [x - half, y + reach + 12], [x + half, y + reach + 12]];
+        return [
+            [x, y - reach - 9], [x, y + reach + 9], [x - reach - half, y], [x + reach + half, y], [x, y - reach - 22],
+            [x, y + reach + 22], [x - half, y + reach + 12], [x + half, y + reach + 12]
+        ];
     };
     const marks = [];
     model.goals.forEach((goal, index) => {
@@ -122,7 +125,8 @@ export function draw_snapshot_times(view, {data}, rows, placement) {
         const [x, y] = view.to_pixels(data.x_m[row], data.z_m[row]);
         const away = 0.2 * view.pixels_per_m + 9;
         const sides = data.ee_z_m[row] < data.z_m[row] - 0.1 ? [-1, 1] : [1, -1];
-        const found = placement.find(text, sides.flatMap((side) => [0, 12].map((more) => [x, y + side * (away + more)])));
+        const found =
+            placement.find(text, sides.flatMap((side) => [0, 12].map((more) => [x, y + side * (away + more)])));
         if (found) {
             marks.push(word("of-time", ...found, text));
         }

@@ -15,10 +15,12 @@ import {make_head, make_verdict} from "./verdict.js";
 import {make_view3d} from "./view3d.js";
 
 function show_trouble(page, error, theme) {
-    const text = error instanceof Trouble ? error.message
-        : `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
+    const text = error instanceof Trouble ?
+        error.message :
+        `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
     page.replaceChildren(
-        h("header", {class: "head"}, h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash"), theme.element)),
+        h("header", {class: "head"},
+          h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash"), theme.element)),
         h("main", null, h("p", {class: "page-trouble", role: "alert"}, text)), make_foot(null));
 }
 
@@ -28,25 +30,20 @@ function assemble(page, model, theme) {
     const scene = make_scene(model, clock, playback);
     const plots = clock ? make_plots(model, clock, playback) : null;
     page.replaceChildren(
-        h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"),
-        make_head(model, theme.element),
-        h("main", null,
-            make_verdict(model),
-            h("section", {class: `explore${clock ? "" : " alone"}`, id: "scene", "aria-label": "Scene and plots"},
-                h("div", {class: "scene-side"},
-                    h("h2", null, clock ? "Flight" : "Scene"),
-                    scene.element,
-                    clock ? make_readout(model, clock) : null,
-                    h("p", {class: "hint for-keys muted screen-only"}, clock
-                        ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. "
-                        : "", "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; in focus: + − 0 and W A S D."),
-                    h("p", {class: "hint for-fingers muted screen-only"}, "Two fingers zoom and move the scene",
-                        clock ? "; a finger along a plot moves the vehicle." : "."),
-                    make_obstacle_table(model)),
-                plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time"), plots.element) : null),
-            make_search(model),
-            make_view3d(model, clock, theme),
-            make_repeat(model)),
+        h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"), make_head(model, theme.element),
+        h("main", null, make_verdict(model),
+          h("section", {class: `explore${clock ? "" : " alone"}`, id: "scene", "aria-label": "Scene and plots"},
+            h("div", {class: "scene-side"}, h("h2", null, clock ? "Flight" : "Scene"), scene.element,
+              clock ? make_readout(model, clock) : null,
+              h("p", {class: "hint for-keys muted screen-only"},
+                clock ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. " : "",
+                "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; " +
+                    "in focus: + − 0 and W A S D."),
+              h("p", {class: "hint for-fingers muted screen-only"}, "Two fingers zoom and move the scene",
+                clock ? "; a finger along a plot moves the vehicle." : "."),
+              make_obstacle_table(model)),
+            plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time", plots.moment), plots.element) : null),
+          make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
         make_foot(model.report));
     document.title = `${model.solution.problem?.name ?? "Run"} · Downwash`;
     if (clock && model.is_cut_short) {
@@ -59,16 +56,16 @@ function assemble(page, model, theme) {
 const painted = () => new Promise((done) => {
     const timeout = setTimeout(done, 1000);
     requestAnimationFrame(() => requestAnimationFrame(() => {
-        clearTimeout(timeout);
-        done();
-    }));
+                              clearTimeout(timeout);
+                              done();
+                          }));
 });
 
 const api = {};
 /**
- * For tests and the curious, read-only but for `time`: `ready` resolves when the page stands (with false when it shows an
- * error instead); `data` has the columns of trajectory.csv by name, `solution` is solution.json, `report` all of the data;
- * `row` and `time` are the moment shown, and setting `time` moves the slider; `layers` says which are on;
+ * For tests and the curious, read-only but for `time`: `ready` resolves when the page stands (with false when it shows
+ * an error instead); `data` has the columns of trajectory.csv by name, `solution` is solution.json, `report` all of the
+ * data; `row` and `time` are the moment shown, and setting `time` moves the slider; `layers` says which are on;
  * `pixels(x, z)` are the client coordinates of a point of the plane in the scene.
  */
 Object.defineProperty(window, "downwash", {value: api});
@@ -95,17 +92,21 @@ async function run() {
         time: {
             get: () => clock?.time_s ?? null,
             set: (time_s) => {
-                playback.slider.value = String(clock.row_at(time_s));
-                playback.slider.dispatchEvent(new Event("input"));
+                if (clock) {
+                    playback.slider.value = String(clock.row_at(time_s));
+                    playback.slider.dispatchEvent(new Event("input"));
+                }
             },
         },
         is_playing: {get: () => playback?.is_playing ?? false},
         layers: {get: () => ({...scene.shown})},
-        pixels: {value: (x_m, z_m) => {
-            const box = scene.view.svg.getBoundingClientRect();
-            const [x, y] = scene.view.to_pixels(x_m, z_m), scale = box.width / scene.view.width;
-            return [box.left + x * scale, box.top + y * scale];
-        }},
+        pixels: {
+            value: (x_m, z_m) => {
+                const box = scene.view.svg.getBoundingClientRect();
+                const [x, y] = scene.view.to_pixels(x_m, z_m), scale = box.width / scene.view.width;
+                return [box.left + x * scale, box.top + y * scale];
+            }
+        },
     });
     Object.freeze(api);
     await painted();

@@ -1,6 +1,6 @@
 // What the rest of the page works on: the data, checked and decoded once.
 
-import {Trouble, decode_flight, decode_map, decode_tree} from "./decode.js";
+import {decode_flight, decode_map, decode_tree, Trouble} from "./decode.js";
 
 export const schema = "downwash/report/v1";
 
@@ -16,7 +16,8 @@ export function read_report(text) {
         throw new Trouble("This page is an empty template: no run was put into it.");
     }
     if (report?.schema !== schema) {
-        throw new Trouble(`The data of this page is “${report?.schema ?? "without a schema"}”; this page shows ${schema}.`);
+        throw new Trouble(
+            `The data of this page is “${report?.schema ?? "without a schema"}”; this page shows ${schema}.`);
     }
     for (const key of ["solution", "scene", "robot", "start", "goals"]) {
         if (typeof report[key] !== "object" || report[key] === null) {
@@ -27,8 +28,19 @@ export function read_report(text) {
 }
 
 const needed_columns = [
-    "t_s", "ref_x_m", "ref_z_m", "ref_arm_rad", "x_m", "z_m", "pitch_rad", "arm_rad",
-    "clearance_m", "ee_x_m", "ee_z_m", "power_w", "energy_j",
+    "t_s",
+    "ref_x_m",
+    "ref_z_m",
+    "ref_arm_rad",
+    "x_m",
+    "z_m",
+    "pitch_rad",
+    "arm_rad",
+    "clearance_m",
+    "ee_x_m",
+    "ee_z_m",
+    "power_w",
+    "energy_j",
 ];
 
 /** Rotors that coincide in the plane of motion, as indices into the robot's list. */
@@ -44,6 +56,11 @@ function group_rotors(positions) {
     return [...groups.values()];
 }
 
+/** Equal but for rounding, as of rotors on either side of the plane of motion. */
+function are_alike(a, b) {
+    return a === b || a.every((value, i) => Math.abs(value - b[i]) <= 1e-9 * Math.abs(value) || Object.is(value, b[i]));
+}
+
 /** What each rotor's columns are, alike ones put together: lines that would cover each other are one line. */
 function rotor_lines(data, count, suffix) {
     const lines = [];
@@ -52,7 +69,7 @@ function rotor_lines(data, count, suffix) {
         if (!values) {
             continue;
         }
-        const twin = lines.find((line) => line.values === values);
+        const twin = lines.find((line) => are_alike(line.values, values));
         if (twin) {
             twin.rotors.push(rotor);
         } else {
@@ -62,14 +79,12 @@ function rotor_lines(data, count, suffix) {
     return lines;
 }
 
-function unit_of(objective) {
-    return {energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? "";
-}
+function unit_of(objective) { return {energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? ""; }
 
 function objective_text(objective) {
-    return typeof objective === "string"
-        ? objective
-        : Object.entries(objective ?? {}).map(([name, weight]) => `${weight} × ${name}`).join(" + ");
+    return typeof objective === "string" ?
+        objective :
+        Object.entries(objective ?? {}).map(([name, weight]) => `${weight} × ${name}`).join(" + ");
 }
 
 /** @param {any} report */
@@ -90,7 +105,12 @@ export async function build_model(report) {
     const knots = solution.plan?.reference ?? [];
     const outcome = solution.execution?.outcome ?? null;
     return {
-        report, solution, robot, data, rows, tree,
+        report,
+        solution,
+        robot,
+        data,
+        rows,
+        tree,
         scene: report.scene,
         map: levels ? {...report.map, levels} : null,
         goals: report.goals,

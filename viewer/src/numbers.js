@@ -36,6 +36,8 @@ export function between_knots(from, to, t_s) {
     const along = (value, rate, bend) => from[value] * (1 - end) + to[value] * end +
         h * ((from[rate] ?? 0) * rates[0] + (to[rate] ?? 0) * rates[1]) +
         h * h * ((from[bend] ?? 0) * bends[0] + (to[bend] ?? 0) * bends[1]);
-    return [along("x_m", "vx_m_s", "ax_m_s2"), along("z_m", "vz_m_s", "az_m_s2"),
-        along("arm_rad", "arm_rate_rad_s", "arm_acceleration_rad_s2")];
+    return [
+        along("x_m", "vx_m_s", "ax_m_s2"), along("z_m", "vz_m_s", "az_m_s2"),
+        along("arm_rad", "arm_rate_rad_s", "arm_acceleration_rad_s2")
+    ];
 }

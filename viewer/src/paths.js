@@ -43,11 +43,12 @@ export function draw_waypoints({solution}) {
 }
 
 export function draw_tree({tree}) {
+    const at = (node) => `${tree.x_m[node].toFixed(3)} ${tree.z_m[node].toFixed(3)}`;
     let d = "";
     for (let i = 0; i < tree.nodes; ++i) {
         const parent = tree.parent[i];
         if (parent >= 0 && parent < tree.nodes) {
-            d += `M${tree.x_m[parent].toFixed(3)} ${tree.z_m[parent].toFixed(3)}L${tree.x_m[i].toFixed(3)} ${tree.z_m[i].toFixed(3)}`;
+            d += `M${at(parent)}L${at(i)}`;
         }
     }
     return s("path", {class: "tree", d});
@@ -61,8 +62,10 @@ export function snapshot_rows({data, rows, robot}) {
     const half_arm = robot.arm.length_m / 2;
     const way = new Float64Array(rows);
     for (let i = 1; i < rows; ++i) {
-        way[i] = way[i - 1] + Math.hypot(data.ref_x_m[i] - data.ref_x_m[i - 1], data.ref_z_m[i] - data.ref_z_m[i - 1],
-            half_arm * (data.ref_arm_rad[i] - data.ref_arm_rad[i - 1]));
+        way[i] = way[i - 1] +
+            Math.hypot(
+                data.ref_x_m[i] - data.ref_x_m[i - 1], data.ref_z_m[i] - data.ref_z_m[i - 1],
+                half_arm * (data.ref_arm_rad[i] - data.ref_arm_rad[i - 1]));
     }
     const reach = range_of(robot.bodies.flatMap((body) => body.outline.map(([x]) => x)));
     const width = Math.max(0.3, reach.high - reach.low);
@@ -81,7 +84,7 @@ export function snapshot_rows({data, rows, robot}) {
 export function draw_snapshots(model, rows) {
     const {robot, rotor_groups, data} = model;
     const draw = (style, pose) => vehicle_at(robot, rotor_groups, `${style} snapshot`, pose);
-    return s("g", {class: "snapshots"},
-        rows.map((row) => draw("planned", reference_at(data, row))),
+    return s(
+        "g", {class: "snapshots"}, rows.map((row) => draw("planned", reference_at(data, row))),
         rows.map((row) => draw("flown", pose_at(data, row))));
 }

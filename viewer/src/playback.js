@@ -7,20 +7,37 @@ const speeds = [0.25, 0.5, 1, 2, 4];
 
 /** Keys act on the whole page, except where a control has its own use for them. */
 function has_own_use(target, key) {
+    if (!(target instanceof Element)) {
+        return false;
+    }
     if (target.closest("select, textarea, input[type=text], [data-own-keys]")) {
         return true;
     }
-    return (key === " " || key === "Enter") && target.closest("button, summary, a, input[type=checkbox], input[type=radio]") !== null
-        || (key.startsWith("Arrow") && target.closest("input[type=radio]") !== null);
+    // Text in a box of its own is scrolled by keys.
+    if (target.closest("pre, .scroll, .description") && key !== " ") {
+        return true;
+    }
+    return (key === " " || key === "Enter") &&
+        target.closest("button, summary, a, input[type=checkbox], input[type=radio]") !== null ||
+        (key.startsWith("Arrow") && target.closest("input[type=radio]") !== null);
 }
 
 export function make_playback(model, clock) {
-    const slider = h("input", {type: "range", class: "time", id: "time", min: 0, max: clock.rows - 1, step: 1, value: 0,
-        "aria-label": "Time of the flight"});
-    const readout = h("output", {class: "time-text", for: "time"});
+    const slider = h("input", {
+        type: "range",
+        class: "time",
+        id: "time",
+        min: 0,
+        max: clock.rows - 1,
+        step: 1,
+        value: 0,
+        "aria-label": "Time of the flight"
+    });
+    const readout = h("span", {class: "time-text"});
     const play = h("button", {type: "button", class: "play", "aria-label": "Play"});
-    const speed = h("select", {"aria-label": "Speed"}, speeds.map((value) =>
-        h("option", {value, selected: value === 1}, `${value}×`)));
+    const speed =
+        h("select", {"aria-label": "Speed"},
+          speeds.map((value) => h("option", {value, selected: value === 1}, `${value}×`)));
     let playing = null;
 
     const show_state = () => {
@@ -68,9 +85,12 @@ export function make_playback(model, clock) {
         const later = (direction) => second ? clock.row_at(clock.time_s + direction) : clock.row + direction;
         const acts = {
             " ": toggle,
-            ArrowRight: () => go(later(1)), ArrowUp: () => go(later(1)),
-            ArrowLeft: () => go(later(-1)), ArrowDown: () => go(later(-1)),
-            Home: () => go(0), End: () => go(clock.rows - 1),
+            ArrowRight: () => go(later(1)),
+            ArrowUp: () => go(later(1)),
+            ArrowLeft: () => go(later(-1)),
+            ArrowDown: () => go(later(-1)),
+            Home: () => go(0),
+            End: () => go(clock.rows - 1),
         };
         // Up and down scroll the page unless the slider itself has the focus.
         const is_scrolling = ["ArrowUp", "ArrowDown"].includes(pressed.key) && pressed.target !== slider;
@@ -87,7 +107,8 @@ export function make_playback(model, clock) {
     });
     show_state();
 
-    const share = (time_s) => `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${(time_s / (model.end_s || 1)).toFixed(5)})`;
+    const share = (time_s) =>
+        `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${(time_s / (model.end_s || 1)).toFixed(5)})`;
     const marks = [];
     if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
         marks.push(h("span", {class: "mark hold", style: share(model.hold_from_s)}, "hold"));
@@ -95,10 +116,10 @@ export function make_playback(model, clock) {
     if (model.is_cut_short) {
         marks.push(h("span", {class: "mark failure", style: share(model.end_s)}, "✕"));
     }
-    const element = h("div", {class: "playback screen-only", role: "group", "aria-label": "Playback"},
-        play,
-        h("div", {class: "time-track"}, slider, h("div", {class: "marks", "aria-hidden": "true"}, marks)),
-        h("span", {class: "time-box"}, readout, h("span", {class: "muted"}, ` / ${seconds(model.end_s)}`)),
-        h("label", {class: "speed"}, h("span", {class: "visually-hidden"}, "Speed"), speed));
+    const element =
+        h("div", {class: "playback screen-only", role: "group", "aria-label": "Playback"}, play,
+          h("div", {class: "time-track"}, slider, h("div", {class: "marks", "aria-hidden": "true"}, marks)),
+          h("span", {class: "time-box"}, readout, h("span", {class: "muted"}, ` / ${seconds(model.end_s)}`)),
+          h("label", {class: "speed"}, h("span", {class: "visually-hidden"}, "Speed"), speed));
     return {element, slider, toggle, pause, get is_playing() { return playing !== null; }};
 }

@@ -1,13 +1,19 @@
 // Time plots one below the other, with one cursor.
 
 import {scaleLinear} from "d3-scale";
+
 import {h, once_a_frame, s, set_attributes} from "./dom.js";
 import {number, seconds} from "./format.js";
 import {range_of} from "./numbers.js";
 import {plots_of} from "./series.js";
 import {keep_sized} from "./sizing.js";
 
-const margin = {left: 46, right: 10, top: 6, bottom: 18};
+const margin = {
+    left: 46,
+    right: 10,
+    top: 6,
+    bottom: 18
+};
 const height = 92;
 
 /** Of the rows in a column of pixels only first, least, greatest and last can be seen. */
@@ -42,7 +48,8 @@ function describe(plot, model) {
         return `${each.name ? `${each.name}: ` : ""}from ${plot.text(low)} at ${seconds(model.data.t_s[low_row])} ` +
             `to ${plot.text(high)} at ${seconds(model.data.t_s[high_row])}`;
     });
-    const limits = (plot.limits ?? []).filter((limit) => limit.name).map((limit) => `${limit.name} ${plot.text(limit.value)}`);
+    const limits =
+        (plot.limits ?? []).filter((limit) => limit.name).map((limit) => `${limit.name} ${plot.text(limit.value)}`);
     return `${plot.title} over time. ${[...ranges, ...limits].join("; ")}.`;
 }
 
@@ -53,21 +60,31 @@ class TimePlot {
         const ranges = plot.lines.map((each) => range_of(each.values));
         const greatest = Math.max(...ranges.flatMap(({low, high}) => [Math.abs(low), Math.abs(high)]));
         this.limits = (plot.limits ?? []).filter(({value, if_near}) => !if_near || Math.abs(value) < 2 * greatest);
-        const all = [...ranges.flatMap(({low, high}) => [low, high]), ...this.limits.map((limit) => limit.value),
-            ...(plot.from_zero ? [0] : [])].filter(Number.isFinite);
+        const all = [
+            ...ranges.flatMap(({low, high}) => [low, high]), ...this.limits.map((limit) => limit.value),
+            ...(plot.from_zero ? [0] : [])
+        ].filter(Number.isFinite);
         const far = (plot.limits ?? []).filter((limit) => !this.limits.includes(limit)).map((limit) => limit.value);
-        this.values = plot.lines.map(() => h("output", {class: "value"}));
+        this.values = plot.lines.map(() => h("span", {class: "value"}));
         this.cursor = s("path", {class: "cursor"});
         this.dots = plot.lines.map((each) => s("circle", {class: `dot ${each.style}`, r: 3}));
         this.still = s("g");
-        this.svg = s("svg", {class: "plot-svg", role: "img", "aria-label": describe(plot, model)}, this.still, this.cursor, this.dots);
-        this.element = h("figure", {class: "plot", "data-plot": plot.id},
+        this.svg =
+            s("svg", {class: "plot-svg", role: "img", "aria-label": describe(plot, model)}, this.still, this.cursor,
+              this.dots);
+        this.element = h(
+            "figure", {class: "plot", "data-plot": plot.id},
             h("figcaption", null,
-                h("span", {class: "plot-title"}, plot.title, h("span", {class: "unit"}, plot.unit === "1" ? "" : ` [${plot.unit}]`)),
-                far.length > 0 ? h("span", {class: "muted"}, `limit ±${number(Math.abs(far[0]), "~r")}${plot.unit}, beyond the plot`) : null,
-                plot.lines.map((each, index) => h("span", {class: "entry"},
-                    plot.lines.length > 1 ? h("span", {class: `key ${each.style}`, "aria-hidden": "true"}) : null,
-                    each.name ? h("span", {class: "name"}, each.name) : null, this.values[index]))),
+              h("span", {class: "plot-title"}, plot.title,
+                h("span", {class: "unit"}, plot.unit === "1" ? "" : ` [${plot.unit}]`)),
+              far.length > 0 ?
+                  h("span", {class: "muted"}, `limit ±${number(Math.abs(far[0]), "~r")}${plot.unit}, beyond the plot`) :
+                  null,
+              plot.lines.map(
+                  (each, index) =>
+                      h("span", {class: "entry"},
+                        plot.lines.length > 1 ? h("span", {class: `key ${each.style}`, "aria-hidden": "true"}) : null,
+                        each.name ? h("span", {class: "name"}, each.name) : null, this.values[index]))),
             this.svg);
         const low = Math.min(...all), high = Math.max(...all);
         const pad = high > low ? 0.05 * (high - low) : Math.max(0.05 * Math.abs(high), 0.5);
@@ -85,34 +102,73 @@ class TimePlot {
         const text_y = (v) => y.tickFormat(3)(v).replace("-", "−").replace(/,/g, "\u202f");
         const parts = [], names = [];
         if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
-            parts.push(s("rect", {class: "hold-band", x: x(model.hold_from_s), y: margin.top,
-                width: x(model.end_s) - x(model.hold_from_s), height: bottom - margin.top}));
+            parts.push(s("rect", {
+                class: "hold-band",
+                x: x(model.hold_from_s),
+                y: margin.top,
+                width: x(model.end_s) - x(model.hold_from_s),
+                height: bottom - margin.top
+            }));
         }
-        parts.push(s("path", {class: "grid-lines", d: [
-            ...ticks_x.map((t) => `M${x(t)} ${margin.top}V${bottom}`),
-            ...ticks_y.map((v) => `M${margin.left} ${y(v)}H${width - margin.right}`)].join("")}));
-        parts.push(...ticks_x.map((t, i) => s("text", {class: "tick", x: x(t), y: bottom + 13,
-            "text-anchor": i === 0 ? "start" : "middle"}, i === ticks_x.length - 1 && width - x(t) > 40 ? `${t} s` : String(t))));
-        parts.push(...ticks_y.map((v) => s("text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"},
-            text_y(v))));
+        parts.push(s("path", {
+            class: "grid-lines",
+            d: [
+                ...ticks_x.map((t) => `M${x(t)} ${margin.top}V${bottom}`),
+                ...ticks_y.map((v) => `M${margin.left} ${y(v)}H${width - margin.right}`)
+            ].join("")
+        }));
+        parts.push(...ticks_x.map(
+            (t, i) =>
+                s("text", {class: "tick", x: x(t), y: bottom + 13, "text-anchor": i === 0 ? "start" : "middle"},
+                  i === ticks_x.length - 1 && width - x(t) > 40 ? `${t} s` : String(t))));
+        parts.push(...ticks_y.map(
+            (v) => s(
+                "text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"}, text_y(v))));
         for (const limit of this.limits) {
             parts.push(s("path", {class: "limit", d: `M${margin.left} ${y(limit.value)}H${width - margin.right}`}));
             if (limit.name) {
                 const is_high = y(limit.value) < margin.top + 14;
-                // At the end where the line is farther away.
-                const values = plot.lines[0].values, last = values[values.length - 1];
-                const is_left = Math.abs(values[0] - limit.value) > Math.abs(last - limit.value);
-                names.push(s("text", {class: "limit-name", x: is_left ? margin.left + 5 : width - margin.right - 4,
-                    y: y(limit.value) + (is_high ? 11 : -4), "text-anchor": is_left ? "start" : "end"}, `${limit.name} ${number(limit.value, "~r")}${plot.unit === "°" ? "" : "\u00a0"}${plot.unit}`));
+                const text =
+                    `${limit.name} ${number(limit.value, "~r")}${plot.unit === "°" ? "" : "\u00a0"}${plot.unit}`;
+                names.push(
+                    s("text", {
+                        class: "limit-name",
+                        x: this.#clear_place(limit.value, 6.2 * text.length, width),
+                        y: y(limit.value) + (is_high ? 11 : -4)
+                    },
+                      text));
             }
         }
-        plot.lines.forEach((each) => parts.push(s("path", {class: `line ${each.style}`,
-            d: line(each.values, (i) => x(t_s[i]), y)})));
+        plot.lines.forEach(
+            (each) => parts.push(s("path", {class: `line ${each.style}`, d: line(each.values, (i) => x(t_s[i]), y)})));
         if (model.is_cut_short) {
             parts.push(s("path", {class: "failure-line", d: `M${x(model.end_s)} ${margin.top}V${bottom}`}));
         }
         this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
         this.still.replaceChildren(...parts, ...names);
+    }
+
+    /** Where words of that length at a limit are farthest from the lines. */
+    #clear_place(limit, length, width) {
+        const t_s = this.model.data.t_s;
+        let best = margin.left + 5, farthest = -1;
+        for (let step = 0; step <= 8; ++step) {
+            const left = margin.left + 5 + (step / 8) * (width - margin.right - margin.left - 9 - length);
+            let least = Infinity;
+            for (let i = 0; i < t_s.length; i += 5) {
+                const at = this.x(t_s[i]);
+                if (at >= left - 4 && at <= left + length + 4) {
+                    this.plot.lines.forEach(({values}) => {
+                        least = Math.min(least, Math.abs(values[i] - limit));
+                    });
+                }
+            }
+            if (least > 1.02 * farthest) {
+                farthest = least;
+                best = left;
+            }
+        }
+        return best;
     }
 
     show(row) {
@@ -127,8 +183,9 @@ class TimePlot {
         this.cursor.setAttribute("d", `M${at} ${margin.top}V${height - margin.bottom}`);
         plot.lines.forEach((each, index) => {
             const is_there = Number.isFinite(each.values[row]);
-            set_attributes(this.dots[index], {cx: at, cy: is_there ? this.y(each.values[row]) : 0,
-                visibility: is_there ? "visible" : "hidden"});
+            set_attributes(
+                this.dots[index],
+                {cx: at, cy: is_there ? this.y(each.values[row]) : 0, visibility: is_there ? "visible" : "hidden"});
         });
     }
 
@@ -144,23 +201,34 @@ class TimePlot {
 function make_table(plots, model, clock) {
     const rows = Array.from({length: 21}, (_, i) => clock.row_at((i / 20) * model.end_s));
     const columns = plots.flatMap(({plot}) => plot.lines.map((each) => ({plot, each})));
-    return h("details", {class: "table-of-plots"},
-        h("summary", null, "The plots as a table"),
+    return h(
+        "details", {class: "table-of-plots"}, h("summary", null, "The plots as a table"),
         h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "The plots as a table"},
-            h("table", {class: "numbers"},
-                h("thead", null, h("tr", null, h("th", {scope: "col"}, "time"),
-                    columns.map(({plot, each}) => h("th", {scope: "col"}, `${plot.title.split(",")[0]}${each.name ? `, ${each.name}` : ""}`)))),
-                h("tbody", null, [...new Set(rows)].map((row) => h("tr", null,
-                    h("th", {scope: "row"}, seconds(model.data.t_s[row])),
-                    columns.map(({plot, each}) => h("td", null, plot.text(each.values[row])))))))));
+          h("table", {class: "numbers"},
+            h("thead", null,
+              h("tr", null, h("th", {scope: "col"}, "time"),
+                columns.map(
+                    ({plot, each}) =>
+                        h("th", {scope: "col"}, `${plot.title.split(",")[0]}${each.name ? `, ${each.name}` : ""}`)))),
+            h("tbody", null,
+              [...new Set(rows)].map(
+                  (row) =>
+                      h("tr", null, h("th", {scope: "row"}, seconds(model.data.t_s[row])),
+                        columns.map(({plot, each}) => h("td", null, plot.text(each.values[row])))))))));
 }
 
 export function make_plots(model, clock, playback) {
     const plots = plots_of(model).map((plot) => new TimePlot(plot, model));
     const spoken = h("p", {class: "visually-hidden", role: "status"});
-    const stack = h("div", {class: "plot-stack", tabindex: "0", role: "group",
-        "aria-label": "Time plots. Arrow keys move the cursor by a tick, with shift by a second; Home and End go to the ends."},
-        plots.map((plot) => plot.element));
+    const stack =
+        h("div", {
+            class: "plot-stack",
+            tabindex: "0",
+            role: "group",
+            "aria-label":
+                "Time plots. Arrow keys move the cursor by a tick, with shift by a second; Home and End go to the ends."
+        },
+          plots.map((plot) => plot.element));
     const element = h("div", {class: "plots"}, stack, spoken, make_table(plots, model, clock));
     let dragged = null;
     for (const plot of plots) {
@@ -176,8 +244,12 @@ export function make_plots(model, clock, playback) {
             }
         });
         plot.svg.addEventListener("pointermove", (happened) => dragged === plot && go(happened));
-        plot.svg.addEventListener("pointerup", () => { dragged = null; });
-        plot.svg.addEventListener("pointercancel", () => { dragged = null; });
+        plot.svg.addEventListener("pointerup", () => {
+            dragged = null;
+        });
+        plot.svg.addEventListener("pointercancel", () => {
+            dragged = null;
+        });
     }
     keep_sized(plots[0].svg, 330, (width) => plots.forEach((plot) => {
         plot.resize(width);
@@ -185,16 +257,21 @@ export function make_plots(model, clock, playback) {
     }));
     const show = once_a_frame(() => plots.forEach((plot) => plot.show(clock.row)));
     let speak_later = 0;
+    const moment = h("span", {class: "moment screen-only"});
     clock.follow(() => {
         show();
+        moment.textContent = `at ${seconds(clock.time_s)}`;
         // Screen readers get the numbers when the cursor has come to rest in the plots.
         clearTimeout(speak_later);
         speak_later = setTimeout(() => {
             if (document.activeElement === stack && !playback.is_playing) {
-                spoken.textContent = `${seconds(clock.time_s)}: ` + plots.map(({plot, values}) =>
-                    `${plot.title.split(",")[0]} ${values.map((v) => v.textContent).join(", ")}`).join("; ");
+                spoken.textContent = `${seconds(clock.time_s)}: ` +
+                    plots
+                        .map(({plot,
+                               values}) => `${plot.title.split(",")[0]} ${values.map((v) => v.textContent).join(", ")}`)
+                        .join("; ");
             }
         }, 400);
     });
-    return {element, plots};
+    return {element, plots, moment};
 }

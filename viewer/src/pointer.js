@@ -3,7 +3,10 @@
 import {h} from "./dom.js";
 import {number, point} from "./format.js";
 
-/** @returns {number | null | undefined} the factor of the nearest point, null where it is not flyable, undefined outside */
+/**
+ * @returns {number | null | undefined} the factor of the nearest point, null where it is not flyable, undefined
+ *     outside
+ */
 function factor_at(map, x_m, z_m) {
     const column = Math.round((x_m - map.x_low_m) / map.cell_m), row = Math.round((z_m - map.z_low_m) / map.cell_m);
     if (column < 0 || row < 0 || column >= map.columns || row >= map.rows) {
@@ -28,7 +31,9 @@ export function make_pointer_text(view, map) {
         }
         const [x_m, z_m] = view.to_plane(x, y);
         const factor = map ? factor_at(map, x_m, z_m) : undefined;
-        const words = factor === undefined ? "" : factor === null ? ", not flyable" : `, factor ${number(factor, ".2f")}`;
+        const words = factor === undefined ? "" :
+            factor === null                ? ", not flyable" :
+                                             `, factor ${number(factor, ".2f")}`;
         element.textContent = point(x_m, z_m) + words;
     });
     view.svg.addEventListener("pointerleave", () => {

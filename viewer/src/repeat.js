@@ -2,9 +2,11 @@
 
 import d3_licence from "../licences/d3.txt";
 import three_licence from "../licences/three.txt";
+
 import {foreign, h} from "./dom.js";
 import {place} from "./format.js";
 import {extent_of} from "./numbers.js";
+import {is_cut} from "./surroundings.js";
 import {variants} from "./words.js";
 
 /** Copying by the clipboard where a page from a file may, else by a selection. */
@@ -24,53 +26,67 @@ async function copy(text, source) {
 function make_command(command) {
     const code = h("code", null, foreign(command));
     const status = h("span", {class: "muted", role: "status"});
-    const button = h("button", {type: "button", class: "screen-only", onclick: async () => {
-        status.textContent = (await copy(command, code)) ? "Copied." : "Selected: copy it with the keyboard.";
-    }}, "Copy");
-    return h("div", {class: "command"}, h("pre", {tabindex: "0", role: "region", "aria-label": "Command"}, code), button, status);
+    const button =
+        h("button", {
+            type: "button",
+            class: "screen-only",
+            onclick: async () => {
+                status.textContent = (await copy(command, code)) ? "Copied." : "Selected: copy it with the keyboard.";
+            }
+        },
+          "Copy");
+    return h(
+        "div", {class: "command"}, h("pre", {tabindex: "0", role: "region", "aria-label": "Command"}, code), button,
+        status);
 }
 
-function range_text([low, high]) {
-    return `${place(low)} to ${place(high)}`;
-}
+function range_text([low, high]) { return `${place(low)} to ${place(high)}`; }
 
 export function make_obstacle_table({scene}) {
     if (scene.obstacles.length === 0) {
         return h("p", {class: "muted"}, "There are no obstacles.");
     }
-    return h("details", null, h("summary", null, `The ${scene.obstacles.length} obstacles as a table`),
+    return h(
+        "details", null, h("summary", null, `The ${scene.obstacles.length} obstacles as a table`),
         h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Obstacles"},
-            h("table", {class: "numbers obstacle-table"},
-                h("thead", null, h("tr", null, ["name", "kind", "plane of motion", "x, whole", "z, whole"].map((name) => h("th", {scope: "col"}, name)))),
-                h("tbody", null, scene.obstacles.map((obstacle) => {
-                    const {x_m, z_m} = extent_of(obstacle.projection);
-                    return h("tr", null, h("th", {scope: "row", class: "foreign-name"}, foreign(obstacle.name)), h("td", null, obstacle.kind),
-                        h("td", null, obstacle.section.length > 0 ? "cuts it" : "beside it"),
-                        h("td", null, range_text(x_m)), h("td", null, range_text(z_m)));
-                })))));
+          h("table", {class: "numbers obstacle-table"},
+            h("thead", null,
+              h("tr", null,
+                ["name", "kind", "plane of motion", "x, whole", "z, whole"].map(
+                    (name) => h("th", {scope: "col"}, name)))),
+            h("tbody", null, scene.obstacles.map((obstacle) => {
+                const {x_m, z_m} = extent_of(obstacle.projection);
+                return h(
+                    "tr", null, h("th", {scope: "row", class: "foreign-name"}, foreign(obstacle.name)),
+                    h("td", null, obstacle.kind), h("td", null, is_cut(obstacle) ? "cuts it" : "beside it"),
+                    h("td", null, range_text(x_m)), h("td", null, range_text(z_m)));
+            })))));
 }
 
 export function make_repeat(model) {
     const {report, solution} = model;
     const row = (name, value) => h("div", null, h("dt", null, name), h("dd", null, value));
-    return h("section", {class: "repeat", "aria-labelledby": "repeat-title"},
-        h("h2", {id: "repeat-title"}, "To repeat"),
+    return h(
+        "section", {class: "repeat", "aria-labelledby": "repeat-title"}, h("h2", {id: "repeat-title"}, "To repeat"),
         report.command ? make_command(report.command) : null,
-        h("dl", {class: "pairs"},
-            row("version", `downwash ${report.version ?? solution.version}`),
-            row("seed", String(solution.seed)),
-            row("variant", `${solution.variant}${variants[solution.variant] ? `: ${variants[solution.variant]}` : ""}`),
-            row("algorithm", solution.algorithm),
-            row("objective", model.objective),
-            row("problem", foreign(solution.problem?.file ?? solution.problem?.name ?? "–")),
-            row("SHA-256 of the problem", h("code", {class: "hash"}, solution.problem?.sha256 ?? "–"))),
-        report.effective_yaml ? h("details", {class: "yaml"}, h("summary", null, "Effective parameters, every default filled in"),
-            h("pre", {tabindex: "0", role: "region", "aria-label": "Effective parameters"}, h("code", null, foreign(report.effective_yaml)))) : null);
+        h("dl", {class: "pairs"}, row("version", `downwash ${report.version ?? solution.version}`),
+          row("seed", String(solution.seed)),
+          row("variant", `${solution.variant}${variants[solution.variant] ? `: ${variants[solution.variant]}` : ""}`),
+          row("algorithm", solution.algorithm), row("objective", model.objective),
+          row("problem", foreign(solution.problem?.file ?? solution.problem?.name ?? "–")),
+          row("SHA-256 of the problem", h("code", {class: "hash"}, solution.problem?.sha256 ?? "–"))),
+        report.effective_yaml ?
+            h("details", {class: "yaml"}, h("summary", null, "Effective parameters, every default filled in"),
+              h("pre", {tabindex: "0", role: "region", "aria-label": "Effective parameters"},
+                h("code", null, foreign(report.effective_yaml)))) :
+            null);
 }
 
 export function make_foot(report) {
-    return h("footer", {class: "foot"},
-        h("p", null, `Made by Downwash ${report?.version ?? ""}. The page needs no network and sends nothing anywhere.`),
+    return h(
+        "footer", {class: "foot"},
+        h("p", null,
+          `Made by Downwash ${report?.version ?? ""}. The page needs no network and sends nothing anywhere.`),
         h("details", {class: "licences screen-only"}, h("summary", null, "Licences of the libraries in this page"),
-            [d3_licence, three_licence].map((text) => h("pre", {tabindex: "0"}, text))));
+          [d3_licence, three_licence].map((text) => h("pre", {tabindex: "0"}, text))));
 }

@@ -3,14 +3,14 @@
 import {h, s} from "./dom.js";
 import {forces_note, make_forces} from "./forces.js";
 import {point, quantity, seconds} from "./format.js";
-import {Placement, draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way} from "./labels.js";
+import {draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way, Placement} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
 import {extent_of, range_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
 import {make_pointer_text} from "./pointer.js";
 import {keep_sized} from "./sizing.js";
-import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, make_hatches} from "./surroundings.js";
+import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, is_cut, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
 import {View} from "./view.js";
 
@@ -40,23 +40,27 @@ function padded({x_m, z_m}) {
 }
 
 function describe(model) {
-    const {scene, start, goals} = model;
-    const obstacles = scene.obstacles.length;
-    const cut = scene.obstacles.filter((o) => o.section.length > 0).length;
-    const flight = model.data
-        ? ` The flight takes ${seconds(model.end_s)} and ends at ${point(model.data.x_m[model.rows - 1], model.data.z_m[model.rows - 1])}.`
-        : " There is no flight.";
-    return `The plane of motion to scale, side view: ${obstacles} obstacles, ${cut} of them cut by the plane; ` +
-        `start at ${point(start.x_m, start.z_m)}; ` +
-        goals.map((g, i) => `goal ${goals.length > 1 ? i + 1 : ""} at ${point(g.x_m, g.z_m)}`).join(", ") + "." +
-        `${flight} The numbers stand in the tables of this page.`;
+    const {scene, start, goals, data, rows} = model;
+    const cut = scene.obstacles.filter(is_cut).length;
+    const goal_texts =
+        goals.map(({x_m, z_m}, index) => `goal${goals.length > 1 ? ` ${index + 1}` : ""} at ${point(x_m, z_m)}`);
+    const sentences = [
+        "The plane of motion to scale, seen from the side",
+        `${scene.obstacles.length} obstacles, ${cut} of them cut by the plane`,
+        [`Start at ${point(start.x_m, start.z_m)}`, ...goal_texts].join(", "),
+        data ? `The flight takes ${seconds(model.end_s)} and ends at ${point(data.x_m[rows - 1], data.z_m[rows - 1])}` :
+               "There is no flight",
+        "The numbers stand in the tables of this page",
+    ];
+    return `${sentences.join(". ")}.`;
 }
 
 /** A cross where the flight broke off or the search was stopped. */
 function draw_trouble(view, x_m, z_m) {
     const [x, y] = view.to_pixels(x_m, z_m);
-    return s("g", {class: "trouble-mark", transform: `translate(${x} ${y})`},
-        s("circle", {r: 10}), s("path", {d: "M-4 -4L4 4M-4 4L4 -4"}));
+    return s(
+        "g", {class: "trouble-mark", transform: `translate(${x} ${y})`}, s("circle", {r: 10}),
+        s("path", {d: "M-4 -4L4 4M-4 4L4 -4"}));
 }
 
 /** Words stay off the bodies of snapshots. */
@@ -79,7 +83,10 @@ export function make_scene(model, clock, playback) {
     const words = s("g", {class: "words"}), moving_words = s("g", {class: "moving-words"});
     view.overlay.append(words, moving_words);
 
-    /** @type {{id: string, name: string, swatch: string, on: boolean, draw: () => SVGElement | SVGElement[], into: SVGElement}[]} */
+    /**
+     * @type {{id: string, name: string, swatch: string, on: boolean, draw: () => SVGElement | SVGElement[], into:
+     *     SVGElement}[]}
+     */
     const layers = [];
     const under = s("g"), over = s("g");
     const layer = (id, name, swatch, on, draw, into = over) => layers.push({id, name, swatch, on, draw, into});
@@ -87,21 +94,21 @@ export function make_scene(model, clock, playback) {
         layer("map", "Aero map", "map", true, () => draw_map(model.map), view.raster);
     }
     if (model.tree) {
-        layer("tree", "Search tree", "tree", !data, () => draw_tree(model), under);
+        layer("tree", "Tree", "tree", !data, () => draw_tree(model), under);
     }
     let forces = null;
     if (data || solution.plan) {
-        layer("planned", "Planned path", "planned", true, () => [draw_planned(model), ...draw_waypoints(model)]);
+        layer("planned", "Planned", "planned", true, () => [draw_planned(model), ...draw_waypoints(model)]);
     }
     if (data) {
-        layer("flown", "Flown path", "flown", true, () => draw_flown(model));
-        layer("tip", "End-effector path", "tip", true, () => draw_tip(model));
+        layer("flown", "Flown", "flown", true, () => draw_flown(model));
+        layer("tip", "End effector", "tip", true, () => draw_tip(model));
         layer("snapshots", "Snapshots", "snapshots", true, () => draw_snapshots(model, rows));
         forces = make_forces(model, clock, view);
         layer("forces", "Thrust", "forces", true, () => forces.element, moving_words);
     }
     if (scene.obstacles.length > 0) {
-        layer("names", "Obstacle names", "names", true, () => s("g"), words);
+        layer("names", "Names", "names", true, () => s("g"), words);
     }
     view.world.append(surroundings, under, draw_start(model), draw_goals(model), over, current);
 
@@ -118,11 +125,16 @@ export function make_scene(model, clock, playback) {
             groups[id].style.display = is_on ? "" : "none";
         };
         show(on);
-        return h("label", {class: "layer"},
-            h("input", {type: "checkbox", "data-toggle": id, checked: on, onchange: ({target}) => {
-                show(target.checked);
-                view.redraw_soon();
-            }}),
+        return h(
+            "label", {class: "layer"}, h("input", {
+                type: "checkbox",
+                "data-toggle": id,
+                checked: on,
+                onchange: ({target}) => {
+                    show(target.checked);
+                    view.redraw_soon();
+                }
+            }),
             h("span", {class: `key ${swatch}`, "aria-hidden": "true"}), name);
     });
 
@@ -131,7 +143,8 @@ export function make_scene(model, clock, playback) {
     if (data) {
         current.append(ghost.element, flown.element);
     } else if (obstruction) {
-        current.append(vehicle_at(robot, rotor_groups, "obstructed",
+        current.append(vehicle_at(
+            robot, rotor_groups, "obstructed",
             {x_m: obstruction.x_m, z_m: obstruction.z_m, pitch_rad: 0, arm_rad: obstruction.arm_rad}));
     }
 
@@ -141,8 +154,9 @@ export function make_scene(model, clock, playback) {
         view.svg.style.setProperty("--disc-width", `${Math.min(4, Math.max(1.6, 0.035 * scale))}px`);
         const placement = new Placement(view.inside);
         const marks = [];
-        const trouble = model.is_cut_short ? [data.x_m[model.rows - 1], data.z_m[model.rows - 1]]
-            : !data && obstruction ? [obstruction.x_m, obstruction.z_m] : null;
+        const trouble = model.is_cut_short ? [data.x_m[model.rows - 1], data.z_m[model.rows - 1]] :
+            !data && obstruction           ? [obstruction.x_m, obstruction.z_m] :
+                                             null;
         if (trouble) {
             marks.push(draw_trouble(view, ...trouble));
             const [x, y] = view.to_pixels(...trouble);
@@ -175,40 +189,48 @@ export function make_scene(model, clock, playback) {
         }
     });
 
-    const button = (text, label, act) => h("button", {type: "button", class: "small", title: label, "aria-label": label, onclick: act}, text);
+    const button = (text, label, act) =>
+        h("button", {type: "button", class: "small", title: label, "aria-label": label, onclick: act}, text);
     const everything = padded(scene.bounds);
-    const tools = h("div", {class: "zoom-tools screen-only", role: "group", "aria-label": "Zoom"},
-        button("+", "Zoom in", () => view.zoom_by(1.4)),
-        button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
-        data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
-        button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
+    const tools =
+        h("div", {class: "zoom-tools screen-only", role: "group", "aria-label": "Zoom"},
+          button("+", "Zoom in", () => view.zoom_by(1.4)), button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
+          data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
+          button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
     const frame = h("div", {class: "scene-frame"}, view.svg, tools, make_pointer_text(view, model.map));
-    const element = h("figure", {class: "scene"},
-        h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"), switches),
-        frame,
-        playback?.element,
-        h("figcaption", null,
-            model.map ? make_color_bar(model.map) : null,
-            make_legend(model, forces)));
+    const element =
+        h("figure", {class: "scene"},
+          h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
+            switches),
+          frame, playback?.element,
+          h("figcaption", null, model.map ? make_color_bar(model.map) : null, make_legend(model, forces)));
     keep_sized(frame, 690, (width) => view.resize(width));
     return {element, view, shown, flown};
 }
 
 function make_legend(model, forces) {
-    const entry = (key, text, where = "") => h("span", {class: `entry ${where}`}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
-    const beside = model.scene.obstacles.some((o) => o.section.length === 0);
-    const cut = model.scene.obstacles.some((o) => o.section.length > 0);
-    return h("div", {class: "legend"},
-        model.data ? [entry("snapshots", "flown, vehicle and arm"), entry("snapshots planned", "planned: the reference, drawn level"),
-            // On screens these stand beside their switches.
-            entry("flown", "flown path", "print-only"), entry("planned", "planned path", "print-only"),
-            entry("tip", "end-effector path", "print-only")] : null,
+    const entry = (key, text, where = "") =>
+        h("span", {class: `entry ${where}`}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
+    const beside = model.scene.obstacles.some((obstacle) => !is_cut(obstacle));
+    const cut = model.scene.obstacles.some(is_cut);
+    return h(
+        "div", {class: "legend"},
+        model.data ?
+            [
+                entry("snapshots", "flown, vehicle and arm"),
+                entry("snapshots planned", "planned: the reference, drawn level"),
+                // On screens these stand beside their switches.
+                entry("flown", "flown path", "print-only"), entry("planned", "planned path", "print-only"),
+                entry("tip", "end-effector path", "print-only")
+            ] :
+            null,
         model.tree ? entry("tree", "search tree", "print-only tree-entry") : null,
         cut ? entry("section", "obstacle, cut") : null,
-        beside ? entry("projection", "obstacle beside the plane") : null,
-        entry("goal", "goal region"),
-        model.is_cut_short || (!model.data && model.solution.planning?.obstruction)
-            ? entry("trouble", model.data ? "where the flight breaks off" : "nearest way to the goal, refused here") : null,
+        beside ? entry("projection", "obstacle beside the plane") : null, entry("goal", "goal region"),
+        model.is_cut_short || (!model.data && model.solution.planning?.obstruction) ?
+            entry("trouble", model.data ? "where the flight breaks off" : "nearest way to the goal, refused here") :
+            null,
         forces ? h("span", {class: "note"}, forces_note(model), ` ${quantity(10, "d", "N")} are `,
-            `${quantity(10 * forces.meters_per_n, ".2f", "m")} long.`) : null);
+                   `${quantity(10 * forces.meters_per_n, ".2f", "m")} long.`) :
+                 null);
 }

@@ -28,28 +28,82 @@ export function plots_of(model) {
     }
     const tilt = report.limits?.max_tilt_rad;
     const margin = report.limits?.safety_margin_m;
-    const rotor_lines = (lines) => lines.map(({rotors, values}, index) =>
-        ({name: names_of(rotors, count), values, style: `rotor-${index % 8}`}));
+    const rotor_lines = (lines) =>
+        lines.map(({rotors, values}, index) => ({name: names_of(rotors, count), values, style: `rotor-${index % 8}`}));
     const as_degrees = (value) => degrees((value * Math.PI) / 180);
     const plots = [
-        {id: "tracking", title: "Tracking error, position", unit: "m", from_zero: true, text: meters,
-            lines: [{name: "", values: error_m, style: "flown"}]},
-        {id: "pitch", title: "Pitch, nose down", unit: "°", text: as_degrees,
+        {
+            id: "tracking",
+            title: "Tracking error, position",
+            unit: "m",
+            from_zero: true,
+            text: meters,
+            lines: [{name: "", values: error_m, style: "flown"}]
+        },
+        {
+            id: "pitch",
+            title: "Pitch, nose down",
+            unit: "°",
+            text: as_degrees,
             lines: [{name: "", values: in_degrees(data.pitch_rad), style: "flown"}],
-            limits: Number.isFinite(tilt) ? [{name: "limit", value: (tilt * 180) / Math.PI, if_near: true},
-                {name: "limit", value: (-tilt * 180) / Math.PI, if_near: true}] : []},
-        {id: "arm", title: "Arm, 90° is down", unit: "°", text: as_degrees,
-            lines: [{name: "flown", values: in_degrees(data.arm_rad), style: "flown"},
-                {name: "reference", values: in_degrees(data.ref_arm_rad), style: "planned"}]},
-        {id: "thrust", title: "Thrust command by rotor", unit: "N", text: (v) => quantity(v, ".2f", "N"), lines: rotor_lines(model.commands),
-            limits: [{name: "greatest", value: robot.rotors.max_thrust_n}, {name: "least", value: robot.rotors.min_thrust_n}]},
-        {id: "factor", title: "Aero factor by rotor", unit: "1", text: (v) => number(v, ".3f"), lines: rotor_lines(model.factors)},
-        {id: "clearance", title: "Clearance", unit: "m", from_zero: true, text: meters,
+            limits: Number.isFinite(tilt) ?
+                [
+                    {name: "limit", value: (tilt * 180) / Math.PI, if_near: true},
+                    {name: "limit", value: (-tilt * 180) / Math.PI, if_near: true}
+                ] :
+                []
+        },
+        {
+            id: "arm",
+            title: "Arm, 90° is down",
+            unit: "°",
+            text: as_degrees,
+            lines: [
+                {name: "flown", values: in_degrees(data.arm_rad), style: "flown"},
+                {name: "reference", values: in_degrees(data.ref_arm_rad), style: "planned"}
+            ]
+        },
+        {
+            id: "thrust",
+            title: "Thrust command by rotor",
+            unit: "N",
+            text: (v) => quantity(v, ".2f", "N"),
+            lines: rotor_lines(model.commands),
+            limits: [
+                {name: "greatest", value: robot.rotors.max_thrust_n}, {name: "least", value: robot.rotors.min_thrust_n}
+            ]
+        },
+        {
+            id: "factor",
+            title: "Aero factor by rotor",
+            unit: "1",
+            text: (v) => number(v, ".3f"),
+            lines: rotor_lines(model.factors)
+        },
+        {
+            id: "clearance",
+            title: "Clearance",
+            unit: "m",
+            from_zero: true,
+            text: meters,
             lines: [{name: "", values: data.clearance_m, style: "flown"}],
-            limits: margin > 0 ? [{name: "safety margin", value: margin}] : []},
-        {id: "power", title: "Power", unit: "W", text: (v) => quantity(v, ".0f", "W"), lines: [{name: "", values: data.power_w, style: "flown"}]},
-        {id: "energy", title: "Energy", unit: "J", from_zero: true, text: (v) => quantity(v, ",.0f", "J"),
-            lines: [{name: "", values: data.energy_j, style: "flown"}]},
+            limits: margin > 0 ? [{name: "safety margin", value: margin}] : []
+        },
+        {
+            id: "power",
+            title: "Power",
+            unit: "W",
+            text: (v) => quantity(v, ".0f", "W"),
+            lines: [{name: "", values: data.power_w, style: "flown"}]
+        },
+        {
+            id: "energy",
+            title: "Energy",
+            unit: "J",
+            from_zero: true,
+            text: (v) => quantity(v, ",.0f", "J"),
+            lines: [{name: "", values: data.energy_j, style: "flown"}]
+        },
     ];
     return plots.filter((plot) => plot.lines.some((line) => line.values.some(Number.isFinite)));
 }

@@ -7,8 +7,9 @@ const rings = (list) => list.map(ring).join("");
 
 /** Hatching keeps its width in pixels whatever the zoom. */
 export function make_hatches(view) {
-    const hatch = (id, step, angle) => s("pattern", {id, width: step, height: step, patternUnits: "userSpaceOnUse"},
-        s("path", {class: id, d: `M0 ${step / 2}H${step}`}));
+    const hatch = (id, step, angle) =>
+        s("pattern", {id, width: step, height: step, patternUnits: "userSpaceOnUse"},
+          s("path", {class: id, d: `M0 ${step / 2}H${step}`}));
     const beside = hatch("hatch-beside", 6), blocked = hatch("hatch-blocked", 5);
     view.svg.querySelector("defs").append(beside, blocked);
     view.follow(() => {
@@ -18,11 +19,19 @@ export function make_hatches(view) {
     });
 }
 
+/** Open surfaces have no inside: where the plane meets them there are lines. */
+const open_lines = (obstacle) =>
+    (obstacle.section_lines ?? []).map((line) => `M${line.map(([x, z]) => `${x} ${z}`).join("L")}`).join("");
+
+export const is_cut = (obstacle) => obstacle.section.length > 0 || (obstacle.section_lines ?? []).length > 0;
+
 export function draw_obstacles(obstacles) {
-    const beside = obstacles.map((obstacle) =>
-        s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
-    const cut = obstacles.filter((obstacle) => obstacle.section.length > 0).map((obstacle) =>
-        s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}));
+    const beside = obstacles.map(
+        (obstacle) => s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
+    const cut = obstacles.filter(is_cut).map(
+        (obstacle) =>
+            s("g", null, s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}),
+              s("path", {class: "section-line", d: open_lines(obstacle)})));
     return s("g", {class: "obstacles"}, beside, cut);
 }
 
@@ -37,7 +46,7 @@ export function goal_region(goal, bounds) {
     const half_z = is_free_z ? (bounds.z_m[1] - bounds.z_m[0]) / 2 : goal.tolerance_z_m;
     const x_m = is_free_x ? (bounds.x_m[0] + bounds.x_m[1]) / 2 : goal.x_m;
     const z_m = is_free_z ? (bounds.z_m[0] + bounds.z_m[1]) / 2 : goal.z_m;
-    const shape = goal.region ?? (half_x === half_z ? "disc" : "rectangle");
+    const shape = goal.is_disc ?? half_x === half_z ? "disc" : "rectangle";
     return {x_m, z_m, half_x, half_z, shape: is_free_x || is_free_z ? "rectangle" : shape};
 }
 
@@ -45,9 +54,9 @@ function draw_region({x_m, z_m, half_x, half_z, shape}) {
     if (!(half_x > 0) || !(half_z > 0)) {
         return s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: 0.08});
     }
-    return shape === "disc"
-        ? s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: half_x})
-        : s("rect", {class: "goal-region", x: x_m - half_x, y: z_m - half_z, width: 2 * half_x, height: 2 * half_z});
+    return shape === "disc" ?
+        s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: half_x}) :
+        s("rect", {class: "goal-region", x: x_m - half_x, y: z_m - half_z, width: 2 * half_x, height: 2 * half_z});
 }
 
 /** The way an end effector has to point at the goal: a shaft that ends at the centre. */
@@ -62,7 +71,8 @@ export function draw_goals(model) {
         const region = goal_region(goal, model.scene.bounds);
         const parts = [draw_region(region)];
         if (goal.kind === "state") {
-            parts.push(vehicle_at(robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
+            parts.push(vehicle_at(
+                robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
                 {x_m: region.x_m, z_m: region.z_m, pitch_rad: 0, arm_rad: goal.arm_rad ?? 0}));
         } else if (Number.isFinite(goal.direction_rad)) {
             parts.push(draw_direction(goal));
@@ -72,6 +82,9 @@ export function draw_goals(model) {
 }
 
 export function draw_start({start, robot, rotor_groups}) {
-    return s("g", {class: "start"}, vehicle_at(robot, rotor_groups, "wanted at-start",
-        {x_m: start.x_m, z_m: start.z_m, pitch_rad: 0, arm_rad: start.arm_rad}));
+    return s(
+        "g", {class: "start"},
+        vehicle_at(
+            robot, rotor_groups, "wanted at-start",
+            {x_m: start.x_m, z_m: start.z_m, pitch_rad: 0, arm_rad: start.arm_rad}));
 }

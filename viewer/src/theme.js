@@ -14,14 +14,22 @@ export function make_theme_switch() {
     };
     system.addEventListener("change", apply);
     apply();
-    const choice = (value, text) => h("label", null,
-        h("input", {type: "radio", name: "theme", value, checked: value === chosen, onchange: () => {
-            chosen = value;
-            apply();
-        }}), h("span", null, text));
+    const choice = (value, text) =>
+        h("label", null, h("input", {
+              type: "radio",
+              name: "theme",
+              value,
+              checked: value === chosen,
+              onchange: () => {
+                  chosen = value;
+                  apply();
+              }
+          }),
+          h("span", null, text));
     return {
-        element: h("fieldset", {class: "theme screen-only"}, h("legend", {class: "visually-hidden"}, "Colours"),
-            choice("auto", "Auto"), choice("light", "Light"), choice("dark", "Dark")),
+        element:
+            h("fieldset", {class: "theme screen-only"}, h("legend", {class: "visually-hidden"}, "Colours"),
+              choice("auto", "Auto"), choice("light", "Light"), choice("dark", "Dark")),
         follow: (follow) => followers.push(follow),
     };
 }

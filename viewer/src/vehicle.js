@@ -5,12 +5,12 @@ import {s} from "./dom.js";
 /** The body frame (a forward, c up) turned and moved: pitch is positive nose down. */
 function frame_transform({x_m, z_m, pitch_rad}) {
     const cos = Math.cos(pitch_rad), sin = Math.sin(pitch_rad);
-    return `matrix(${cos} ${-sin} ${sin} ${cos} ${x_m} ${z_m})`;
+    return `matrix(${cos} ${- sin} ${sin} ${cos} ${x_m} ${z_m})`;
 }
 
 function arm_transform([x, z], arm_rad) {
     const cos = Math.cos(arm_rad), sin = Math.sin(arm_rad);
-    return `matrix(${cos} ${-sin} ${sin} ${cos} ${x} ${z})`;
+    return `matrix(${cos} ${- sin} ${sin} ${cos} ${x} ${z})`;
 }
 
 export const ring = (points) => `M${points.map(([x, z]) => `${x} ${z}`).join("L")}Z`;
@@ -18,21 +18,19 @@ export const ring = (points) => `M${points.map(([x, z]) => `${x} ${z}`).join("L"
 /**
  * @param {any} robot
  * @param {string} style class of the group: "flown", "planned", ...
- * @returns {{element: SVGElement, move: (pose: {x_m: number, z_m: number, pitch_rad: number, arm_rad: number}) => void}}
+ * @returns {{element: SVGElement, move: (pose: {x_m: number, z_m: number, pitch_rad: number, arm_rad: number}) =>
+ *     void}}
  */
 export function make_vehicle(robot, rotor_groups, style) {
     const {arm, rotors} = robot;
     const tip = s("circle", {class: "tip", cx: arm.length_m, cy: 0, r: Math.max(0.035, 1.6 * arm.radius_m)});
-    const arm_group = s("g", null,
-        s("path", {class: "arm", d: `M0 0H${arm.length_m}`}), tip);
-    const discs = rotor_groups.map(({x_m, z_m}) =>
-        `M${x_m - rotors.radius_m} ${z_m}H${x_m + rotors.radius_m}`).join("");
+    const arm_group = s("g", null, s("path", {class: "arm", d: `M0 0H${arm.length_m}`}), tip);
+    const discs =
+        rotor_groups.map(({x_m, z_m}) => `M${x_m - rotors.radius_m} ${z_m}H${x_m + rotors.radius_m}`).join("");
     const masts = rotor_groups.map(({x_m, z_m}) => `M${x_m} ${z_m}V${z_m - 0.06}`).join("");
-    const element = s("g", {class: `vehicle ${style}`},
-        robot.bodies.map((body) => s("path", {class: "body", d: ring(body.outline)})),
-        s("path", {class: "mast", d: masts}),
-        s("path", {class: "disc", d: discs}),
-        arm_group,
+    const element = s(
+        "g", {class: `vehicle ${style}`}, robot.bodies.map((body) => s("path", {class: "body", d: ring(body.outline)})),
+        s("path", {class: "mast", d: masts}), s("path", {class: "disc", d: discs}), arm_group,
         s("circle", {class: "joint", cx: arm.joint_m[0], cy: arm.joint_m[1], r: Math.max(0.03, 1.2 * arm.radius_m)}));
     return {
         element,

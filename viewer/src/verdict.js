@@ -4,60 +4,82 @@ import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
 import {cause_text, knowledge, outcome_text, variants} from "./words.js";
 
-/** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
-export function verdict_of(model) {
+/** How, where and when the flight of a plan fails. */
+function failure_lines(model, how) {
     const {solution, outcome, data, rows} = model;
-    const {execution, planning} = solution;
-    const stopped = solution.interrupted ? "Interrupted; the best so far. " : "";
-    const flown = execution?.aero === false ? " in free air" : "";
-    if (solution.status === "solved" && outcome === "ok") {
-        return {kind: "good", mark: "✓", title: "Solved, and it flies",
-            lines: [`${stopped}The flight of the plan${flown} ${outcome_text(outcome)}.`]};
-    }
-    if (solution.status === "solved" && !execution) {
-        return {kind: "none", mark: "?", title: "A plan was found, but it was not flown", lines: stopped ? [stopped] : []};
-    }
-    if (solution.status === "solved") {
-        const lines = [];
-        const how = `${stopped}Flown${flown || " with aerodynamics evaluated directly"}, it`;
-        if (model.is_cut_short) {
-            const last = rows - 1;
-            const clearance = Number.isFinite(data.clearance_m[last]) ? `${meters(data.clearance_m[last])} of clearance and ` : "";
-            lines.push(`${how} breaks off after ${seconds(data.t_s[last])}: the vehicle at ${point(data.x_m[last], data.z_m[last])}, ` +
-                `the end effector at ${point(data.ee_x_m[last], data.ee_z_m[last])}, with ${clearance}` +
-                `${meters(Math.hypot(data.x_m[last] - data.ref_x_m[last], data.z_m[last] - data.ref_z_m[last]))} off its reference.`);
-        } else if (outcome === "goal_missed") {
-            lines.push(`${how} ends with a goal error of ${meters(execution.goal_error_m)}${tolerance_text(model)}, worst over the last second.`);
-        } else {
-            lines.push(`${how} ${outcome_text(outcome)}.`);
-        }
-        if (knowledge[solution.variant]) {
-            lines.push(`The search, ${String(solution.variant).toUpperCase()}, reckoned with ${knowledge[solution.variant]}.`);
-        }
-        return {kind: "bad", mark: "✕", title: `A plan was found, but its flight ${outcome_text(outcome)}`, lines};
-    }
     const lines = [];
-    if (solution.status === "approximate") {
-        lines.push(`${stopped}What is shown is an approximate plan: it ends near the goal, which counts as no solution.` +
-            (execution ? ` Flown, it ${outcome_text(outcome)}.` : ""));
-    } else if (stopped) {
+    if (model.is_cut_short) {
+        const last = rows - 1;
+        const of = (column) => data[column][last];
+        const error_m = Math.hypot(of("x_m") - of("ref_x_m"), of("z_m") - of("ref_z_m"));
+        const clearance = Number.isFinite(of("clearance_m")) ? `${meters(of("clearance_m"))} of clearance and ` : "";
+        lines.push(
+            `${how} breaks off after ${seconds(of("t_s"))}: the vehicle at ${point(of("x_m"), of("z_m"))}, ` +
+            `the end effector at ${point(of("ee_x_m"), of("ee_z_m"))}, ` +
+            `with ${clearance}${meters(error_m)} off its reference.`);
+    } else if (outcome === "goal_missed") {
+        const error = `${meters(solution.execution.goal_error_m)}${tolerance_text(model)}`;
+        lines.push(`${how} ends with a goal error of ${error}, worst over the last second.`);
+    } else {
+        lines.push(`${how} ${outcome_text(outcome)}.`);
+    }
+    if (knowledge[solution.variant]) {
+        lines.push(`The search, ${solution.variant.toUpperCase()}, reckoned with ${knowledge[solution.variant]}.`);
+    }
+    return lines;
+}
+
+/** What blocked a search without a plan. */
+function blocked_lines({solution, outcome}) {
+    const {execution, planning, status, interrupted} = solution;
+    const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
+    const lines = [];
+    if (interrupted) {
         lines.push("The search was interrupted.");
     }
-    const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
+    if (status === "approximate") {
+        const flight = execution ? ` Flown, it ${outcome_text(outcome)}.` : "";
+        lines.push(
+            `What is shown is an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
+    }
     if (Number.isFinite(nearest)) {
         lines.push(`The vehicle was brought within ${meters(nearest)} of the goal region.`);
     }
     if (stop) {
-        lines.push(`Of the ways into the goal region the nearest was refused because it ${cause_text(stop.cause)}, ` +
-            `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ${place(stop.goal_distance_m)} before the goal region.`);
+        lines.push(
+            `Of the ways into the goal region the nearest was refused because it ${cause_text(stop.cause)}, ` +
+            `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ` +
+            `${place(stop.goal_distance_m)} before the goal region.`);
     }
     if (lines.length === 0) {
-        const most = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0];
-        lines.push(most?.[1] > 0
-            ? `Most ways were refused because they led to this: ${cause_text(most[0])} (${number(most[1], ",d")} times).`
-            : "No way was refused: the search may have needed more time.");
+        const [cause, count] = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0] ?? ["", 0];
+        const times = `${number(count, ",d")} ${count === 1 ? "time" : "times"}`;
+        lines.push(
+            count > 0 ? `What stopped most ways: one ${cause_text(cause)}, ${times}.` :
+                        "No way was refused: the search may have needed more time.");
     }
-    return {kind: "none", mark: "∅", title: "No plan within the limits", lines};
+    return lines;
+}
+
+/** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
+export function verdict_of(model) {
+    const {solution, outcome} = model;
+    const {execution} = solution;
+    if (solution.status !== "solved") {
+        return {kind: "none", mark: "∅", title: "No plan within the limits", lines: blocked_lines(model)};
+    }
+    const stopped = solution.interrupted ? "Interrupted; the best so far. " : "";
+    if (!execution) {
+        const lines = stopped ? [stopped] : [];
+        return {kind: "none", mark: "?", title: "A plan was found, but it was not flown", lines};
+    }
+    const air = execution.aero === false ? "in free air" : "with aerodynamics evaluated directly";
+    if (outcome === "ok") {
+        const line = `${stopped}Flown ${air}, the plan ${outcome_text(outcome)}.`;
+        return {kind: "good", mark: "✓", title: "Solved, and it flies", lines: [line]};
+    }
+    const title = `A plan was found, but its flight ${outcome_text(outcome)}`;
+    return {kind: "bad", mark: "✕", title, lines: failure_lines(model, `${stopped}Flown ${air}, it`)};
 }
 
 function tolerance_text({goals}) {
@@ -65,9 +87,9 @@ function tolerance_text({goals}) {
     if (goals.length !== 1 || !Number.isFinite(goal.tolerance_x_m)) {
         return "";
     }
-    return goal.tolerance_x_m === goal.tolerance_z_m
-        ? ` of ${place(goal.tolerance_x_m)} allowed`
-        : ` of ${place(goal.tolerance_x_m)} in x and ${place(goal.tolerance_z_m)} in z allowed`;
+    return goal.tolerance_x_m === goal.tolerance_z_m ?
+        ` of ${place(goal.tolerance_x_m)} allowed` :
+        ` of ${place(goal.tolerance_x_m)} in x and ${place(goal.tolerance_z_m)} in z allowed`;
 }
 
 function figures_of(model) {
@@ -81,19 +103,24 @@ function figures_of(model) {
             execution ? `flown; ${cost(solution.cost, cost_unit)} planned` : "planned");
     }
     if (execution) {
-        add("Duration", seconds(execution.duration_s), model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
+        add("Duration", seconds(execution.duration_s),
+            model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
         add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
         add("Least clearance", meters(execution.min_clearance_m),
-            model.scene.obstacles.length === 0 ? "no obstacles" : report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` : "");
+            model.scene.obstacles.length === 0     ? "no obstacles" :
+                report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` :
+                                                     "");
         add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "worst over the last second");
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
-        add("Saturation", number(execution.max_saturation, ".2f"), execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
+        add("Saturation", number(execution.max_saturation, ".2f"),
+            execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
     }
     if (Number.isFinite(planning?.nearest_approach_m)) {
         add("Nearest approach", meters(planning.nearest_approach_m), "to the goal region");
     }
     const first = planning?.first_solution_wall_s;
-    add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none", `search ${seconds(planning?.wall_s)}`);
+    add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
+        `search ${seconds(planning?.wall_s)}`);
     add("Iterations", number(planning?.iterations, ",d"),
         planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges flown` : "");
     return list;
@@ -104,31 +131,46 @@ function goals_list({solution, goals}) {
     if (visits.length < 2) {
         return null;
     }
-    return h("ul", {class: "goal-visits"}, visits.map(({met, error_m}, i) =>
-        h("li", null, `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
+    return h(
+        "ul", {class: "goal-visits"},
+        visits.map(
+            ({met, error_m}, i) =>
+                h("li", null,
+                  `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
 }
 
 export function make_head(model, theme_switch) {
     const {solution, report} = model;
     const name = solution.problem?.name ?? "unnamed problem";
     const fact = (key, value) => h("span", {class: "fact"}, h("span", {class: "muted"}, key), " ", value);
-    return h("header", {class: "head"},
-        h("div", {class: "head-line"},
-            h("div", {class: "brand"}, "Downwash"), theme_switch),
+    return h(
+        "header", {class: "head"}, h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash"), theme_switch),
         h("h1", null, foreign(name)),
-        report.description ? h("p", {class: "description", tabindex: report.description.length > 400 ? "0" : null}, foreign(report.description)) : null,
+        report.description ? h("p", {class: "description", tabindex: report.description.length > 400 ? "0" : null},
+                               foreign(report.description)) :
+                             null,
         h("p", {class: "facts"},
-            fact("variant", h("span", {title: variants[solution.variant] ?? null}, String(solution.variant).toUpperCase())),
-            fact("algorithm", solution.algorithm), fact("objective", model.objective), fact("seed", String(solution.seed)),
-            model.goals.length > 1 ? fact("goals", `${model.goals.length}, ${report.goal_order === "any_of" ? "any of them" : "in turn"}`) : null));
+          fact(
+              "variant",
+              h("span", {title: variants[solution.variant] ?? null}, String(solution.variant).toUpperCase())),
+          fact("algorithm", solution.algorithm), fact("objective", model.objective),
+          fact("seed", String(solution.seed)),
+          model.goals.length > 1 ?
+              fact("goals", `${model.goals.length}, ${report.goal_order === "any_of" ? "any of them" : "in turn"}`) :
+              null));
 }
 
 export function make_verdict(model) {
     const {kind, mark, title, lines} = verdict_of(model);
-    return h("section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
-        h("div", {class: "verdict-text"},
-            h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
-            h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)), goals_list(model))),
-        h("dl", {class: "figures"}, figures_of(model).map(({name, value, note}) =>
-            h("div", null, h("dt", null, name), h("dd", null, h("span", {class: "figure"}, value), note ? h("span", {class: "muted"}, note) : null)))));
+    return h(
+        "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
+        h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
+          h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
+            goals_list(model))),
+        h("dl", {class: "figures"},
+          figures_of(model).map(
+              ({name, value, note}) =>
+                  h("div", null, h("dt", null, name),
+                    h("dd", null, h("span", {class: "figure"}, value),
+                      note ? h("span", {class: "muted"}, note) : null)))));
 }

@@ -4,9 +4,15 @@ import {axisBottom, axisLeft} from "d3-axis";
 import {scaleLinear} from "d3-scale";
 import {event, select} from "d3-selection";
 import {zoom, zoomIdentity} from "d3-zoom";
+
 import {once_a_frame, s, set_attributes} from "./dom.js";
 
-const margin = {left: 46, right: 10, top: 10, bottom: 38};
+const margin = {
+    left: 46,
+    right: 10,
+    top: 10,
+    bottom: 38
+};
 const most_zoom = 60;
 
 /** @typedef {{x_m: [number, number], z_m: [number, number]}} Extent */
@@ -39,20 +45,18 @@ export class View {
         this.frame = s("rect", {class: "frame"});
         this.name_x = s("text", {class: "axis-name", "text-anchor": "middle"}, "x [m]");
         this.name_z = s("text", {class: "axis-name", "text-anchor": "middle"}, "z [m]");
-        this.svg = s("svg", {class: "scene-svg", tabindex: "0", role: "img", "aria-label": description},
-            s("defs", null, s("clipPath", {id: "scene-clip"}, this.clip)),
-            s("g", {"clip-path": "url(#scene-clip)"}, this.raster, this.grid, this.world, this.overlay),
-            this.frame, this.axis_x, this.axis_z, this.name_x, this.name_z);
+        this.svg =
+            s("svg", {class: "scene-svg", tabindex: "0", role: "img", "aria-label": description},
+              s("defs", null, s("clipPath", {id: "scene-clip"}, this.clip)),
+              s("g", {"clip-path": "url(#scene-clip)"}, this.raster, this.grid, this.world, this.overlay), this.frame,
+              this.axis_x, this.axis_z, this.name_x, this.name_z);
         this.transform = zoomIdentity;
         this.redraw_soon = once_a_frame(() => this.redraw());
-        this.zoom = zoom()
-            .scaleExtent([0.5, most_zoom])
-            .filter(() => this.#may_handle(event))
-            .on("zoom", () => {
-                this.transform = event.transform;
-                this.svg.classList.toggle("zoomed", event.transform.k > 1.01);
-                this.redraw_soon();
-            });
+        this.zoom = zoom().scaleExtent([0.5, most_zoom]).filter(() => this.#may_handle(event)).on("zoom", () => {
+            this.transform = event.transform;
+            this.svg.classList.toggle("zoomed", event.transform.k > 1.01);
+            this.redraw_soon();
+        });
         select(this.svg).call(this.zoom).on("dblclick.zoom", null);
         this.svg.style.touchAction = "";
         this.svg.addEventListener("keydown", (pressed) => this.#key(pressed));
@@ -91,9 +95,7 @@ export class View {
         pressed.preventDefault();
     }
 
-    zoom_by(factor) {
-        select(this.svg).call(this.zoom.scaleBy, factor);
-    }
+    zoom_by(factor) { select(this.svg).call(this.zoom.scaleBy, factor); }
 
     /** @param {Extent} extent */
     show(extent) {
@@ -110,18 +112,21 @@ export class View {
         const shape = (this.opening.z_m[1] - this.opening.z_m[0]) / (this.opening.x_m[1] - this.opening.x_m[0]);
         this.width = width;
         this.inner_width = width - margin.left - margin.right;
-        this.inner_height = Math.round(Math.min(640, Math.max(200, this.inner_width * Math.min(1, Math.max(0.42, shape)))));
+        this.inner_height =
+            Math.round(Math.min(640, Math.max(200, this.inner_width * Math.min(1, Math.max(0.42, shape)))));
         this.height = this.inner_height + margin.top + margin.bottom;
         this.center = [margin.left + this.inner_width / 2, margin.top + this.inner_height / 2];
         this.base = with_shape(this.opening, this.inner_width, this.inner_height);
         const right = margin.left + this.inner_width, bottom = margin.top + this.inner_height;
         const {x_m, z_m} = this.everything;
-        const at = (x, z) => [this.center[0] + (x - this.base.middle_x) * this.base.scale,
-            this.center[1] - (z - this.base.middle_z) * this.base.scale];
+        const at = (x, z) =>
+            [this.center[0] + (x - this.base.middle_x) * this.base.scale,
+             this.center[1] - (z - this.base.middle_z) * this.base.scale];
         const far = Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]) / 4;
         const box = {x: margin.left, y: margin.top, width: this.inner_width, height: this.inner_height};
-        this.zoom.extent([[margin.left, margin.top], [right, bottom]])
-            .translateExtent([at(x_m[0] - far, z_m[1] + far), at(x_m[1] + far, z_m[0] - far)]);
+        this.zoom.extent([[margin.left, margin.top], [right, bottom]]).translateExtent([
+            at(x_m[0] - far, z_m[1] + far), at(x_m[1] + far, z_m[0] - far)
+        ]);
         this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
         set_attributes(this.clip, box);
         set_attributes(this.frame, box);
@@ -132,8 +137,8 @@ export class View {
         if (shown) {
             const k = shown.k * 1;
             const [x, y] = at(...shown.at);
-            select(this.svg).call(this.zoom.transform,
-                zoomIdentity.translate(this.center[0] - k * x, this.center[1] - k * y).scale(k));
+            select(this.svg).call(
+                this.zoom.transform, zoomIdentity.translate(this.center[0] - k * x, this.center[1] - k * y).scale(k));
         }
         this.redraw();
     }
@@ -153,9 +158,7 @@ export class View {
         ];
     }
 
-    get pixels_per_m() {
-        return this.base.scale * this.transform.k;
-    }
+    get pixels_per_m() { return this.base.scale * this.transform.k; }
 
     /** The extent that is seen now. */
     get shown() {
@@ -165,25 +168,22 @@ export class View {
     }
 
     /** In pixels: [left, top, right, bottom] of the area inside the axes. */
-    get inside() {
-        return [margin.left, margin.top, margin.left + this.inner_width, margin.top + this.inner_height];
-    }
+    get inside() { return [margin.left, margin.top, margin.left + this.inner_width, margin.top + this.inner_height]; }
 
-    follow(follow) {
-        this.followers.push(follow);
-    }
+    follow(follow) { this.followers.push(follow); }
 
     redraw() {
         const scale = this.pixels_per_m;
         const [x0, y0] = this.to_pixels(0, 0);
-        const transform = `matrix(${scale} 0 0 ${-scale} ${x0} ${y0})`;
+        const transform = `matrix(${scale} 0 0 ${- scale} ${x0} ${y0})`;
         this.world.setAttribute("transform", transform);
         this.raster.setAttribute("transform", transform);
         const {x_m, z_m} = this.shown;
         const [left, top, right, bottom] = this.inside;
         const x = scaleLinear().domain(x_m).range([left, right]);
         const z = scaleLinear().domain(z_m).range([bottom, top]);
-        const ticks_x = Math.max(3, Math.round(this.inner_width / 75)), ticks_z = Math.max(3, Math.round(this.inner_height / 55));
+        const ticks_x = Math.max(3, Math.round(this.inner_width / 75)),
+              ticks_z = Math.max(3, Math.round(this.inner_height / 55));
         const minus = (scale_of, count) => (value) => scale_of.tickFormat(count)(value).replace("-", "−");
         select(this.axis_x).call(axisBottom(x).ticks(ticks_x).tickFormat(minus(x, ticks_x)).tickSize(4).tickPadding(4));
         select(this.axis_z).call(axisLeft(z).ticks(ticks_z).tickFormat(minus(z, ticks_z)).tickSize(4).tickPadding(4));

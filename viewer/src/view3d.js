@@ -1,6 +1,6 @@
 // The 3-D view is packed in the page and starts when somebody asks for it.
 
-import {Trouble, decode_triangles, inflate} from "./decode.js";
+import {decode_triangles, inflate, Trouble} from "./decode.js";
 import {h} from "./dom.js";
 
 /** Meshes are unpacked first, as the drawing itself does not wait. */
@@ -39,13 +39,15 @@ export function make_view3d(model, clock, theme) {
         status.textContent = "Unpacking…";
         try {
             if (!has_webgl()) {
-                throw new Trouble("This browser offers no WebGL here, which the 3-D view draws with. The scene above shows the same flight.");
+                throw new Trouble(
+                    "This browser offers no WebGL here, which the 3-D view draws with. " +
+                    "The scene above shows the same flight.");
             }
             await unpack_solids(model);
             const app = (await load_app()).start(stage, model, clock);
             app.set_theme(document.documentElement.dataset.theme);
             theme.follow(app.set_theme);
-            stage.view = app;
+            stage.view = app;  // for tests
             button.remove();
             status.textContent = "Drag to turn, wheel or pinch to come nearer, right button or two fingers to move. " +
                 "With the view in focus: W A S D turn, + and − come nearer, 0 goes back.";
@@ -53,10 +55,12 @@ export function make_view3d(model, clock, theme) {
             stage.querySelector("canvas").focus({preventScroll: true});
         } catch (error) {
             button.disabled = false;
-            status.textContent = error instanceof Trouble ? error.message : `The 3-D view cannot be shown: ${error.message}.`;
+            status.textContent =
+                error instanceof Trouble ? error.message : `The 3-D view cannot be shown: ${error.message}.`;
             stage.dataset.state = "failed";
         }
     });
-    return h("section", {class: "view3d screen-only", "aria-labelledby": "view3d-title"},
+    return h(
+        "section", {class: "view3d screen-only", "aria-labelledby": "view3d-title"},
         h("h2", {id: "view3d-title"}, "In three dimensions"), button, stage, status);
 }

@@ -2,12 +2,31 @@
 
 import {OrbitControls} from "orbit-controls";
 import * as three from "three";
+
 import {pose_at} from "./model.js";
 import {range_of} from "./numbers.js";
 
 const palettes = {
-    light: {paper: "#f7f8f9", obstacle: "#a9b0b8", edge: "#5d6770", vehicle: "#30363d", flown: "#c2510a", planned: "#30363d", tip: "#00805e", goal: "#a3397a"},
-    dark: {paper: "#13171c", obstacle: "#5c6670", edge: "#98a4ae", vehicle: "#dfe5ea", flown: "#ff9b57", planned: "#dfe5ea", tip: "#3fd0a4", goal: "#f08cc8"},
+    light: {
+        paper: "#f7f8f9",
+        obstacle: "#a9b0b8",
+        edge: "#5d6770",
+        vehicle: "#30363d",
+        flown: "#c2510a",
+        planned: "#30363d",
+        tip: "#00805e",
+        goal: "#a3397a"
+    },
+    dark: {
+        paper: "#13171c",
+        obstacle: "#5c6670",
+        edge: "#98a4ae",
+        vehicle: "#dfe5ea",
+        flown: "#ff9b57",
+        planned: "#dfe5ea",
+        tip: "#3fd0a4",
+        goal: "#f08cc8"
+    },
 };
 
 function geometry_of(solid) {
@@ -15,7 +34,8 @@ function geometry_of(solid) {
         return new three.BoxBufferGeometry(...solid.box.size_m);
     }
     if (solid.cylinder) {
-        return new three.CylinderBufferGeometry(solid.cylinder.radius_m, solid.cylinder.radius_m, solid.cylinder.length_m, 40);
+        return new three.CylinderBufferGeometry(
+            solid.cylinder.radius_m, solid.cylinder.radius_m, solid.cylinder.length_m, 40);
     }
     if (solid.sphere) {
         return new three.SphereBufferGeometry(solid.sphere.radius_m, 32, 20);
@@ -33,7 +53,8 @@ function place(object, solid) {
         const [a, b, c] = box.axes.map((axis) => new three.Vector3(...axis));
         object.quaternion.setFromRotationMatrix(new three.Matrix4().makeBasis(a, b, c));
     } else if (cylinder) {
-        object.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), new three.Vector3(...cylinder.axis).normalize());
+        object.quaternion.setFromUnitVectors(
+            new three.Vector3(0, 1, 0), new three.Vector3(...cylinder.axis).normalize());
     }
     const center = (box ?? cylinder ?? sphere)?.center_m;
     if (center) {
@@ -45,8 +66,16 @@ function place(object, solid) {
 /** A solid with its edges; `paint` remembers what has which colour in which theme. */
 function draw_solid(solid, name, paint, opacity) {
     const geometry = geometry_of(solid);
-    const material = new three.MeshLambertMaterial({transparent: opacity < 1, opacity, side: three.DoubleSide, depthWrite: opacity === 1,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, flatShading: Boolean(solid.mesh)});
+    const material = new three.MeshLambertMaterial({
+        transparent: opacity < 1,
+        opacity,
+        side: three.DoubleSide,
+        depthWrite: opacity === 1,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+        flatShading: Boolean(solid.mesh)
+    });
     const edges = new three.LineBasicMaterial({transparent: true, opacity: 0.6});
     paint(material, name);
     paint(edges, "edge");
@@ -63,7 +92,8 @@ function draw_line(xs, zs, name, paint, dashed) {
     }
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
-    const material = dashed ? new three.LineDashedMaterial({dashSize: 0.15, gapSize: 0.1}) : new three.LineBasicMaterial();
+    const material =
+        dashed ? new three.LineDashedMaterial({dashSize: 0.15, gapSize: 0.1}) : new three.LineBasicMaterial();
     paint(material, name);
     const line = new three.Line(geometry, material);
     if (dashed) {
@@ -75,14 +105,16 @@ function draw_line(xs, zs, name, paint, dashed) {
 function draw_vehicle(robot, paint) {
     const {rotors, arm} = robot;
     const body = new three.Group();
-    robot.bodies.forEach(({solid}) => body.add(draw_solid(solid, "vehicle", paint, 0.25)));
-    const metal = new three.MeshLambertMaterial(), disc = new three.MeshBasicMaterial({transparent: true, opacity: 0.55, side: three.DoubleSide});
+    robot.bodies.filter(({solid}) => solid).forEach(({solid}) => body.add(draw_solid(solid, "vehicle", paint, 0.25)));
+    const metal = new three.MeshLambertMaterial(),
+          disc = new three.MeshBasicMaterial({transparent: true, opacity: 0.55, side: three.DoubleSide});
     paint(metal, "vehicle");
     paint(disc, "flown");
     for (const [x, y, z] of rotors.positions_m) {
         const circle = new three.Mesh(new three.CircleBufferGeometry(rotors.radius_m, 36), disc);
         circle.position.set(x, y, z);
-        const strut = new three.Mesh(new three.CylinderBufferGeometry(0.015, 0.015, Math.hypot(x, y) || 0.01, 8), metal);
+        const strut =
+            new three.Mesh(new three.CylinderBufferGeometry(0.015, 0.015, Math.hypot(x, y) || 0.01, 8), metal);
         strut.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), new three.Vector3(x, y, 0).normalize());
         strut.position.set(x / 2, y / 2, z * 0.6);
         body.add(circle, strut);
@@ -90,7 +122,8 @@ function draw_vehicle(robot, paint) {
     const arm_material = new three.MeshLambertMaterial();
     paint(arm_material, "flown");
     const link = new three.Group();
-    const rod = new three.Mesh(new three.CylinderBufferGeometry(arm.radius_m, arm.radius_m, arm.length_m, 16), arm_material);
+    const rod =
+        new three.Mesh(new three.CylinderBufferGeometry(arm.radius_m, arm.radius_m, arm.length_m, 16), arm_material);
     rod.rotation.z = -Math.PI / 2;
     rod.position.x = arm.length_m / 2;
     const tip = new three.Mesh(new three.SphereBufferGeometry(1.8 * arm.radius_m, 16, 12), arm_material);
@@ -118,7 +151,8 @@ export function start(stage, model, clock) {
     const canvas = renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "The scene and the flight in three dimensions; the numbers stand in the tables of this page.");
+    canvas.setAttribute(
+        "aria-label", "The scene and the flight in three dimensions; the numbers stand in the tables of this page.");
     stage.replaceChildren(canvas);
 
     const world = new three.Scene();
@@ -126,7 +160,17 @@ export function start(stage, model, clock) {
     const sun = new three.DirectionalLight(0xffffff, 0.45);
     sun.position.set(-6, -14, 18);
     world.add(sun);
-    scene.obstacles.forEach(({solid}) => world.add(draw_solid(solid, "obstacle", paint, 0.42)));
+    for (const {solid, section, projection} of scene.obstacles) {
+        if (solid) {
+            world.add(draw_solid(solid, "obstacle", paint, 0.42));
+        } else {
+            // Too large a mesh for a page: its outline in the plane of motion stands for it.
+            for (const ring of section.length > 0 ? section : projection) {
+                const closed = [...ring, ring[0]];
+                world.add(draw_line(closed.map(([x]) => x), closed.map(([, z]) => z), "edge", paint, false));
+            }
+        }
+    }
     for (const goal of goals) {
         const radius = Math.max(0.06, goal.tolerance_x_m ?? 0.1);
         const material = new three.MeshBasicMaterial({transparent: true, opacity: 0.6});
@@ -139,7 +183,9 @@ export function start(stage, model, clock) {
     vehicle.move({pitch_rad: 0, ...(model.solution.planning?.obstruction ?? model.start)});
     world.add(vehicle.body);
     if (data) {
-        world.add(draw_line(data.x_m, data.z_m, "flown", paint, false), draw_line(data.ref_x_m, data.ref_z_m, "planned", paint, true),
+        world.add(
+            draw_line(data.x_m, data.z_m, "flown", paint, false),
+            draw_line(data.ref_x_m, data.ref_z_m, "planned", paint, true),
             draw_line(data.ee_x_m, data.ee_z_m, "tip", paint, false));
     }
 

@@ -1,0 +1,205 @@
+"""Moving: slider, keys, mouse, playing, layers; and what the page says."""
+
+import time
+
+import page_test
+
+
+class Moving(page_test.BrowserTest):
+    def assert_tip_is_where_the_flight_says(self, columns):
+        row = self.js("return downwash.row")
+        drawn = self.middle_of(".vehicle.flown.now .tip")
+        wanted = self.pixels(columns["ee_x_m"][row], columns["ee_z_m"][row])
+        self.assertAlmostEqual(drawn[0], wanted[0], delta=0.3)
+        self.assertAlmostEqual(drawn[1], wanted[1], delta=0.3)
+
+    def test_the_slider_moves_the_vehicle(self):
+        columns = self.open("solved")
+        for seconds in (0, 3.21, 7.77, 12, 19.58):
+            self.set_time(seconds)
+            self.assertAlmostEqual(self.js("return downwash.time"), seconds, places=9)
+            self.assert_tip_is_where_the_flight_says(columns)
+            self.assertIn(f"{seconds:.2f}", self.js("return document.querySelector('.time-text').textContent"))
+
+    def test_the_drawing_is_right_when_zoomed_too(self):
+        columns = self.open("solved")
+        self.set_time(6)
+        before = self.js("const [a] = downwash.pixels(0, 9), [b] = downwash.pixels(1, 9); return b - a")
+        for _ in range(3):
+            self.press("+", target="document.querySelector('.scene-svg')")
+        (left, low), (right, _), (_, high) = self.pixels(0, 9), self.pixels(1, 9), self.pixels(0, 10)
+        after, up = right - left, low - high
+        self.assertAlmostEqual(after / before, 1.4**3, places=3)
+        self.assertAlmostEqual(after, up, places=6)  # equal axes
+        self.assert_tip_is_where_the_flight_says(columns)
+
+    def mouse(self, kind, x, y, **more):
+        self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": kind, "x": x, "y": y, "button": "none" if kind == "mouseWheel" else "left",
+            "buttons": 0 if kind in ("mouseReleased", "mouseWheel") else 1, "clickCount": 1, **more})
+
+    def drag(self, x, y, to_x, to_y):
+        self.mouse("mousePressed", x, y)
+        for share in (0.3, 0.6, 1):
+            self.mouse("mouseMoved", x + share * (to_x - x), y + share * (to_y - y))
+        self.mouse("mouseReleased", to_x, to_y)
+        self.browser.settle()
+
+    def test_the_mouse_moves_the_scene_and_zooms_it_once_it_was_clicked(self):
+        self.open("solved")
+        self.js("document.querySelector('.scene-svg').scrollIntoView()")
+        width = "const [a] = downwash.pixels(0, 9), [b] = downwash.pixels(1, 9); return b - a"
+        x, y = self.middle_of(".scene-svg")
+        before, scroll = self.js(width), self.js("return scrollY")
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+        time.sleep(0.3)
+        self.assertEqual(self.js(width), before)  # the page scrolls
+        self.assertLess(self.js("return scrollY"), scroll)
+        x, y = self.middle_of(".scene-svg")
+        at = self.js("return downwash.pixels(0, 9)")
+        self.drag(x, y, x + 60, y - 25)
+        moved = self.js("return downwash.pixels(0, 9)")
+        self.assertAlmostEqual(moved[0] - at[0], 60, delta=1)
+        self.assertAlmostEqual(moved[1] - at[1], -25, delta=1)
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+        time.sleep(0.3)
+        self.browser.settle()
+        self.assertGreater(self.js(width), 1.1 * before)
+        self.js("[...document.querySelectorAll('.zoom-tools button')].find(b => b.textContent === 'Flight').click()")
+        self.browser.settle()
+        self.assertAlmostEqual(self.js(width), before, places=6)
+
+    def test_a_drag_in_a_plot_moves_vehicle_and_slider(self):
+        columns = self.open("solved")
+        for plot, share in (("tracking", 0.3), ("factor", 0.7)):
+            self.js("document.querySelector(`[data-plot=${arguments[0]}]`).scrollIntoView({block: 'center'})", plot)
+            box = self.one(f"[data-plot={plot}] svg", "e.getBoundingClientRect().toJSON()")
+            left, top, width = box["left"], box["top"] + 30, box["width"]
+            self.drag(left + 0.5 * width, top, left + share * width, top + 5)
+            row = self.js("return downwash.row")
+            self.assertAlmostEqual(row / self.js("return downwash.rows"), share, delta=0.1)
+            self.assertEqual(int(self.js("return document.querySelector('input.time').value")), row)
+            self.assert_tip_is_where_the_flight_says(columns)
+            cursors = self.every(".cursor", "e.getAttribute('d').split(' ')[0]")
+            self.assertEqual(len(set(cursors)), 1)
+            drawn = self.middle_of(f"[data-plot={plot}] .cursor")[0]
+            self.assertAlmostEqual(drawn, left + share * width, delta=2)
+
+    def test_the_pointer_says_what_is_below_it(self):
+        self.open("solved")
+        self.js("document.querySelector('.scene-svg').scrollIntoView()")
+        for place, words in (((-3, 9.5), "factor 1.0"), ((0, 10.5), "not flyable")):
+            x, y = self.pixels(*place)
+            self.mouse("mouseMoved", x, y, buttons=0, button="none")
+            self.assertIn(words, self.js("return document.querySelector('.pointer-text').textContent"))
+
+    def test_keys(self):
+        self.open("solved")
+        row = "return downwash.row"
+        self.press("ArrowRight")
+        self.assertEqual(self.js(row), 1)
+        self.press("ArrowRight", shift=True)
+        self.assertEqual(self.js(row), 101)
+        self.press("ArrowLeft")
+        self.press("ArrowLeft", shift=True)
+        self.assertEqual(self.js(row), 0)
+        self.press("End")
+        self.assertEqual(self.js(row), 1958)
+        self.press("Home")
+        self.assertEqual(self.js(row), 0)
+        self.press(" ")
+        self.assertTrue(self.js("return downwash.is_playing"))
+        time.sleep(0.5)
+        self.press(" ")
+        self.assertFalse(self.js("return downwash.is_playing"))
+        self.assertGreater(self.js(row), 10)
+
+    def test_a_space_on_a_control_belongs_to_the_control(self):
+        self.open("solved")
+        self.press(" ", target="document.querySelector('[data-toggle=map]')")
+        self.assertFalse(self.js("return downwash.is_playing"))
+
+    def test_playing_keeps_to_the_clock_and_ends_at_the_end(self):
+        self.open("solved")
+        self.set_time(18.9)
+        self.js("document.querySelector('.speed select').value = '4'; document.querySelector('.play').click()")
+        time.sleep(1)
+        self.assertFalse(self.js("return downwash.is_playing"))
+        self.assertEqual(self.js("return downwash.row"), 1958)
+        self.js("document.querySelector('.speed select').value = '0.25'")
+        self.set_time(5)
+        elapsed = self.browser.driver.execute_async_script(
+            "const done = arguments[0], play = document.querySelector('.play'), from = performance.now(); play.click();"
+            "setTimeout(() => { play.click(); done((performance.now() - from) / 1000); }, 1200)")
+        self.assertAlmostEqual(self.js("return downwash.time") - 5, 0.25 * elapsed, delta=0.06)
+
+    def test_layers_switch_on_and_off(self):
+        self.open("solved")
+        layers = self.js("return downwash.layers")
+        self.assertEqual(set(layers), {"map", "tree", "planned", "flown", "tip", "snapshots", "forces", "names"})
+        for layer, is_on in layers.items():
+            for wanted in (not is_on, is_on):
+                self.js("document.querySelector(`[data-toggle=${arguments[0]}]`).click()", layer)
+                self.browser.settle()
+                self.assertEqual(self.js("return downwash.layers[arguments[0]]", layer), wanted)
+                shown = self.js("const g = document.querySelector(`[data-layer=${arguments[0]}]`);"
+                                "return getComputedStyle(g).display !== 'none' && g.childNodes.length > 0", layer)
+                self.assertEqual(shown, wanted, layer)
+
+    def test_goals_and_obstacles_have_their_shapes(self):
+        self.open("solids")
+        self.assertEqual(self.every(".goal-region", "e.tagName"), ["rect", "rect", "circle"])
+        self.assertEqual(len([d for d in self.every(".section-line", "e.getAttribute('d')") if d]), 1)
+        self.assertEqual(len(self.every("path.projection", "1")), 11)
+        self.assertEqual(len(self.every("path.section", "1")), 9)  # without the two girders beside the plane
+
+    def test_arrows_are_command_times_factor(self):
+        columns = self.open("solved")
+        self.set_time(10)
+        lengths = self.every(".force", "e.getTotalLength()")
+        thrusts = [sum(columns[f"rotor_{r}_cmd_n"][1000] * columns[f"rotor_{r}_aero_factor"][1000] for r in pair)
+                   for pair in ((1, 2), (3, 4))]
+        self.assertEqual(len(lengths), 2)
+        self.assertAlmostEqual(lengths[0] / lengths[1], thrusts[0] / thrusts[1], places=4)
+        words = self.every(".of-force", "e.textContent")
+        self.assertEqual(words, [f"×{columns[f'rotor_{r}_aero_factor'][1000]:.2f}" for r in (1, 3)])
+
+    def test_figures_are_those_of_the_solution(self):
+        self.open("solved")
+        figures = self.js("return Object.fromEntries([...document.querySelectorAll('.figures > div')].map("
+                          "d => [d.querySelector('dt').textContent, d.querySelector('.figure').textContent]))")
+        solution = self.js("return downwash.solution")
+        execution = solution["execution"]
+        plain = {k: v.replace("\u202f", "").replace("\u00a0", " ") for k, v in figures.items()}
+        self.assertEqual(plain["Cost, energy"], f"{execution['cost']:.0f} J")
+        self.assertEqual(plain["Duration"], f"{execution['duration_s']:.2f} s")
+        self.assertEqual(plain["Least clearance"], f"{execution['min_clearance_m']:.3f} m")
+        self.assertEqual(plain["Goal error"], f"{execution['goal_error_m']:.3f} m")
+        self.assertEqual(plain["Iterations"], str(solution["planning"]["iterations"]))
+
+
+class Verdicts(page_test.BrowserTest):
+    def verdict(self):
+        return self.js("return document.querySelector('.verdict').innerText")
+
+    def test_solved_and_flown(self):
+        self.open("solved")
+        self.assertIn("Solved, and it flies", self.verdict())
+
+    def test_a_failed_flight_says_how_where_and_when(self):
+        columns = self.open("collision")
+        text = self.verdict().replace("\u00a0", " ")
+        self.assertIn("ends in a collision", text)
+        self.assertIn("breaks off after 12.00 s", text)
+        self.assertIn(f"x {columns['x_m'][-1]:.2f} m, z {columns['z_m'][-1]:.2f} m", text)
+        self.assertEqual(self.js("return downwash.row"), 1200)  # what went wrong is what is shown first
+        self.assertEqual(self.js("return document.querySelectorAll('.trouble-mark, .mark.failure').length"), 2)
+
+    def test_nothing_found_says_what_blocked_it_and_where(self):
+        self.open("unsolved")
+        text = self.verdict().replace("\u00a0", " ")
+        self.assertIn("No plan within the limits", text)
+        self.assertIn("touches an obstacle, at x 1.20 m, z 9.40 m", text)
+        self.assertEqual(self.js("return document.querySelectorAll('.trouble-mark').length"), 1)
+        self.assertEqual(self.js("return document.querySelectorAll('input.time, .plots').length"), 0)
+        self.assertIsNone(self.js("return downwash.time"))
