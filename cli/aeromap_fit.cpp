@@ -217,7 +217,7 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
 PictureFormat format_of(const std::string& file) {
     const auto format = picture_format_of(file);
     if (!format) {
-        throw UsageError("--plot '" + excerpt(file) + "': expected a file name that ends in .svg or .png");
+        throw UsageError("--plot '" + excerpt(file) + "': expected a file name that ends in .svg, .png or .pdf");
     }
     return *format;
 }
@@ -279,7 +279,7 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
         ->expected(1)
         ->take_all();
     fit->add_flag("--weighted", arguments->is_weighted, "count each residual by 1 / sigma, a column of DATA");
-    fit->add_option("--plot", arguments->plot, "draw measurements, curve and residuals to a .svg or .png file")
+    fit->add_option("--plot", arguments->plot, "draw measurements, curve and residuals to a .svg, .png or .pdf file")
         ->type_name("FILE");
     fit->add_flag("--json", arguments->as_json, "print JSON");
     fit->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });

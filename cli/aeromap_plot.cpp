@@ -192,7 +192,7 @@ ExitCode run(const PlotRequest& request) {
     require_sound_options(request);
     const std::optional<PictureFormat> format = picture_format_of(request.output);
     if (!format) {
-        throw UsageError("--output " + request.output + ": expected a name that ends in .svg or .png");
+        throw UsageError("--output " + request.output + ": expected a name that ends in .svg, .png or .pdf");
     }
     try {
         require_writable(request.output);
@@ -237,7 +237,7 @@ void add_options(CLI::App& plot, PlotRequest& request) {
                     "shown range of curves (default 0 4), or the rotor's height with --flow [radii]")
         ->expected(1, 2)
         ->type_name("LOW HIGH");
-    plot.add_option("-o,--output", request.output, "the picture, .svg or .png")->required()->type_name("FILE");
+    plot.add_option("-o,--output", request.output, "the picture, .svg, .png or .pdf")->required()->type_name("FILE");
     plot.add_option("--width", request.width_px, "width of the picture [pixels]")
         ->type_name("PX")
         ->capture_default_str();

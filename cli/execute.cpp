@@ -73,7 +73,7 @@ ExitCode run(const ExecuteArguments& arguments) {
     fly(problem, arguments.aero == "on", solution);
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (has_pages()) {
-        folder.write("report.html", page_of(folder.path(), 1, nullptr, cache_folder()));
+        folder.write("report.html", page_of(shown_run(folder.path(), 1, nullptr, cache_folder())));
     }
     fmt::print("{}",
                arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));

@@ -1,12 +1,17 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "downwash/base/files.hpp"
 #include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/report/run_figures.hpp"
 #include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
@@ -17,22 +22,51 @@ namespace fs = std::filesystem;
 struct ReportArguments {
     std::string folder;
     std::optional<std::string> out;
+    bool as_svg = false, as_png = false, as_pdf = false;
+    int width_px = PictureSettings{}.width_px;
     bool no_cache = false;
+
+    [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
 
-ExitCode run(const ReportArguments& arguments) {
-    if (!has_pages()) {
-        throw UsageError(
-            "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
-    }
-    const fs::path file = arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / "report.html";
+void write(const fs::path& file, const std::string& content) {
     try {
-        require_writable(file);
-        write_file(file, page_of(arguments.folder, 1, nullptr, arguments.no_cache ? fs::path() : cache_folder()));
+        write_file(file, content);
     } catch (const FileError& fault) {
         throw UsageError(file.string() + " " + fault.what());
     }
     fmt::print("{}\n", file.string());
+}
+
+void write_pictures(const ReportArguments& arguments, const ShownRun& run) {
+    const fs::path folder = arguments.out.value_or(arguments.folder);
+    const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
+    const std::vector<CurveFigure> plots = time_figures(run.record);
+    using Wanted = std::pair<bool, std::pair<PictureFormat, const char*>>;
+    for (const auto& [is_wanted, as] : {Wanted{arguments.as_svg, {PictureFormat::svg, ".svg"}},
+                                        Wanted{arguments.as_png, {PictureFormat::png, ".png"}},
+                                        Wanted{arguments.as_pdf, {PictureFormat::pdf, ".pdf"}}}) {
+        if (is_wanted) {
+            const PictureSettings settings{as.first, arguments.width_px};
+            write(folder / (std::string("flight") + as.second), draw(flight, settings));
+            write(folder / (std::string("plots") + as.second), draw(plots, settings));
+        }
+    }
+}
+
+ExitCode run(const ReportArguments& arguments) {
+    if (!has_pages() && !arguments.wants_pictures()) {
+        throw UsageError(
+            "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
+    }
+    const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+    const ShownRun run =
+        shown_run(arguments.folder, threads, nullptr, arguments.no_cache ? fs::path() : cache_folder());
+    if (arguments.wants_pictures()) {
+        write_pictures(arguments, run);
+    } else {
+        write(arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / "report.html", page_of(run));
+    }
     return ExitCode::done;
 }
 
@@ -41,9 +75,20 @@ ExitCode run(const ReportArguments& arguments) {
 void add_report(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<ReportArguments>();
     CLI::App* command = program.add_subcommand(
-        "report", "Show a run as one HTML page that needs nothing else: scene, flight with playback, plots, search");
+        "report",
+        "Show a run: one HTML page that needs nothing else, with scene, playback, plots and search; or, with --svg, "
+        "--png or --pdf, pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*");
     command->add_option("DIR", arguments->folder, "folder that `solve` or `execute` wrote to")->required();
-    command->add_option("-o,--out", arguments->out, "the page; default report.html in that folder")->type_name("FILE");
+    command
+        ->add_option("-o,--out", arguments->out,
+                     "the page, default report.html in that folder; or the folder of the pictures, default the same")
+        ->type_name("FILE|DIR");
+    command->add_flag("--svg", arguments->as_svg, "pictures as SVG");
+    command->add_flag("--png", arguments->as_png, "pictures as PNG");
+    command->add_flag("--pdf", arguments->as_pdf, "pictures as PDF");
+    command->add_option("--width", arguments->width_px, "of the pictures: 400 to 8000, default 1200")
+        ->type_name("PX")
+        ->check(CLI::Range(least_picture_width_px, most_picture_width_px));
     command->add_flag("--no-cache", arguments->no_cache, "neither read nor write the cache of aero maps");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -7,14 +7,19 @@
 
 namespace downwash::cli {
 
-std::string page_of(const std::filesystem::path& folder, int threads, std::shared_ptr<const AeroMap> map,
-                    const std::filesystem::path& cache) {
-    const RunRecord run = read_run(folder);
-    const auto model = make_flight_model(run.problem);
-    if (map == nullptr && run.problem.aero.enabled) {
-        map = model->make_map(run.problem.bounds, threads, {}, cache);
+ShownRun shown_run(const std::filesystem::path& folder, int threads, std::shared_ptr<const AeroMap> map,
+                   const std::filesystem::path& cache) {
+    ShownRun run{read_run(folder), nullptr, std::move(map)};
+    const Problem& problem = run.record.problem;
+    run.model = make_flight_model(problem);
+    if (run.map == nullptr && problem.aero.enabled) {
+        run.map = run.model->make_map(problem.bounds, threads, {}, cache);
     }
-    return run_page(run, *model, map.get());
+    return run;
+}
+
+std::string page_of(const ShownRun& run) {
+    return run_page(run.record, *run.model, run.map.get());
 }
 
 }  // namespace downwash::cli

@@ -58,7 +58,8 @@ ExitCode run(const SolveArguments& arguments) {
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (has_pages()) {
-        folder.write("report.html", page_of(folder.path(), arguments.threads, solution.map, options.map_cache));
+        folder.write("report.html",
+                     page_of(shown_run(folder.path(), arguments.threads, solution.map, options.map_cache)));
     }
     fmt::print("{}", arguments.as_json ? json : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);

@@ -54,7 +54,7 @@ const std::vector<double>* NumberTable::find(std::string_view name) const {
 }
 
 NumberTable read_number_table(std::string_view text, const std::string& file,
-                              const std::vector<std::string_view>& required) {
+                              const std::vector<std::string>& required) {
     NumberTable table;
     LineFaults faults(file);
     CsvLines lines(text);
@@ -63,9 +63,9 @@ NumberTable read_number_table(std::string_view text, const std::string& file,
         faults.throw_any();
     }
     read_names(lines, table, faults);
-    for (const std::string_view name : required) {
+    for (const std::string& name : required) {
         if (table.find(name) == nullptr) {
-            faults.add(lines.number(), "there is no column '" + std::string(name) + "'");
+            faults.add(lines.number(), "there is no column '" + name + "'");
         }
     }
     faults.throw_any();

@@ -25,6 +25,6 @@ struct NumberTable {
 /// @throws InputError with the place of every fault (twenty at most): a name missing or twice, a row of another length,
 /// a cell that is neither empty nor a finite number, more than 200 columns or 20 million cells
 [[nodiscard]] DOWNWASH_EXPORT NumberTable read_number_table(std::string_view text, const std::string& file,
-                                                            const std::vector<std::string_view>& required);
+                                                            const std::vector<std::string>& required);
 
 }  // namespace downwash

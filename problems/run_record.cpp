@@ -71,11 +71,15 @@ void check_tree(const fs::path& file, const NumberTable& tree) {
     }
 }
 
-const std::vector<std::string_view>& flight_columns() {
-    static const std::vector<std::string_view> names{
-        "t_s",    "ref_x_m",   "ref_z_m",  "ref_arm_rad",     "x_m",
-        "z_m",    "pitch_rad", "arm_rad",  "clearance_m",     "ee_x_m",
-        "ee_z_m", "power_w",   "energy_j", "aero_factor_min", "aero_factor_max"};
+std::vector<std::string> flight_columns(const Robot& robot) {
+    std::vector<std::string> names{"t_s",    "ref_x_m",   "ref_z_m",  "ref_arm_rad",     "x_m",
+                                   "z_m",    "pitch_rad", "arm_rad",  "clearance_m",     "ee_x_m",
+                                   "ee_z_m", "power_w",   "energy_j", "aero_factor_min", "aero_factor_max"};
+    for (std::size_t i = 1; i <= robot.rotors.positions_m.size(); ++i) {
+        const std::string rotor = "rotor_" + std::to_string(i);
+        names.push_back(rotor + "_cmd_n");
+        names.push_back(rotor + "_aero_factor");
+    }
     return names;
 }
 
@@ -108,7 +112,7 @@ RunRecord read_run(const fs::path& folder) {
         run.plan = read_solution(solution.string(), run.problem).plan;
     }
     const fs::path flight = folder / "trajectory.csv";
-    run.flight = read_number_table(text_of(flight), flight.string(), flight_columns());
+    run.flight = read_number_table(text_of(flight), flight.string(), flight_columns(run.problem.robot));
     check_flight(flight, run.flight);
     const fs::path tree = folder / "tree.csv";
     if (fs::exists(tree)) {

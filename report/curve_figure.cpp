@@ -124,7 +124,11 @@ class Panel {
         add_range(script, "x", figure_.x_range);
         add_range(script, "y", figure_.y_range.value_or(needed_range(figure_)));
         script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label)));
-        script.add(fmt::format("set ylabel {} offset 0.4,0", in_quotes(figure_.y_label)));
+        // As an axis label it would vanish beyond the rim where the numbers at the axis are long.
+        constexpr double y_label_px = 16;
+        script.add(fmt::format("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
+                               script.screen_x(y_label_px),
+                               script.screen_y(bottom_px + below_axes_px + axes_px / 2)));
         script.add(data_);
         std::string level;
         if (figure_.level) {
@@ -216,7 +220,8 @@ std::string draw(std::span<const CurveFigure> figures, const PictureSettings& se
     const double width_px = settings.width_px - left_px - right_px;
     std::vector<Panel> panels;
     double height_px = 0;
-    const auto axes_px = [&](std::size_t i) { return width_px * (i == 0 ? 0.5 : 0.22); };
+    // What stands alone or above its residuals is looked at, of many each.
+    const auto axes_px = [&](std::size_t i) { return width_px * (i == 0 && figures.size() <= 2 ? 0.5 : 0.22); };
     for (std::size_t i = 0; i < figures.size(); ++i) {
         require_drawable(figures[i], fmt::format("figures[{}]", i));
         panels.emplace_back(figures[i], i, width_px);

@@ -197,7 +197,7 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     FieldSamples image;
     if (has_field) {
         constexpr std::size_t most_image_points = 1'500'000, most_contour_points = 300'000;
-        const double points_per_px = settings.format == PictureFormat::svg ? 2 : 1;
+        const double points_per_px = settings.format == PictureFormat::png ? 1 : 2;
         image = sampled_for(figure, layout, points_per_px, most_image_points, false);
         plot.add(image.source() + " with image");
         if (figure.has_contour_lines) {

@@ -10,6 +10,40 @@
 #include "downwash/report/picture_text.hpp"
 
 namespace downwash {
+namespace {
+
+constexpr double px_per_inch = 96;
+
+/// gnuplot's terminals of cairo count text in points, of which 72 are an inch.
+double text_unit(PictureFormat format) {
+    return format == PictureFormat::svg ? 1 : 72 / px_per_inch;
+}
+
+std::string terminal(const PictureSettings& settings, int height_px) {
+    switch (settings.format) {
+        case PictureFormat::png:
+            return fmt::format("pngcairo size {},{}", settings.width_px, height_px);
+        case PictureFormat::pdf:
+            // Lines of a quarter of a point are its unit.
+            return fmt::format("pdfcairo size {}in,{}in linewidth 3", settings.width_px / px_per_inch,
+                               height_px / px_per_inch);
+        case PictureFormat::svg:
+            break;
+    }
+    return fmt::format("svg size {},{}", settings.width_px, height_px);
+}
+
+/// Equal figures give equal bytes: the day on which a PDF was drawn becomes blank. Its length stays, as places in the
+/// file are counted.
+void forget_date(std::string& pdf) {
+    const std::size_t date = pdf.rfind("/CreationDate (");
+    if (date != std::string::npos) {
+        const std::size_t end = std::min(pdf.find('\n', date), pdf.size());
+        std::fill(pdf.begin() + static_cast<std::ptrdiff_t>(date), pdf.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+    }
+}
+
+}  // namespace
 
 GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
     : settings_(settings), height_px_(static_cast<int>(std::lround(height_px))) {
@@ -17,10 +51,10 @@ GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
         throw InputError({{"width_px", fmt::format("{} is out of range: expected {} to {} pixels", settings.width_px,
                                                    least_picture_width_px, most_picture_width_px)}});
     }
-    const bool is_png = settings.format == PictureFormat::png;
+    const double font_size = text_unit(settings.format) * font_px;
     add("set encoding utf8");
-    add(fmt::format("set terminal {} size {},{} noenhanced font 'DejaVu Sans,{}' background '#ffffff'",
-                    is_png ? "pngcairo" : "svg", settings.width_px, height_px_, is_png ? font_px * 0.75 : font_px));
+    add(fmt::format("set terminal {} noenhanced font 'DejaVu Sans,{}' background '#ffffff'",
+                    terminal(settings, height_px_), font_size));
     add("set border linewidth 1 linecolor rgb '#333333'");
     add("set tics nomirror out scale 0.5 textcolor rgb '#333333'");
 }
@@ -44,10 +78,8 @@ void GnuplotScript::add_line_of_text(std::string_view text, double middle_px, do
     const double room_px = 2 * (std::min(middle_px, settings_.width_px - middle_px) - rim_px);
     const double needed_px = text_width_px(text, size * font_px);
     const double fitting = needed_px > room_px ? size * room_px / needed_px : size;
-    // pngcairo counts in points, of which 72 are 96 pixels.
-    const double unit = settings_.format == PictureFormat::png ? 0.75 : 1;
     add(fmt::format("set label {} at screen {:.6f},{:.6f} center font ',{:.4g}' textcolor rgb {}", in_quotes(text),
-                    screen_x(middle_px), screen_y(bottom_px), unit * fitting * font_px, color));
+                    screen_x(middle_px), screen_y(bottom_px), text_unit(settings_.format) * fitting * font_px, color));
 }
 
 void GnuplotScript::set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px) {
@@ -63,10 +95,15 @@ void GnuplotScript::set_titles(std::string_view title, std::string_view subtitle
 std::string GnuplotScript::draw() const {
     std::string picture = run_gnuplot(text_);
     // A full disk would cut it short without a word.
-    const std::string_view end = settings_.format == PictureFormat::png ? "IEND" : "</svg>";
+    const std::string_view end = settings_.format == PictureFormat::png   ? "IEND"
+                                 : settings_.format == PictureFormat::pdf ? "%%EOF"
+                                                                          : "</svg>";
     constexpr std::size_t longest_end = 16;
     if (picture.find(end, picture.size() - std::min(picture.size(), longest_end)) == std::string::npos) {
         throw PictureError("gnuplot's picture is incomplete; is there space left for temporary files?");
+    }
+    if (settings_.format == PictureFormat::pdf) {
+        forget_date(picture);
     }
     return picture;
 }

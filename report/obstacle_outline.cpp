@@ -197,4 +197,9 @@ std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOf
     return outlines;
 }
 
+std::vector<ObstacleOutline> projected_outlines(const Scene& scene, const PlaneOfMotion& plane) {
+    constexpr double beside_everything_m = 1e7;
+    return obstacle_outlines(scene, plane, beside_everything_m);
+}
+
 }  // namespace downwash

@@ -28,4 +28,8 @@ struct ObstacleOutline {
                                                                              const PlaneOfMotion& plane,
                                                                              double lateral_m);
 
+/// The projection of every obstacle on the plane of motion, whether it is cut or not.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<ObstacleOutline> projected_outlines(const Scene& scene,
+                                                                              const PlaneOfMotion& plane);
+
 }  // namespace downwash

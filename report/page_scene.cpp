@@ -10,6 +10,7 @@
 #include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/packed_numbers.hpp"
+#include "downwash/report/robot_outline.hpp"
 
 namespace downwash {
 namespace {
@@ -142,9 +143,6 @@ class SolidOf {
 constexpr const char* kinds[] = {"box", "cylinder", "sphere", "mesh", "octree"};
 static_assert(std::size(kinds) == std::variant_size_v<Shape>);
 
-/// A plane so far beside everything that outlines are projections.
-constexpr double beside_everything_m = 1e7;
-
 Json optional_json(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
@@ -176,7 +174,7 @@ Json goal_json(const Goal& goal) {
 
 Json scene_json(const Problem& problem, const Scene& scene) {
     const auto cuts = obstacle_outlines(scene, problem.plane, 0);
-    const auto projections = obstacle_outlines(scene, problem.plane, beside_everything_m);
+    const auto projections = projected_outlines(scene, problem.plane);
     Json obstacles = Json::array();
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const Obstacle& obstacle = scene.obstacles()[i];
@@ -196,18 +194,13 @@ Json scene_json(const Problem& problem, const Scene& scene) {
 }
 
 Json robot_json(const Robot& robot) {
-    std::vector<Obstacle> bodies;
-    for (const BodyShape& body : robot.body) {
-        bodies.push_back(
-            {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}});
-    }
     const PlaneOfMotion body_plane;
-    const auto outlines = obstacle_outlines(Scene(bodies), body_plane, beside_everything_m);
+    const auto outlines = body_outlines(robot.body);
     Json shapes = Json::array();
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const ObstacleFrame frame(bodies[i], body_plane, 0);
-        shapes.push_back({{"outline", ring_json(outlines[i].rings.front())},
-                          {"solid", std::visit(SolidOf(frame), bodies[i].shape)}});
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        const Obstacle body = as_obstacle(robot.body[i]);
+        const ObstacleFrame frame(body, body_plane, 0);
+        shapes.push_back({{"outline", ring_json(outlines[i])}, {"solid", std::visit(SolidOf(frame), body.shape)}});
     }
     Json hubs = Json::array();
     for (const Vector3& hub_m : robot.rotors.positions_m) {

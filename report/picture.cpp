@@ -15,6 +15,9 @@ std::optional<PictureFormat> picture_format_of(const std::filesystem::path& file
     if (extension == ".png") {
         return PictureFormat::png;
     }
+    if (extension == ".pdf") {
+        return PictureFormat::pdf;
+    }
     return std::nullopt;
 }
 

@@ -13,6 +13,7 @@ namespace downwash {
 enum class PictureFormat {
     svg,  ///< vector graphics; fields inside are embedded as images
     png,
+    pdf,  ///< vector graphics on one page; 96 pixels are an inch
 };
 
 /// How a figure becomes a picture. The height follows from what is drawn.
@@ -24,7 +25,7 @@ struct PictureSettings {
 inline constexpr int least_picture_width_px = 400;
 inline constexpr int most_picture_width_px = 8000;
 
-/// The format that a file's extension asks for, .svg or .png in any case; empty for any other.
+/// The format that a file's extension asks for, .svg, .png or .pdf in any case; empty for any other.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<PictureFormat> picture_format_of(const std::filesystem::path& file);
 
 /// A picture cannot be drawn on this machine: gnuplot is missing or failed. what() says why and what to do about it.

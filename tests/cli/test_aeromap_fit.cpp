@@ -102,7 +102,7 @@ TEST_CASE("A fit is drawn with its measurements and residuals") {
     nowhere[6] = folder / "fit.jpeg";
     const Result refused = run(folder, nowhere);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("ends in .svg or .png"));
+    CHECK_THAT(refused.err, Catch::Contains("ends in .svg, .png or .pdf"));
 }
 
 TEST_CASE("Fits that cannot be made end with 2 and say why") {

@@ -114,7 +114,7 @@ TEST_CASE("What cannot be plotted is refused with a remedy, and leaves no file")
         std::vector<std::string> arguments;
         const char* words;
     } cases[] = {
-        {plot("a.bmp", {problem}), "ends in .svg or .png"},
+        {plot("a.bmp", {problem}), "ends in .svg, .png or .pdf"},
         {plot("no-such-folder/a.svg", {problem}), "no-such-folder/a.svg"},
         {plot("a.svg", {}), "wants one of PROBLEM"},
         {plot("a.svg", {problem, "--flow", "--z-over-r", "1"}), "wants one of PROBLEM"},

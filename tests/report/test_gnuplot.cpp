@@ -92,6 +92,7 @@ TEST_CASE("the extension of a file decides what a picture is stored as") {
     CHECK(picture_format_of("a/b.svg") == PictureFormat::svg);
     CHECK(picture_format_of("b.PNG") == PictureFormat::png);
     CHECK_FALSE(picture_format_of("svg"));
-    CHECK_FALSE(picture_format_of("a.svg/b.pdf"));
+    CHECK(picture_format_of("a.svg/b.pdf") == PictureFormat::pdf);
+    CHECK_FALSE(picture_format_of("a.svg/b.bmp"));
     CHECK_FALSE(picture_format_of(""));
 }

@@ -1,0 +1,267 @@
+#include "downwash/report/run_figures.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/fault.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/report/robot_outline.hpp"
+
+namespace downwash {
+namespace {
+
+using Pieces = std::vector<std::vector<PlanePoint>>;
+
+constexpr Color flown_color{0xd5, 0x5e, 0x00}, planned_color{0x55, 0x55, 0x55}, end_effector_color{0x00, 0x72, 0xb2},
+    goal_color{0xcc, 0x79, 0xa7};
+
+void require_flight(const RunRecord& run) {
+    if (run.flight.rows() < 2) {
+        throw InputError({Fault{"", "nothing was flown in this run, so there is no flight to draw"}});
+    }
+}
+
+/// Columns of the flight by name; read_run() saw to it that those which are asked for here are there.
+class Flight {
+ public:
+    explicit Flight(const RunRecord& run) : table_(run.flight) {}
+    [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const { return *table_.find(name); }
+    [[nodiscard]] std::size_t rows() const { return table_.rows(); }
+    [[nodiscard]] bool has(std::string_view name) const { return table_.find(name) != nullptr; }
+
+ private:
+    const NumberTable& table_;
+};
+
+/// Vehicle and arm at a place, as lines.
+class RobotDrawing {
+ public:
+    explicit RobotDrawing(const Robot& robot) : robot_(robot), bodies_(body_outlines(robot.body)) {}
+
+    /// From rim to rim of its outermost rotors.
+    [[nodiscard]] double width_m() const {
+        double low_m = 0, high_m = 0;
+        for (const Vector3& hub_m : robot_.rotors.positions_m) {
+            low_m = std::min(low_m, hub_m[0] - robot_.rotors.radius_m);
+            high_m = std::max(high_m, hub_m[0] + robot_.rotors.radius_m);
+        }
+        return high_m - low_m;
+    }
+
+    void add_to(Pieces& lines, double x_m, double z_m, double pitch_rad, double arm_rad) const {
+        const double sine = std::sin(pitch_rad), cosine = std::cos(pitch_rad);
+        const auto placed = [&](double forward_m, double up_m) {
+            return PlanePoint{x_m + forward_m * cosine + up_m * sine, z_m - forward_m * sine + up_m * cosine};
+        };
+        for (const auto& body : bodies_) {
+            auto& ring = lines.emplace_back();
+            for (const PlanePoint& corner : body) {
+                ring.push_back(placed(corner.x_m, corner.z_m));
+            }
+            ring.push_back(ring.front());
+        }
+        for (const Vector3& hub_m : robot_.rotors.positions_m) {
+            lines.push_back({placed(hub_m[0] - robot_.rotors.radius_m, hub_m[2]),
+                             placed(hub_m[0] + robot_.rotors.radius_m, hub_m[2])});
+        }
+        const PlanePoint joint = placed(robot_.arm.joint_x_m, robot_.arm.joint_z_m);
+        const double direction_rad = pitch_rad + arm_rad;
+        lines.push_back({joint,
+                         {joint.x_m + robot_.arm.length_m * std::cos(direction_rad),
+                          joint.z_m - robot_.arm.length_m * std::sin(direction_rad)}});
+    }
+
+ private:
+    const Robot& robot_;
+    Pieces bodies_;
+};
+
+std::vector<PlanePoint> way(const std::vector<double>& x_m, const std::vector<double>& z_m) {
+    std::vector<PlanePoint> points;
+    for (std::size_t i = 0; i < x_m.size(); ++i) {
+        points.push_back({x_m[i], z_m[i]});
+    }
+    return points;
+}
+
+/// Rows at equal intervals, such that a vehicle moves on by some length of its own between two; the last among them.
+std::vector<std::size_t> snapshot_rows(const Flight& flight, double vehicle_m) {
+    double length_m = 0;
+    for (std::size_t i = 1; i < flight.rows(); ++i) {
+        length_m += std::hypot(flight["x_m"][i] - flight["x_m"][i - 1], flight["z_m"][i] - flight["z_m"][i - 1]);
+    }
+    constexpr double least = 5, most = 16;
+    const double count = std::clamp(std::round(length_m / (1.3 * vehicle_m)), least, most);
+    std::vector<std::size_t> rows;
+    const auto last = static_cast<double>(flight.rows() - 1);
+    for (double i = 0; i <= count; ++i) {
+        rows.push_back(static_cast<std::size_t>(std::lround(last * i / count)));
+    }
+    return rows;
+}
+
+/// What the flight and the goals need, with room around, no further than a little beyond the bounds.
+MapExtent shown_extent(const RunRecord& run, const Flight& flight) {
+    const double room_m = 1.2 * run.problem.robot.arm.length_m;
+    MapExtent extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    const auto include = [&](const std::vector<double>& x_m, const std::vector<double>& z_m) {
+        for (std::size_t i = 0; i < x_m.size(); ++i) {
+            extent.x_low_m = std::min(extent.x_low_m, x_m[i] - room_m);
+            extent.x_high_m = std::max(extent.x_high_m, x_m[i] + room_m);
+            extent.z_low_m = std::min(extent.z_low_m, z_m[i] - room_m);
+            extent.z_high_m = std::max(extent.z_high_m, z_m[i] + room_m);
+        }
+    };
+    include(flight["x_m"], flight["z_m"]);
+    include(flight["ee_x_m"], flight["ee_z_m"]);
+    // To scale, neither side may be many times as long as the other.
+    constexpr double most_ratio = 4;
+    const double lacking_m = (extent.x_high_m - extent.x_low_m) / most_ratio - (extent.z_high_m - extent.z_low_m);
+    if (lacking_m > 0) {
+        extent.z_low_m -= lacking_m / 2;
+        extent.z_high_m += lacking_m / 2;
+    }
+    return extent;
+}
+
+/// Where goals are that lie at one point of the plane.
+std::vector<FigurePoints> goal_points(const Problem& problem) {
+    FigurePoints goals{"goal of the end effector", {}, goal_color};
+    for (const Goal& visited : goals_of(problem)) {
+        for (const Goal& goal : alternatives(visited)) {
+            if (goal.end_effector) {
+                goals.points.push_back({goal.end_effector->x_m, goal.end_effector->z_m});
+            }
+        }
+    }
+    if (goals.points.empty()) {
+        return {};
+    }
+    return {std::move(goals)};
+}
+
+/// The least and the greatest of the factors in the extent, on a grid.
+std::pair<double, double> factor_range(const FieldFigure& figure) {
+    constexpr int steps = 200;
+    double low = 1, high = 1;
+    for (int i = 0; i <= steps; ++i) {
+        for (int k = 0; k <= steps; ++k) {
+            const MapExtent& e = figure.extent;
+            const double factor = figure.value(e.x_low_m + (e.x_high_m - e.x_low_m) * i / steps,
+                                               e.z_low_m + (e.z_high_m - e.z_low_m) * k / steps);
+            low = std::fmin(low, factor);
+            high = std::fmax(high, factor);
+        }
+    }
+    return {low, high};
+}
+
+std::vector<DiagramPoint> over_time(const Flight& flight, const std::vector<double>& values, double factor = 1) {
+    std::vector<DiagramPoint> points;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        points.push_back({flight["t_s"][i], factor * values[i]});
+    }
+    return points;
+}
+
+CurveFigure diagram(std::string y_label, std::vector<Curve> curves) {
+    CurveFigure figure;
+    figure.x_label = "time [s]";
+    figure.y_label = std::move(y_label);
+    figure.curves = std::move(curves);
+    return figure;
+}
+
+/// One curve for each rotor; rotors one behind the other share one.
+std::vector<Curve> rotor_curves(const Flight& flight, std::size_t rotors, const std::string& column) {
+    std::vector<Curve> curves;
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 1; i <= rotors; ++i) {
+        const auto& values = flight[fmt::format("rotor_{}_{}", i, column)];
+        bool is_shown = false;
+        for (std::size_t k = 0; k < shown.size() && !is_shown; ++k) {
+            if (flight[fmt::format("rotor_{}_{}", shown[k], column)] == values) {
+                curves[k].name += fmt::format(", {}", i);
+                is_shown = true;
+            }
+        }
+        if (!is_shown) {
+            shown.push_back(i);
+            curves.push_back({fmt::format("rotor {}", i), over_time(flight, values)});
+        }
+    }
+    return curves;
+}
+
+}  // namespace
+
+FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
+    require_flight(run);
+    const Flight flight(run);
+    FieldFigure figure;
+    figure.title = run.problem.name;
+    const RobotDrawing robot(run.problem.robot);
+    const auto rows = snapshot_rows(flight, robot.width_m());
+    figure.subtitle =
+        fmt::format("{}, every {} s of {} s", name_of(run.problem.planner.variant),
+                    to_text((flight["t_s"][rows[1]] - flight["t_s"][rows[0]]), 3), to_text(flight["t_s"].back(), 4));
+    figure.extent = shown_extent(run, flight);
+    figure.obstacles = obstacle_outlines(Scene(run.problem.obstacles), run.problem.plane, 0);
+    const std::size_t layer = model.rotor_layer(0);
+    figure.value = [map, layer](double x_m, double z_m) {
+        return map != nullptr && map->is_flyable(layer, x_m, z_m) ? map->factor(layer, x_m, z_m)
+                                                                  : std::numeric_limits<double>::quiet_NaN();
+    };
+    figure.has_contour_lines = false;
+    const auto [low, high] = factor_range(figure);
+    figure.scale = factor_scale("aero factor K of rotor 1 there", low, high);
+
+    Pieces flown, planned;
+    for (const std::size_t row : rows) {
+        robot.add_to(planned, flight["ref_x_m"][row], flight["ref_z_m"][row], 0, flight["ref_arm_rad"][row]);
+        robot.add_to(flown, flight["x_m"][row], flight["z_m"][row], flight["pitch_rad"][row], flight["arm_rad"][row]);
+    }
+    figure.lines = {
+        {"planned: the reference, drawn level", planned, planned_color, 1, true},
+        {"way of the end effector", {way(flight["ee_x_m"], flight["ee_z_m"])}, end_effector_color, 1.5, true},
+        {"flown", flown, flown_color, 1.6},
+        {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
+    figure.points = goal_points(run.problem);
+    return figure;
+}
+
+std::vector<CurveFigure> time_figures(const RunRecord& run) {
+    require_flight(run);
+    const Flight flight(run);
+    std::vector<double> error_m;
+    for (std::size_t i = 0; i < flight.rows(); ++i) {
+        error_m.push_back(std::hypot(flight["x_m"][i] - flight["ref_x_m"][i], flight["z_m"][i] - flight["ref_z_m"][i]));
+    }
+    const std::size_t rotors = run.problem.robot.rotors.positions_m.size();
+    std::vector<CurveFigure> figures;
+    figures.push_back(diagram("tracking error [m]", {{"position", over_time(flight, error_m)}}));
+    figures.push_back(
+        diagram("angle [deg]", {{"pitch, nose down", over_time(flight, flight["pitch_rad"], degrees_per_radian)},
+                                {"arm", over_time(flight, flight["arm_rad"], degrees_per_radian)},
+                                {"arm, reference", over_time(flight, flight["ref_arm_rad"], degrees_per_radian)}}));
+    figures.push_back(diagram("rotor command [N]", rotor_curves(flight, rotors, "cmd_n")));
+    figures.push_back(diagram("aero factor", rotor_curves(flight, rotors, "aero_factor")));
+    if (!std::isnan(flight["clearance_m"].front())) {
+        figures.push_back(diagram("clearance [m]", {{"to obstacles", over_time(flight, flight["clearance_m"])}}));
+        figures.back().level = run.problem.planner.safety_margin_m;
+    }
+    figures.push_back(diagram("power [W]", {{"rotors and arm", over_time(flight, flight["power_w"])}}));
+    for (CurveFigure& figure : figures) {
+        figure.x_range = AxisRange{flight["t_s"].front(), flight["t_s"].back()};
+    }
+    figures.front().title = run.problem.name;
+    figures.front().subtitle = std::string(name_of(run.problem.planner.variant));
+    return figures;
+}
+
+}  // namespace downwash

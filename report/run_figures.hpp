@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "downwash/problems/run_record.hpp"
+#include "downwash/report/curve_figure.hpp"
+#include "downwash/report/field_figure.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash {
+
+/// The snapshot diagram of a run, as figures C.6 and C.7 of the thesis: vehicle and arm at equal intervals of time,
+/// flown beside where the reference wanted them, over the scene and its aero map.
+/// @param model of run.problem   @param map of it; nullptr: the scene alone
+/// @throws InputError when nothing was flown
+[[nodiscard]] DOWNWASH_EXPORT FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model,
+                                                          const AeroMap* map);
+
+/// What happened over time, one diagram below the other: tracking error, pitch and arm, rotor commands, aero factors,
+/// clearance, power. @throws InputError when nothing was flown
+[[nodiscard]] DOWNWASH_EXPORT std::vector<CurveFigure> time_figures(const RunRecord& run);
+
+}  // namespace downwash

@@ -1,0 +1,80 @@
+#include "downwash/report/run_figures.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/solved_run.hpp"
+#include "downwash/base/fault.hpp"
+#include "pictures.hpp"
+
+using namespace downwash;
+
+namespace {
+
+const RunRecord& record() {
+    static const RunRecord run = [] {
+        const test::SolvedRun solved;
+        return read_run(solved.folder());
+    }();
+    return run;
+}
+
+FieldFigure snapshots() {
+    return snapshot_figure(record(), *make_flight_model(record().problem), nullptr);
+}
+
+bool holds(const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the arm of every snapshot ends where the end effector was flown") {
+    const FieldFigure figure = snapshots();
+    const auto flown = std::find_if(figure.lines.begin(), figure.lines.end(),
+                                    [](const FigureLines& lines) { return lines.name == "flown"; });
+    REQUIRE(flown != figure.lines.end());
+    const auto& ee_x_m = *record().flight.find("ee_x_m");
+    const auto& ee_z_m = *record().flight.find("ee_z_m");
+    std::size_t found = 0;
+    for (const auto& piece : flown->pieces) {
+        for (std::size_t row = 0; row < ee_x_m.size(); ++row) {
+            if (std::hypot(piece.back().x_m - ee_x_m[row], piece.back().z_m - ee_z_m[row]) < 1e-9) {
+                ++found;
+                break;
+            }
+        }
+    }
+    CHECK(found >= 6);
+    CHECK(figure.points.size() == 1);
+}
+
+TEST_CASE("pictures of a run are the same bytes each time, in every format") {
+    const auto plots = time_figures(record());
+    for (const PictureFormat format : {PictureFormat::svg, PictureFormat::png, PictureFormat::pdf}) {
+        const PictureSettings settings{format, 600};
+        CHECK(draw(snapshots(), settings) == draw(snapshots(), settings));
+        CHECK(draw(plots, settings) == draw(plots, settings));
+    }
+    const std::string pdf = draw(plots, {PictureFormat::pdf, 600});
+    CHECK(pdf.starts_with("%PDF"));
+    CHECK_FALSE(holds(pdf, "CreationDate"));
+}
+
+TEST_CASE("plots over time say what they show, with units") {
+    const std::string texts = test::svg_texts(draw(time_figures(record()), {PictureFormat::svg, 800}));
+    for (const char* part : {"tracking error [m]", "angle [deg]", "rotor command [N]", "aero factor", "clearance [m]",
+                             "power [W]", "time [s]", "rotor 1, 2"}) {
+        CAPTURE(part);
+        CHECK(holds(texts, part));
+    }
+}
+
+TEST_CASE("a run without a flight has no pictures") {
+    RunRecord none = record();
+    for (auto& column : none.flight.columns) {
+        column.clear();
+    }
+    CHECK_THROWS_AS(time_figures(none), InputError);
+    CHECK_THROWS_AS(snapshot_figure(none, *make_flight_model(none.problem), nullptr), InputError);
+}
