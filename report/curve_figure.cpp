@@ -127,8 +127,7 @@ class Panel {
         // As an axis label it would vanish beyond the rim where the numbers at the axis are long.
         constexpr double y_label_px = 16;
         script.add(fmt::format("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
-                               script.screen_x(y_label_px),
-                               script.screen_y(bottom_px + below_axes_px + axes_px / 2)));
+                               script.screen_x(y_label_px), script.screen_y(bottom_px + below_axes_px + axes_px / 2)));
         script.add(data_);
         std::string level;
         if (figure_.level) {
