@@ -5,12 +5,12 @@ import {s} from "./dom.js";
 /** The body frame (a forward, c up) turned and moved: pitch is positive nose down. */
 function frame_transform({x_m, z_m, pitch_rad}) {
     const cos = Math.cos(pitch_rad), sin = Math.sin(pitch_rad);
-    return `matrix(${cos} ${- sin} ${sin} ${cos} ${x_m} ${z_m})`;
+    return `matrix(${[cos, -sin, sin, cos, x_m, z_m].join(" ")})`;
 }
 
 function arm_transform([x, z], arm_rad) {
     const cos = Math.cos(arm_rad), sin = Math.sin(arm_rad);
-    return `matrix(${cos} ${- sin} ${sin} ${cos} ${x} ${z})`;
+    return `matrix(${[cos, -sin, sin, cos, x, z].join(" ")})`;
 }
 
 export const ring = (points) => `M${points.map(([x, z]) => `${x} ${z}`).join("L")}Z`;
