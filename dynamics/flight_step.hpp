@@ -115,8 +115,8 @@ PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, c
     constexpr double weight[] = {1, 2, 2, 1};
     const bool has_lag = model.rotor_time_constant_s > 0;
     const int rotors = model.rotor_count;
-    T q[4], u[4], thrust_n[max_rotors];  // at the stage
-    T du[4], thrust_rate[max_rotors];    // there
+    T q[4], u[4], thrust_n[max_rotors];     // at the stage
+    T du[4] = {}, thrust_rate[max_rotors];  // there
     T q_sum[4], u_sum[4], thrust_sum[max_rotors], power_sum(0);
     for (int i = 0; i < 4; ++i) {
         q[i] = state.q[i];

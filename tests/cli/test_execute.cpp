@@ -25,7 +25,7 @@ TEST_CASE("A plan flown again flies as before") {
         found.at("problem").erase("file");
         CHECK(found == expected);
         CHECK(read_file(folder.path() / "run/again/trajectory.csv") == before.at("trajectory.csv"));
-        CHECK(files_in(folder.path() / "run/again").size() == 3);
+        CHECK(files_in(folder.path() / "run/again").size() == files_of_a_run);
     }
     SECTION("and in free air without surface effects") {
         const Result flown =
@@ -39,7 +39,7 @@ TEST_CASE("A plan flown again flies as before") {
         CHECK(refused.err.find("holds the plan itself") != std::string::npos);
         CHECK(run(folder, {"execute", problem, "--plan", plan}).code == 0);
         CHECK(files_in(folder.path() / "run" / home) == before);
-        CHECK(files_in(folder.path() / "run" / (home + "-executed")).size() == 3);
+        CHECK(files_in(folder.path() / "run" / (home + "-executed")).size() == files_of_a_run);
     }
     SECTION("but not in a problem that starts elsewhere") {
         const Result refused = run(folder, {"execute", problem_file("open_air"), "--plan", plan});
@@ -73,5 +73,5 @@ TEST_CASE("A plan whose flight fails ends with 3") {
     CHECK(flown.code == 3);
     CHECK(flown.out.starts_with("The flight in free air ends in a collision."));
     const auto files = files_in(folder.path() / "run");
-    CHECK(files.size() == 3);
+    CHECK(files.size() == files_of_a_run);
 }

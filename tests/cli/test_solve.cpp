@@ -61,7 +61,7 @@ TEST_CASE("Solve writes a solution and a trajectory and the effective problem in
 
     const auto files = files_in(folder.path() / "run");
     const std::string place = "downwash-out/open_air-mp-arm-ada-5/";
-    REQUIRE(files.size() == 3);
+    REQUIRE(files.size() == files_of_a_run);
     CHECK(files.at(place + "trajectory.csv").starts_with(csv_header + "\n0,-6,3,"));
     CHECK(files.at(place + "effective.yaml").starts_with("schema: downwash/problem/v1\n"));
 
@@ -95,7 +95,7 @@ TEST_CASE("Json on standard output is the solution file and quiet leaves standar
     CHECK(result.err.empty());
     CHECK(result.json().at("variant") == "mp-arm");
     CHECK(result.out == read_file(folder.path() / "run/here/solution.json"));
-    CHECK(files_in(folder.path() / "run").size() == 3);
+    CHECK(files_in(folder.path() / "run").size() == files_of_a_run);
 }
 
 TEST_CASE("Solving the effective problem again gives the same bytes") {
@@ -141,7 +141,7 @@ TEST_CASE("Without a solution within the limits the exit code is 1 and nobody sa
     CHECK(result.code == 1);
     CHECK(result.out.starts_with("No solution within the limits"));
     const auto files = files_in(folder.path() / "run/x");
-    REQUIRE(files.size() == 3);
+    REQUIRE(files.size() == files_of_a_run);
     CHECK(files.at("trajectory.csv").starts_with(csv_header + "\n"));
     const auto solution = nlohmann::json::parse(files.at("solution.json"));
     CHECK(solution.at("status") != "solved");
