@@ -23,7 +23,7 @@ TEST_CASE("A signal in the middle of a search writes the best plan so far") {
     CHECK(result.out.starts_with("Interrupted. Solved. "));
 
     const auto files = files_in(folder.path() / "run/x");
-    REQUIRE(files.size() == 3);
+    REQUIRE(files.size() == files_of_a_run);
     const auto solution = nlohmann::json::parse(files.at("solution.json"));
     CHECK(solution.at("interrupted") == true);
     CHECK(solution.at("status") == "solved");
@@ -39,7 +39,7 @@ TEST_CASE("A signal at the very beginning leaves valid files too") {
     const Result result = program.wait();
     CHECK(result.code == 130);
     const auto files = files_in(folder.path() / "run/x");
-    REQUIRE(files.size() == 3);
+    REQUIRE(files.size() == files_of_a_run);
     CHECK(nlohmann::json::parse(files.at("solution.json")).at("interrupted") == true);
 }
 

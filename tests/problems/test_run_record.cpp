@@ -108,5 +108,9 @@ TEST_CASE("tables of numbers are read strictly") {
     CHECK(table_fault("a,b\n1,2,3\n") == "file.csv:2: 3 cells under 2 column names");
     CHECK(table_fault("a,b\n1,2\n1,two\n") == "file.csv:3:3: 'two' is not a finite number");
     CHECK(table_fault("a,b\n1,nan\n") == "file.csv:2:3: 'nan' is not a finite number");
-    CHECK(table_fault("a,b" + std::string(300, ',') + "\n").find("more than 200 columns") != std::string::npos);
+    std::string many = "a,b";
+    for (int i = 2; i <= 200; ++i) {
+        many += ",c" + std::to_string(i);
+    }
+    CHECK(table_fault(many + "\n").find("more than 200 columns") != std::string::npos);
 }
