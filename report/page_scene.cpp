@@ -245,8 +245,9 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
     std::vector<double> factors(columns * rows, std::numeric_limits<double>::quiet_NaN());
     double low = 1, high = 1;
     for (std::size_t i = 0; i < factors.size(); ++i) {
+        const std::size_t row = i / columns;
         const double x_m = bounds.x_low_m + cell_m * static_cast<double>(i % columns);
-        const double z_m = bounds.z_low_m + cell_m * static_cast<double>(i / columns);
+        const double z_m = bounds.z_low_m + cell_m * static_cast<double>(row);
         if (map.is_flyable(layer, x_m, z_m)) {
             factors[i] = map.factor(layer, x_m, z_m);
             low = std::min(low, factors[i]);

@@ -8,6 +8,7 @@ namespace downwash {
 
 std::vector<std::vector<PlanePoint>> body_outlines(const std::vector<BodyShape>& bodies) {
     std::vector<Obstacle> obstacles;
+    obstacles.reserve(bodies.size());
     for (const BodyShape& body : bodies) {
         obstacles.push_back(as_obstacle(body));
     }
