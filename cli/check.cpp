@@ -1,12 +1,15 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/standard_error.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
@@ -14,6 +17,7 @@ namespace {
 
 struct CheckArguments {
     std::vector<std::string> problems;
+    std::optional<std::string> schema;
     bool as_json = false;
 };
 
@@ -37,6 +41,13 @@ void print_json(const std::vector<LocatedFault>& faults) {
 }
 
 ExitCode run(const CheckArguments& arguments) {
+    if (arguments.schema) {
+        fmt::print("{}", json_schema(*file_kind_named(*arguments.schema)));
+        return ExitCode::done;
+    }
+    if (arguments.problems.empty()) {
+        throw UsageError("which files? Expected problem files, or --schema problem, robot or campaign");
+    }
     std::vector<LocatedFault> all;
     for (const std::string& path : arguments.problems) {
         const std::vector<LocatedFault> faults = faults_of(path);
@@ -59,7 +70,12 @@ ExitCode run(const CheckArguments& arguments) {
 void add_check(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<CheckArguments>();
     CLI::App* command = program.add_subcommand("check", "Say whether problem files are sound, and every fault if not");
-    command->add_option("PROBLEM", arguments->problems, "problem files")->required();
+    command->add_option("PROBLEM", arguments->problems, "problem files");
+    command
+        ->add_option("--schema", arguments->schema,
+                     "print the JSON Schema of a kind of file instead, for editors that complete and check YAML")
+        ->type_name("problem|robot|campaign")
+        ->check(CLI::IsMember({"problem", "robot", "campaign"}));
     command->add_flag("--json", arguments->as_json, "print the faults as JSON on standard output");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

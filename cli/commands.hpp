@@ -17,6 +17,9 @@ void add_execute(CLI::App& program, Action& action);
 void add_aeromap(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
+void add_init(CLI::App& program, Action& action);
+void add_explain(CLI::App& program, Action& action);
+void add_manual(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 

@@ -14,7 +14,6 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/solution_file.hpp"
-#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -72,9 +71,7 @@ ExitCode run(const ExecuteArguments& arguments) {
     const OutputFolder folder(folder_for(arguments, problem));
     fly(problem, arguments.aero == "on", solution);
     const std::string json = write_results(folder, problem, arguments.problem, solution);
-    if (has_pages()) {
-        folder.write("report.html", page_of(shown_run(folder.path(), 1, nullptr, cache_folder())));
-    }
+    write_page(folder, nullptr, cache_folder());
     fmt::print("{}",
                arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {

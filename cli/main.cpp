@@ -82,7 +82,9 @@ ExitCode run(int argc, char** argv) {
     program.footer(exit_codes);
     program.failure_message(usage_fault);
     Action action;
+    add_init(program, action);
     add_check(program, action);
+    add_explain(program, action);
     add_solve(program, action);
     add_execute(program, action);
     add_aeromap(program, action);
@@ -90,6 +92,7 @@ ExitCode run(int argc, char** argv) {
     add_report(program, action);
     add_export(program, action);
     add_planners(program, action);
+    add_manual(program, action);
     refuse_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
     if (const auto code = parse(program, argc, argv)) {
         return *code;

@@ -1,8 +1,6 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -23,7 +21,7 @@ struct ReportArguments {
     std::string folder;
     std::optional<std::string> out;
     bool as_svg = false, as_png = false, as_pdf = false;
-    int width_px = PictureSettings{}.width_px;
+    std::optional<int> width_px;
     bool no_cache = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
@@ -39,29 +37,36 @@ void write(const fs::path& file, const std::string& content) {
 }
 
 void write_pictures(const ReportArguments& arguments, const ShownRun& run) {
-    const fs::path folder = arguments.out.value_or(arguments.folder);
     const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
     const std::vector<CurveFigure> plots = time_figures(run.record);
-    using Wanted = std::pair<bool, std::pair<PictureFormat, const char*>>;
+    std::vector<std::pair<std::string, std::string>>
+        pictures;  // names and contents: all are drawn before one is written
+    using Wanted = std::pair<bool, std::pair<PictureFormat, std::string>>;
     for (const auto& [is_wanted, as] : {Wanted{arguments.as_svg, {PictureFormat::svg, ".svg"}},
                                         Wanted{arguments.as_png, {PictureFormat::png, ".png"}},
                                         Wanted{arguments.as_pdf, {PictureFormat::pdf, ".pdf"}}}) {
         if (is_wanted) {
-            const PictureSettings settings{as.first, arguments.width_px};
-            write(folder / (std::string("flight") + as.second), draw(flight, settings));
-            write(folder / (std::string("plots") + as.second), draw(plots, settings));
+            const PictureSettings settings{as.first, arguments.width_px.value_or(PictureSettings{}.width_px)};
+            pictures.emplace_back("flight" + as.second, draw(flight, settings));
+            pictures.emplace_back("plots" + as.second, draw(plots, settings));
         }
+    }
+    const OutputFolder folder(arguments.out.value_or(arguments.folder));
+    for (const auto& [name, content] : pictures) {
+        folder.write(name, content);
+        fmt::print("{}\n", (folder.path() / name).string());
     }
 }
 
 ExitCode run(const ReportArguments& arguments) {
+    if (arguments.width_px && !arguments.wants_pictures()) {
+        throw UsageError("--width: of which picture? Expected --svg, --png or --pdf with it");
+    }
     if (!has_pages() && !arguments.wants_pictures()) {
         throw UsageError(
             "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
     }
-    const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
-    const ShownRun run =
-        shown_run(arguments.folder, threads, nullptr, arguments.no_cache ? fs::path() : cache_folder());
+    const ShownRun run = shown_run(arguments.folder, nullptr, arguments.no_cache ? fs::path() : cache_folder());
     if (arguments.wants_pictures()) {
         write_pictures(arguments, run);
     } else {

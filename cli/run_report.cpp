@@ -1,18 +1,25 @@
 #include "downwash/cli/run_report.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
+#include "downwash/cli/standard_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 
-ShownRun shown_run(const std::filesystem::path& folder, int threads, std::shared_ptr<const AeroMap> map,
+ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
                    const std::filesystem::path& cache) {
     ShownRun run{read_run(folder), nullptr, std::move(map)};
     const Problem& problem = run.record.problem;
     run.model = make_flight_model(problem);
     if (run.map == nullptr && problem.aero.enabled) {
+        const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
         run.map = run.model->make_map(problem.bounds, threads, {}, cache);
     }
     return run;
@@ -20,6 +27,20 @@ ShownRun shown_run(const std::filesystem::path& folder, int threads, std::shared
 
 std::string page_of(const ShownRun& run) {
     return run_page(run.record, *run.model, run.map.get());
+}
+
+void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache) {
+    if (!has_pages()) {
+        return;
+    }
+    constexpr char name[] = "report.html";
+    try {
+        folder.write(name, page_of(shown_run(folder.path(), std::move(map), cache)));
+    } catch (const std::runtime_error& fault) {
+        std::error_code ignored;
+        std::filesystem::remove(folder.path() / name, ignored);
+        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", name, fault.what()));
+    }
 }
 
 }  // namespace downwash::cli

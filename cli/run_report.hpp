@@ -5,6 +5,7 @@
 #include <string>
 
 #include "downwash/aeromap/aero_map.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/problems/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
@@ -19,10 +20,14 @@ struct ShownRun {
 
 /// Reads the run in a folder.
 /// @param map of the run's problem, where it is at hand  @param cache folder of aero maps; empty: nowhere
-[[nodiscard]] ShownRun shown_run(const std::filesystem::path& folder, int threads, std::shared_ptr<const AeroMap> map,
+[[nodiscard]] ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
                                  const std::filesystem::path& cache);
 
-/// The page of the run in a folder. @pre has_pages()
+/// The page of a run. @pre has_pages()
 [[nodiscard]] std::string page_of(const ShownRun& run);
+
+/// Writes the page of the run in a folder beside its other files, if this build brings pages. A run stands without it:
+/// what goes wrong is said on standard error, and no page of an earlier run stays.
+void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache);
 
 }  // namespace downwash::cli

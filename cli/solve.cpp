@@ -14,7 +14,6 @@
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -57,9 +56,8 @@ ExitCode run(const SolveArguments& arguments) {
         solution = solve(problem, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
-    if (has_pages()) {
-        folder.write("report.html",
-                     page_of(shown_run(folder.path(), arguments.threads, solution.map, options.map_cache)));
+    if (solution.map != nullptr || !solution.interrupted) {  // building a map now would keep who interrupted waiting
+        write_page(folder, solution.map, options.map_cache);
     }
     fmt::print("{}", arguments.as_json ? json : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);
@@ -71,7 +69,8 @@ void add_solve(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<SolveArguments>();
     CLI::App* command = program.add_subcommand("solve",
                                                "Plan, fly the plan with direct aerodynamics, and write solution.json, "
-                                               "trajectory.csv, tree.csv, effective.yaml");
+                                               "trajectory.csv, tree.csv, effective.yaml "
+                                               "and report.html");
     command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     arguments->planner.add_to(*command);
     command

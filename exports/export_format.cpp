@@ -7,17 +7,22 @@
 namespace downwash {
 namespace {
 
+constexpr bool yes = true, no = false;
+
 constexpr std::array formats{
-    ExportFormat{"csv", ".csv", "set-points of the plan in the world frame, a row each", setpoint_csv},
-    ExportFormat{"ros", ".json",
+    ExportFormat{"csv", "setpoints.csv", "set-points of the plan in the world frame, a row each", yes, yes, no,
+                 setpoint_csv},
+    ExportFormat{"ros", "trajectory.json",
                  "the same as ROS messages: trajectory_msgs/MultiDOFJointTrajectory of the vehicle and "
                  "trajectory_msgs/JointTrajectory of the arm",
-                 ros_trajectory},
-    ExportFormat{"qgc", ".plan", "the vehicle's way as a mission for QGroundControl; without the arm", qgc_plan},
-    ExportFormat{"vtp", ".vtp", "the flight as VTK polydata: the ways of vehicle and end effector with all columns",
+                 yes, yes, no, ros_trajectory},
+    ExportFormat{"qgc", "mission.plan", "the vehicle's way as a mission for QGroundControl; without the arm", yes, no,
+                 yes, qgc_plan},
+    ExportFormat{"vtp", "flight.vtp",
+                 "the flight as VTK polydata: the ways of vehicle and end effector with all columns", no, no, no,
                  vtk_flight},
-    ExportFormat{"vtp-scene", ".vtp", "the obstacles as VTK polydata", vtk_scene},
-    ExportFormat{"glb", ".glb", "scene and flying vehicle as animated glTF", gltf_binary},
+    ExportFormat{"vtp-scene", "scene.vtp", "the obstacles as VTK polydata", no, no, no, vtk_scene},
+    ExportFormat{"glb", "run.glb", "scene and flying vehicle as animated glTF", no, no, no, gltf_binary},
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace downwash {
 struct GeodeticOrigin {
     double latitude_deg = 0;   ///< WGS 84, -90 to 90
     double longitude_deg = 0;  ///< -180 to 180
-    double altitude_m = 0;     ///< of z = 0, above the ellipsoid
+    double altitude_m = 0;     ///< of z = 0, above mean sea level
     double bearing_deg = 0;    ///< compass direction of the x axis, clockwise from north, -360 to 360
 };
 
@@ -27,8 +27,11 @@ struct ExportSettings {
 /// One format.
 struct ExportFormat {
     std::string_view name;
-    std::string_view extension;  ///< usual for its files, with the dot
+    std::string_view file_name;  ///< of its file in a run's folder, unless somebody says otherwise
     std::string_view description;
+    bool is_to_be_flown = false;  ///< commands for a vehicle
+    bool has_rate = false;        ///< made of set-points at ExportSettings::rate_hz
+    bool has_origin = false;      ///< needs ExportSettings::origin
     std::string (*write)(const RunRecord& run, const ExportSettings& settings);
 };
 

@@ -170,17 +170,37 @@ class Gltf {
     Json channels_ = Json::array(), samplers_ = Json::array();
 };
 
-Obstacle body_obstacle(const BodyShape& body) {
-    return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}};
-}
-
 std::vector<float> floats_of(const Quaternion& q) {
     return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
 }
 
+Obstacle body_obstacle(const BodyShape& body) {
+    return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}};
+}
+
+/// Where the vehicle is at the beginning, for viewers that show no animation.
+struct Pose {
+    Vector3 place_m{};
+    Quaternion attitude, arm;
+};
+
+Pose pose_of(const PlaneOfMotion& plane, double x_m, double z_m, double pitch_rad, double arm_rad) {
+    return {plane.to_world(x_m, 0, z_m), Quaternion::about_z(plane.heading_rad()) * Quaternion::about_y(pitch_rad),
+            Quaternion::about_y(arm_rad)};
+}
+
+Pose first_pose(const RunRecord& run) {
+    if (run.flight.rows() == 0) {
+        const Start& start = run.problem.start;
+        return pose_of(run.problem.plane, start.x_m, start.z_m, start.pitch_rad, start.arm_rad);
+    }
+    const auto first = [&run](std::string_view name) { return run.flight.find(name)->front(); };
+    return pose_of(run.problem.plane, first("x_m"), first("z_m"), first("pitch_rad"), first("arm_rad"));
+}
+
 /// Bodies, rotors and the joint with its arm.
 /// @return the nodes of vehicle and arm
-std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot) {
+std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot, const Pose& pose) {
     std::vector<std::size_t> parts;
     for (const BodyShape& body : robot.body) {
         parts.push_back(
@@ -194,10 +214,13 @@ std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot) {
     const Surface rod = rod_surface(robot.arm.length_m, robot.arm.radius_m);
     const std::size_t arm = gltf.add_node({{"name", "arm"},
                                            {"translation", {robot.arm.joint_x_m, 0., robot.arm.joint_z_m}},
-                                           {"rotation", floats_of(Quaternion::about_y(0))},
+                                           {"rotation", floats_of(pose.arm)},
                                            {"mesh", gltf.add_mesh(rod, Gltf::arm)}});
     parts.push_back(arm);
-    const std::size_t vehicle = gltf.add_node({{"name", robot.name}, {"children", parts}});
+    const std::size_t vehicle = gltf.add_node({{"name", robot.name},
+                                               {"translation", pose.place_m},
+                                               {"rotation", floats_of(pose.attitude)},
+                                               {"children", parts}});
     return {vehicle, arm};
 }
 
@@ -238,7 +261,7 @@ std::string gltf_binary(const RunRecord& run, const ExportSettings&) {
         children.push_back(
             gltf.add_node({{"name", obstacle.name}, {"mesh", gltf.add_mesh(surface_of(obstacle), Gltf::obstacle)}}));
     }
-    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot);
+    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot, first_pose(run));
     children.push_back(vehicle);
     if (run.flight.rows() > 1) {
         children.push_back(add_flight(gltf, run, vehicle, arm));

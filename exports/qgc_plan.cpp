@@ -65,19 +65,51 @@ void check(const GeodeticOrigin& origin) {
     }
 }
 
-Json item(int command, int number, double hold_s, double bearing_deg, const Geodetic& place, double height_m) {
+Json item(int command, int number, double hold_s, double acceptance_radius_m, double bearing_deg, const Geodetic& place,
+          double height_m) {
+    return {
+        {"AMSLAltAboveTerrain", nullptr},
+        {"Altitude", height_m},
+        {"AltitudeMode", relative_altitude_mode},
+        {"autoContinue", true},
+        {"command", command},
+        {"doJumpId", number},
+        {"frame", relative_altitude_frame},
+        {"params", {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg, height_m}},
+        {"type", "SimpleItem"}};
+}
+
+Json takeoff_item(int number, double bearing_deg, const Geodetic& place, double height_m) {
+    return item(takeoff_command, number, 0, 0, bearing_deg, place, height_m);
+}
+
+Json waypoint_item(int number, double hold_s, double bearing_deg, const Geodetic& place, double height_m) {
     constexpr double acceptance_radius_m = 0.2;
-    return {{"AMSLAltAboveTerrain", nullptr},
-            {"Altitude", height_m},
-            {"AltitudeMode", relative_altitude_mode},
-            {"autoContinue", true},
-            {"command", command},
-            {"doJumpId", number},
-            {"frame", relative_altitude_frame},
-            {"params",
-             {hold_s, command == waypoint_command ? acceptance_radius_m : 0., 0., bearing_deg, place.latitude_deg,
-              place.longitude_deg, height_m}},
-            {"type", "SimpleItem"}};
+    return item(waypoint_command, number, hold_s, acceptance_radius_m, bearing_deg, place, height_m);
+}
+
+/// A corner of the plan, and for how long it is held.
+struct Corner {
+    Waypoint at;
+    double hold_s = 0;
+};
+
+/// A plan holds at a goal between two knots at the same corner, and at the last one until the flight ends.
+std::vector<Corner> corners_of(const RunRecord& run) {
+    const Plan& plan = *run.plan;
+    std::vector<Corner> corners;
+    for (std::size_t i = 0; i < plan.waypoints.size(); ++i) {
+        const Waypoint& at = plan.waypoints[i];
+        if (i > 0 && at.x_m == plan.waypoints[i - 1].x_m && at.z_m == plan.waypoints[i - 1].z_m) {
+            corners.back().hold_s +=
+                static_cast<double>(plan.reference[i].tick - plan.reference[i - 1].tick) * plan.tick_s;
+        } else {
+            corners.push_back({at});
+        }
+    }
+    const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
+    corners.back().hold_s += end_s > plan.duration_s() ? end_s - plan.duration_s() : run.problem.goal.hold_s;
+    return corners;
 }
 
 }  // namespace
@@ -94,14 +126,17 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
     const OnEarth earth(*settings.origin);
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
     Json items = Json::array();
-    for (std::size_t i = 0; i < run.plan->waypoints.size(); ++i) {
-        const Waypoint& corner = run.plan->waypoints[i];
-        const bool is_last = i + 1 == run.plan->waypoints.size();
-        const Vector3 world_m = run.problem.plane.to_world(corner.x_m, 0, corner.z_m);
-        items.push_back(item(i == 0 ? takeoff_command : waypoint_command, static_cast<int>(i) + 1,
-                             is_last ? run.problem.goal.hold_s : 0, bearing_deg, earth.at(world_m), world_m[2]));
+    for (const Corner& corner : corners_of(run)) {
+        const bool is_first = items.empty();
+        const Vector3 world_m = run.problem.plane.to_world(corner.at.x_m, 0, corner.at.z_m);
+        const int number = static_cast<int>(items.size()) + 1;
+        items.push_back(is_first ? takeoff_item(number, bearing_deg, earth.at(world_m), world_m[2])
+                                 : waypoint_item(number, corner.hold_s, bearing_deg, earth.at(world_m), world_m[2]));
+        if (is_first && corner.hold_s > 0) {
+            items.push_back(waypoint_item(number + 1, corner.hold_s, bearing_deg, earth.at(world_m), world_m[2]));
+        }
     }
-    const Geodetic home = earth.at({0, 0, 0});
+    const GeodeticOrigin& home = *settings.origin;
     const Json plan{{"fileType", "Plan"},
                     {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
                     {"groundStation", "QGroundControl"},

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/text.hpp"

@@ -19,7 +19,11 @@ class Parents {
             follow(data.getStartIndex(i));
         }
         for (unsigned int i = 0; i < data.numGoalVertices(); ++i) {
-            follow(data.getGoalIndex(i));
+            const unsigned int goal = data.getGoalIndex(i);
+            // Planners list goals, too, from which no tree grows.
+            if (std::vector<unsigned int> edges; data.getEdges(goal, edges) + data.getIncomingEdges(goal, edges) > 0) {
+                follow(goal);
+            }
         }
     }
 

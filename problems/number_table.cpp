@@ -13,10 +13,20 @@ namespace {
 constexpr std::size_t most_columns = 200;
 constexpr std::size_t most_cells = 20'000'000;
 
+bool is_name(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    });
+}
+
 void read_names(const CsvLines& lines, NumberTable& table, LineFaults& faults) {
     lines.for_each_cell([&](std::string_view name, std::size_t column) {
         if (std::find(table.names.begin(), table.names.end(), name) != table.names.end()) {
             faults.add(lines.number(), column, "the column '" + excerpt(name) + "' is there twice");
+        }
+        if (!is_name(name)) {
+            faults.add(lines.number(), column,
+                       "'" + excerpt(name) + "' is no name of a column: expected letters, digits and '_'");
         }
         if (table.names.size() == most_columns) {
             faults.add(lines.number(), column, "more than " + std::to_string(most_columns) + " columns");
@@ -29,6 +39,7 @@ void read_names(const CsvLines& lines, NumberTable& table, LineFaults& faults) {
 
 void read_row(const CsvLines& lines, NumberTable& table, LineFaults& faults) {
     std::size_t cells = 0;
+    table.lines.push_back(lines.number());
     lines.for_each_cell([&](std::string_view cell, std::size_t column) {
         if (cells < table.columns.size()) {
             const auto number = parse_number<double>(cell);

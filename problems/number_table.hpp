@@ -13,6 +13,7 @@ namespace downwash {
 struct NumberTable {
     std::vector<std::string> names;
     std::vector<std::vector<double>> columns;
+    std::vector<std::size_t> lines;  ///< of the file, counted from 1: where each row stands
 
     [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().size(); }
     /// @return nullptr when there is none of that name
@@ -22,7 +23,8 @@ struct NumberTable {
 /// Reads comma separated numbers below a line of column names, such as trajectory.csv and tree.csv.
 /// @param file named in messages
 /// @param required names that must be among the columns
-/// @throws InputError with the place of every fault (twenty at most): a name missing or twice, a row of another length,
+/// @throws InputError with the place of every fault (twenty at most): a name missing, twice or
+/// not of letters, digits and _; a row of another length,
 /// a cell that is neither empty nor a finite number, more than 200 columns or 20 million cells
 [[nodiscard]] DOWNWASH_EXPORT NumberTable read_number_table(std::string_view text, const std::string& file,
                                                             const std::vector<std::string>& required);

@@ -1,6 +1,5 @@
 #include "downwash/problems/run_record.hpp"
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -36,12 +35,17 @@ std::string text_of(const fs::path& file) {
     return text;
 }
 
+std::string text_at(const nlohmann::json& json, const char* pointer) {
+    const nlohmann::json::json_pointer place(pointer);
+    return json.contains(place) && json[place].is_string() ? json[place].get<std::string>() : "";
+}
+
 /// @return whether there is a plan
-bool check_solution(const fs::path& file, const std::string& text) {
+bool take_solution(const fs::path& file, RunRecord& run) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
-        text,
+        run.solution_text,
         [&is_deep](int depth, Json::parse_event_t, Json&) {
             is_deep = is_deep || depth > deepest_nesting;
             return !is_deep;
@@ -50,23 +54,62 @@ bool check_solution(const fs::path& file, const std::string& text) {
     if (solution.is_discarded() || is_deep || !solution.is_object()) {
         refuse(file, "this is not the JSON that `downwash solve` writes");
     }
-    const auto schema = solution.find("schema");
-    if (schema == solution.end() || *schema != solution_schema) {
+    if (text_at(solution, "/schema") != solution_schema) {
         refuse(file, "its schema is not " + std::string(solution_schema));
     }
+    run.status = text_at(solution, "/status");
+    run.outcome = text_at(solution, "/execution/outcome");
     const auto plan = solution.find("plan");
     return plan != solution.end() && !plan->is_null();
 }
 
-/// The parent of every node is a row of the table, or nothing.
+[[noreturn]] void refuse_row(const fs::path& file, const NumberTable& table, std::size_t row,
+                             const std::string& message) {
+    throw InputError({Fault{"", file.string() + ":" + std::to_string(table.lines[row]) + ": " + message}});
+}
+
+/// Far beyond everything that flies.
+constexpr double greatest_number = 1e9;
+
+/// @param may_be_empty the one column whose cells may be
+void check_numbers(const fs::path& file, const NumberTable& table, std::string_view may_be_empty) {
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        for (std::size_t row = 0; row < table.rows(); ++row) {
+            const double number = table.columns[column][row];
+            if (std::isnan(number) && table.names[column] != may_be_empty) {
+                refuse_row(file, table, row, table.names[column] + " is empty");
+            }
+            if (std::abs(number) > greatest_number) {
+                refuse_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e9");
+            }
+        }
+    }
+}
+
+/// Every node leads back to a root.
 void check_tree(const fs::path& file, const NumberTable& tree) {
+    check_numbers(file, tree, "parent");
     const std::vector<double>& parents = *tree.find("parent");
     const auto rows = static_cast<double>(parents.size());
     for (std::size_t i = 0; i < parents.size(); ++i) {
-        const double parent = parents[i];
-        if (!std::isnan(parent) && !(parent >= 0 && parent < rows && parent == std::floor(parent))) {
-            throw InputError({Fault{"", file.string() + ":" + std::to_string(i + 2) + ": parent is " + to_text(parent) +
-                                            ", expected a row of this file, counted from 0"}});
+        if (!std::isnan(parents[i]) &&
+            !(parents[i] >= 0 && parents[i] < rows && parents[i] == std::floor(parents[i]))) {
+            refuse_row(file, tree, i,
+                       "parent is " + to_text(parents[i]) + ", expected a row of this file, counted from 0");
+        }
+    }
+    std::vector<std::size_t> seen_from(parents.size(), parents.size());  // the row from which each was reached first
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        std::size_t here = i;
+        while (seen_from[here] == parents.size()) {
+            seen_from[here] = i;
+            if (std::isnan(parents[here])) {
+                break;
+            }
+            here = static_cast<std::size_t>(parents[here]);
+            if (seen_from[here] == i) {
+                refuse_row(file, tree, i, "its parents run in a circle");
+            }
         }
     }
 }
@@ -83,14 +126,13 @@ std::vector<std::string> flight_columns(const Robot& robot) {
     return names;
 }
 
-/// Only the clearance may be empty, where there are no obstacles.
+/// Only the clearance may be empty, where there are no obstacles; time goes on.
 void check_flight(const fs::path& file, const NumberTable& flight) {
-    for (std::size_t column = 0; column < flight.columns.size(); ++column) {
-        for (std::size_t row = 0; row < flight.rows(); ++row) {
-            if (flight.names[column] != "clearance_m" && std::isnan(flight.columns[column][row])) {
-                throw InputError(
-                    {{"", file.string() + ":" + std::to_string(row + 2) + ": " + flight.names[column] + " is empty"}});
-            }
+    check_numbers(file, flight, "clearance_m");
+    const std::vector<double>& times_s = *flight.find("t_s");
+    for (std::size_t row = 0; row < times_s.size(); ++row) {
+        if (row > 0 ? times_s[row] <= times_s[row - 1] : times_s[row] < 0) {
+            refuse_row(file, flight, row, "t_s is " + to_text(times_s[row]) + ", expected times that rise from 0 on");
         }
     }
 }
@@ -98,13 +140,14 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
 }  // namespace
 
 RunRecord read_run(const fs::path& folder) {
-    if (!fs::is_directory(folder)) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) {
         refuse(folder, "there is no such folder; expected one that `downwash solve` wrote");
     }
     RunRecord run;
     const fs::path solution = folder / "solution.json";
     run.solution_text = text_of(solution);
-    const bool has_plan = check_solution(solution, run.solution_text);
+    const bool has_plan = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_problem(problem);
@@ -115,7 +158,7 @@ RunRecord read_run(const fs::path& folder) {
     run.flight = read_number_table(text_of(flight), flight.string(), flight_columns(run.problem.robot));
     check_flight(flight, run.flight);
     const fs::path tree = folder / "tree.csv";
-    if (fs::exists(tree)) {
+    if (fs::exists(tree, ignored)) {
         run.tree = read_number_table(text_of(tree), tree.string(), {"x_m", "z_m", "arm_rad", "parent"});
         check_tree(tree, run.tree);
     }

@@ -16,6 +16,8 @@ struct RunRecord {
     Problem problem;            ///< effective.yaml
     std::string problem_text;   ///< the same as text
     std::string solution_text;  ///< solution.json: well-formed, of the schema that this version writes
+    std::string status;         ///< of the solution: "solved", "approximate" or "none"
+    std::string outcome;        ///< of its flight: "ok", "collision"...; empty without one
     std::optional<Plan> plan;   ///< of the solution; empty without one
     NumberTable flight;         ///< trajectory.csv; no rows when nothing was flown
     NumberTable tree;           ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it

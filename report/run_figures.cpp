@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/fault.hpp"
@@ -22,7 +23,8 @@ constexpr Color flown_color{0xd5, 0x5e, 0x00}, planned_color{0x55, 0x55, 0x55}, 
 
 void require_flight(const RunRecord& run) {
     if (run.flight.rows() < 2) {
-        throw InputError({Fault{"", "nothing was flown in this run, so there is no flight to draw"}});
+        throw InputError({Fault{"", run.flight.rows() == 0 ? "nothing was flown in this run"
+                                                           : "the flight has one row only, too little to draw"}});
     }
 }
 
@@ -105,7 +107,27 @@ std::vector<std::size_t> snapshot_rows(const Flight& flight, double vehicle_m) {
     return rows;
 }
 
-/// What the flight and the goals need, with room around, no further than a little beyond the bounds.
+/// The way of the reference, hold apart.
+std::vector<PlanePoint> planned_way(const RunRecord& run) {
+    std::vector<PlanePoint> points;
+    if (!run.plan) {
+        return points;
+    }
+    const auto add = [&points](const ReferencePoint& at) { points.push_back({at.position[0], at.position[1]}); };
+    const auto& knots = run.plan->reference;
+    constexpr std::int64_t pieces = 50;  // of a segment
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+        const ReferenceSegment segment(knots[i].point, knots[i + 1].point, knots[i + 1].tick - knots[i].tick,
+                                       run.plan->tick_s);
+        for (std::int64_t piece = 0; piece < pieces; ++piece) {
+            add(segment.at_tick(segment.ticks() * piece / pieces));
+        }
+    }
+    add(knots.back().point);
+    return points;
+}
+
+/// What plan, flight and goals need, with room around.
 MapExtent shown_extent(const RunRecord& run, const Flight& flight) {
     const double room_m = 1.2 * run.problem.robot.arm.length_m;
     MapExtent extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
@@ -117,15 +139,22 @@ MapExtent shown_extent(const RunRecord& run, const Flight& flight) {
             extent.z_high_m = std::max(extent.z_high_m, z_m[i] + room_m);
         }
     };
+    for (const PlanePoint& point : planned_way(run)) {
+        include({point.x_m}, {point.z_m});
+    }
     include(flight["x_m"], flight["z_m"]);
     include(flight["ee_x_m"], flight["ee_z_m"]);
     // To scale, neither side may be many times as long as the other.
     constexpr double most_ratio = 4;
-    const double lacking_m = (extent.x_high_m - extent.x_low_m) / most_ratio - (extent.z_high_m - extent.z_low_m);
-    if (lacking_m > 0) {
-        extent.z_low_m -= lacking_m / 2;
-        extent.z_high_m += lacking_m / 2;
-    }
+    const auto widen = [](double& low, double& high, double other_side) {
+        const double lacking_m = other_side / most_ratio - (high - low);
+        if (lacking_m > 0) {
+            low -= lacking_m / 2;
+            high += lacking_m / 2;
+        }
+    };
+    widen(extent.z_low_m, extent.z_high_m, extent.x_high_m - extent.x_low_m);
+    widen(extent.x_low_m, extent.x_high_m, extent.z_high_m - extent.z_low_m);
     return extent;
 }
 
@@ -145,15 +174,14 @@ std::vector<FigurePoints> goal_points(const Problem& problem) {
     return {std::move(goals)};
 }
 
-/// The least and the greatest of the factors in the extent, on a grid.
-std::pair<double, double> factor_range(const FieldFigure& figure) {
+/// The least and the greatest of the factors within the bounds, on a grid: runs of a problem have one scale.
+std::pair<double, double> factor_range(const FieldFigure& figure, const Bounds& bounds) {
     constexpr int steps = 200;
     double low = 1, high = 1;
     for (int i = 0; i <= steps; ++i) {
         for (int k = 0; k <= steps; ++k) {
-            const MapExtent& e = figure.extent;
-            const double factor = figure.value(e.x_low_m + (e.x_high_m - e.x_low_m) * i / steps,
-                                               e.z_low_m + (e.z_high_m - e.z_low_m) * k / steps);
+            const double factor = figure.value(bounds.x_low_m + (bounds.x_high_m - bounds.x_low_m) * i / steps,
+                                               bounds.z_low_m + (bounds.z_high_m - bounds.z_low_m) * k / steps);
             low = std::fmin(low, factor);
             high = std::fmax(high, factor);
         }
@@ -218,7 +246,7 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, cons
                                                                   : std::numeric_limits<double>::quiet_NaN();
     };
     figure.has_contour_lines = false;
-    const auto [low, high] = factor_range(figure);
+    const auto [low, high] = factor_range(figure, run.problem.bounds);
     figure.scale = factor_scale("aero factor K of rotor 1 there", low, high);
 
     Pieces flown, planned;
@@ -228,6 +256,7 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, cons
     }
     figure.lines = {
         {"planned: the reference, drawn level", planned, planned_color, 1, true},
+        {"", {planned_way(run)}, planned_color, 1, true},
         {"way of the end effector", {way(flight["ee_x_m"], flight["ee_z_m"])}, end_effector_color, 1.5, true},
         {"flown", flown, flown_color, 1.6},
         {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};

@@ -60,11 +60,16 @@ Json tree_json(const NumberTable& tree) {
     return {{"nodes", tree.rows()}, {"data", packed.text()}};
 }
 
-/// What repeats the run to the byte, from within its folder.
-std::string command_of(const Json& solution) {
+/// What repeats the run from within its folder: to the byte, unless several goals in turn shared a time limit.
+std::string command_of(const Problem& problem, const Json& solution) {
+    const Json::json_pointer aero("/execution/aero"), iterations("/planning/iterations");
+    if (solution.contains(aero) && solution[aero] == false) {
+        return "downwash execute effective.yaml --plan solution.json --aero off --out again";
+    }
     std::string command = "downwash solve effective.yaml";
-    const Json::json_pointer iterations("/planning/iterations");
-    if (solution.contains(iterations) && solution[iterations].is_number_unsigned() && solution[iterations] > 0) {
+    const bool is_split_by_time = !problem.stops.empty() && !problem.planner.max_iterations;
+    if (!is_split_by_time && solution.contains(iterations) && solution[iterations].is_number_unsigned() &&
+        solution[iterations] > 0) {
         command += " --max-iterations " + solution[iterations].dump();
     }
     return command;
@@ -104,7 +109,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
     const Json solution = Json::parse(run.solution_text);
     const Json page{{"schema", "downwash/report/v1"},
                     {"version", version()},
-                    {"command", command_of(solution)},
+                    {"command", command_of(problem, solution)},
                     {"solution", solution},
                     {"effective_yaml", run.problem_text},
                     {"description", problem.description},

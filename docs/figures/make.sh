@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws every figure of docs/aeromap.md and docs/hold.md anew, and writes the tables between the marks in aeromap.md.
+# Draws every figure of README.md, docs/aeromap.md and docs/hold.md anew, and writes the tables between the marks in aeromap.md.
 # Usage: docs/figures/make.sh [downwash]   (./dev figures builds the program first)
 set -euo pipefail
 
@@ -31,6 +31,20 @@ plot figure_c_5.svg "$bridge"
 plot hold_bridge.svg "$bridge" --what hold --arm-deg 90
 plot force_bridge.svg "$bridge" --what force
 plot torque_bridge.svg "$bridge" --what torque
+
+# Runs: what geometry alone plans, and what the aware planner does.
+runs=$(mktemp -d)
+trap 'rm -rf "$runs"' EXIT
+for variant in mp-arm mp-arm-ada; do
+    code=0
+    "$downwash" solve "$bridge" --variant "$variant" --max-iterations 1000 --quiet --out "$runs" >/dev/null || code=$?
+    if [[ $variant == mp-arm && $code != 3 || $variant == mp-arm-ada && $code != 0 ]]; then
+        echo "make.sh: $variant ended with $code: README.md would not say the truth of it" >&2
+        exit 1
+    fi
+    "$downwash" report "$runs" --svg --width 900 >/dev/null
+    mv "$runs/flight.svg" "flight_${variant//-/_}.svg"
+done
 
 # Tables: what stands between <!-- NAME --> and <!-- /NAME --> in the page is replaced.
 replace() { # NAME, new text on standard input

@@ -31,7 +31,6 @@ TEST_CASE("Pictures of a run go into its folder or another") {
     CHECK(here.code == 0);
     CHECK(here.out == "flown/flight.svg\nflown/plots.svg\nflown/flight.pdf\nflown/plots.pdf\n");
     CHECK(read_file(solved.file("plots.pdf")).starts_with("%PDF"));
-    std::filesystem::create_directory(solved.work() / "figures");
     CHECK(run(solved.folder, {"report", solved.directory, "--png", "-o", "figures"}).out ==
           "figures/flight.png\nfigures/plots.png\n");
 }
@@ -53,16 +52,83 @@ TEST_CASE("A page is made again from the files of a run, to the byte") {
 TEST_CASE("A run is exported in every format, under the usual name") {
     const Run solved;
     for (const auto& [format, name] :
-         {std::pair{"csv", "run.csv"}, std::pair{"ros", "run.json"}, std::pair{"qgc", "run.plan"},
-          std::pair{"vtp", "run.vtp"}, std::pair{"vtp-scene", "run.vtp"}, std::pair{"glb", "run.glb"}}) {
+         {std::pair{"csv", "setpoints.csv"}, std::pair{"ros", "trajectory.json"}, std::pair{"qgc", "mission.plan"},
+          std::pair{"vtp", "flight.vtp"}, std::pair{"vtp-scene", "scene.vtp"}, std::pair{"glb", "run.glb"}}) {
         CAPTURE(format);
-        const Result result =
-            run(solved.folder, {"export", solved.directory, "--format", format, "--origin", "47", "-8.5", "400"});
+        std::vector<std::string> arguments{"export", solved.directory, "--format", format};
+        if (std::string_view(format) == "qgc") {
+            arguments.insert(arguments.end(), {"--origin", "47", "-8.5", "400", "--bearing", "90"});
+        }
+        const Result result = run(solved.folder, arguments);
         CHECK(result.err.empty());
         CHECK(result.code == 0);
         CHECK(result.out == std::string("flown/") + name + "\n");
         CHECK(std::filesystem::file_size(solved.file(name)) > 200);
     }
+}
+
+TEST_CASE("Results stand without their page") {
+    const ScratchFolder folder;
+    std::filesystem::create_directories(folder.path() / "run" / "x" / "report.html");
+    const Result result = run(folder, {"solve", problem_file("open_air"), "--max-iterations", "100", "--out", "x"});
+    CHECK(result.code == 0);
+    CHECK(result.out.starts_with("Solved. "));
+}
+
+TEST_CASE("A plan whose flight failed is not handed on unasked") {
+    const ScratchFolder folder;
+    REQUIRE(run(folder, {"solve", problem_file("bridge_inspection"), "--variant", "mp-arm", "--max-iterations", "1000",
+                         "--out", "x"})
+                .code == 3);
+    const Result refused = run(folder, {"export", "x", "--format", "csv"});
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("its flight ended 'collision'; --anyway"));
+    CHECK(run(folder, {"export", "x", "--format", "csv", "--anyway"}).code == 0);
+    CHECK(run(folder, {"export", "x", "--format", "glb"}).code == 0);
+}
+
+TEST_CASE("A first problem is written, sound and solved, and nothing is replaced") {
+    const ScratchFolder folder;
+    CHECK(run(folder, {"init"}).out == "my_problem.yaml\nars_lrm.yaml\n");
+    CHECK(run(folder, {"check", "my_problem.yaml"}).out == "my_problem.yaml: ok\n");
+    CHECK(run(folder, {"solve", "my_problem.yaml", "--max-iterations", "500"}).code == 0);
+    const Result again = run(folder, {"init"});
+    CHECK(again.code == 2);
+    CHECK_THAT(again.err, Catch::Contains("my_problem.yaml is there already"));
+    CHECK(run(folder, {"init", "other.yaml"}).code == 0);
+}
+
+TEST_CASE("Keys are explained from the table that reads them") {
+    const ScratchFolder folder;
+    const Result margin = run(folder, {"explain", "safety_margin_m"});
+    CHECK(margin.code == 0);
+    CHECK(margin.out.starts_with("planner.safety_margin_m\n"));
+    CHECK_THAT(margin.out, Catch::Contains("expected: a number in m"));
+    CHECK_THAT(run(folder, {"explain", "environment.obstacles[3].name"}).out,
+               Catch::Contains("environment.obstacles[].name"));
+    CHECK_THAT(run(folder, {"explain", "goal"}).out, Catch::Contains("hold_s"));
+    const Result unknown = run(folder, {"explain", "safety_margn_m"});
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Catch::Contains("did you mean 'safety_margin_m'?"));
+}
+
+TEST_CASE("Schemas, manual pages and completions come from the same tables") {
+    const ScratchFolder folder;
+    for (const char* kind : {"problem", "robot", "campaign"}) {
+        const nlohmann::json schema = run(folder, {"check", "--schema", kind}).json();
+        CHECK(schema.at("type") == "object");
+        CHECK(schema.at("properties").contains("schema"));
+    }
+    const nlohmann::json problem = run(folder, {"check", "--schema", "problem"}).json();
+    const nlohmann::json& seed = problem.at("properties").at("planner").at("properties").at("seed");
+    CHECK(seed.at("type") == "integer");
+    CHECK(seed.at("minimum") == 0);
+    CHECK(seed.at("default") == 1);
+    CHECK_THAT(run(folder, {"manual", "aeromap", "plot"}).out,
+               Catch::StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Catch::Contains(".SH OPTIONS"));
+    CHECK_THAT(run(folder, {"completion", "bash"}).out,
+               Catch::Contains("'downwash solve') words='") && Catch::Contains("--seed"));
+    CHECK(run(folder, {"completion", "fish"}).code == 2);
 }
 
 TEST_CASE("What cannot be reported or exported is refused with a remedy") {
@@ -74,10 +140,11 @@ TEST_CASE("What cannot be reported or exported is refused with a remedy") {
     const Refused all[] = {
         {{"report", "elsewhere", "--svg"}, "elsewhere: there is no such folder"},
         {{"report", "flown", "--svg", "--width", "10"}, "--width"},
-        {{"report", "flown", "--svg", "-o", "nowhere"}, "nowhere/flight.svg"},
+        {{"report", "flown", "--width", "800"}, "--width: of which picture?"},
         {{"export", "flown", "--format", "roz"}, "did you mean 'ros'?"},
         {{"export", "flown", "--format", "qgc"}, "give --origin LATITUDE LONGITUDE ALTITUDE"},
         {{"export", "flown", "--format", "csv", "--rate", "0"}, "the rate is 0 Hz"},
+        {{"export", "flown", "--format", "glb", "--rate", "5"}, "--rate: the format glb has no set-points"},
         {{"export", "flown"}, "--format"},
     };
     for (const Refused& refused : all) {

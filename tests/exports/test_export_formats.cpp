@@ -97,7 +97,24 @@ TEST_CASE("a mission lies where the scene does") {
         CHECK(params[3].get<double>() == Approx(bearing_deg).margin(1e-9));
         CHECK(items[i]["doJumpId"] == i + 1);
     }
-    CHECK(items.back()["params"][0] == record().problem.goal.hold_s);
+    CHECK(items.back()["params"][0].get<double>() ==
+          Approx(record().flight.find("t_s")->back() - record().plan->duration_s()));
+    CHECK(plan["mission"]["plannedHomePosition"] == json({47., 8., 100.}));
+}
+
+TEST_CASE("a mission holds where the plan does") {
+    RunRecord run = record();
+    ReferenceKnot held = run.plan->reference[1];
+    held.tick += 700;
+    for (std::size_t i = 2; i < run.plan->reference.size(); ++i) {
+        run.plan->reference[i].tick += 700;
+    }
+    run.plan->reference.insert(run.plan->reference.begin() + 2, held);
+    run.plan->waypoints.insert(run.plan->waypoints.begin() + 2, run.plan->waypoints[1]);
+    const json plan = json::parse(written("qgc", run, at(47, 8, 0)));
+    const json& items = plan["mission"]["items"];
+    REQUIRE(items.size() == record().plan->waypoints.size());
+    CHECK(items[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
 }
 
 TEST_CASE("a mission without a sound origin is refused") {

@@ -87,6 +87,17 @@ TEST_CASE("files that no run left behind are refused with their place") {
         write_file(run.file("trajectory.csv"), text);
         CHECK(fault_of(run).find("trajectory.csv:3: ") != std::string::npos);
     }
+    SECTION("a tree that bites its tail") {
+        write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n\n0,0,0,1\n1,1,0,0\n");
+        CHECK(fault_of(run).find("tree.csv:3: its parents run in a circle") != std::string::npos);
+    }
+    SECTION("a flight in which time stands still") {
+        std::string text = content_of(run.file("trajectory.csv"));
+        const std::size_t second = text.find('\n', text.find('\n') + 1) + 1;
+        text.replace(second, text.find(',', second) - second, "0");
+        write_file(run.file("trajectory.csv"), text);
+        CHECK(fault_of(run).find("trajectory.csv:3: t_s is 0") != std::string::npos);
+    }
     SECTION("a tree whose parents are not there") {
         write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n0,0,0,\n1,1,0,7\n");
         CHECK(fault_of(run).find("tree.csv:3: parent is 7") != std::string::npos);
@@ -103,6 +114,7 @@ TEST_CASE("tables of numbers are read strictly") {
     CHECK(read_number_table("a,b\n", "file.csv", {"a", "b"}).rows() == 0);
 
     CHECK(table_fault("") == "file.csv: the file is empty: expected a line of column names");
+    CHECK(table_fault("a,b,<c>\n") == "file.csv:1:5: '<c>' is no name of a column: expected letters, digits and '_'");
     CHECK(table_fault("a,c\n") == "file.csv:1: there is no column 'b'");
     CHECK(table_fault("a,b,a\n") == "file.csv:1:5: the column 'a' is there twice");
     CHECK(table_fault("a,b\n1,2,3\n") == "file.csv:2: 3 cells under 2 column names");

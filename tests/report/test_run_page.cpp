@@ -36,7 +36,7 @@ std::string unpacked(const json& text, std::size_t size) {
     return bytes;
 }
 
-/// The columns of a flight, by the rule that docs/results.md states.
+/// The columns of a flight, as report/packed_numbers.hpp says.
 std::vector<std::vector<double>> columns_of(const json& flight) {
     const auto rows = flight["rows"].get<std::size_t>();
     const auto same_as = flight["same_as"].get<std::vector<int>>();

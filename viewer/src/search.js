@@ -4,6 +4,7 @@ import {scaleLinear, scaleLog} from "d3-scale";
 
 import {h, s} from "./dom.js";
 import {cost, meters, number, quantity, seconds} from "./format.js";
+import {range_of} from "./numbers.js";
 import {keep_sized} from "./sizing.js";
 import {cause_text} from "./words.js";
 
@@ -25,7 +26,7 @@ function draw_costs(svg, model, width) {
     const end = Math.max(planning.wall_s, steps[steps.length - 1].wall_s, 2 * least_s);
     const x = scaleLog().domain([Math.min(first, steps[0].wall_s) / 1.5, end]).range([margin.left, right]);
     const costs = steps.map((step) => step.cost);
-    const low = Math.min(...costs), high = Math.max(...costs), pad = 0.08 * (high - low) || 0.05 * high || 1;
+    const {low, high} = range_of(costs), pad = 0.08 * (high - low) || 0.05 * high || 1;
     const y = scaleLinear().domain([Math.max(0, low - pad), high + pad]).range([bottom, margin.top]).nice(4);
     const ticks_x = x.ticks().filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
     const shown_x = ticks_x.length >= 2 ? ticks_x : [...new Set([x.ticks()[0], ...ticks_x, end])];

@@ -1,0 +1,98 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "downwash/base/text.hpp"
+#include "downwash/cli/commands.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/key_reference.hpp"
+
+namespace downwash::cli {
+namespace {
+
+struct ExplainArguments {
+    std::string key;
+    std::string kind = "problem";
+};
+
+bool ends_with_key(const std::string& path, std::string_view key) {
+    return path == key ||
+           (path.size() > key.size() && path.ends_with(key) && path[path.size() - key.size() - 1] == '.');
+}
+
+/// The key as the table has it: without the indices of list elements.
+std::string without_indices(const std::string& key) {
+    std::string text;
+    bool is_inside = false;
+    for (const char letter : key) {
+        is_inside = is_inside && letter != ']';
+        if (!is_inside) {
+            text += letter;
+        }
+        is_inside = is_inside || letter == '[';
+    }
+    return text;
+}
+
+std::string explanation_of(const KeyReference& key, const std::vector<KeyReference>& all) {
+    const ParameterInfo& info = key.info;
+    std::string text = info.path + "\n";
+    if (!info.description.empty()) {
+        text += "  " + info.description + "\n";
+    }
+    text += "  expected: " + expectation(info) + "\n";
+    if (!key.default_text.empty()) {
+        text += (key.default_value ? "  default:  " : "  ") + key.default_text + "\n";
+    }
+    if (!info.condition.empty()) {
+        text += "  applies:  " + info.condition + "\n";
+    }
+    std::string below;
+    for (const KeyReference& other : all) {
+        const std::string_view parent = parent_path(other.info.path);
+        if (parent == info.path || parent == info.path + "[]") {
+            below += fmt::format("    {:<28} {}\n", last_name(other.info.path), other.info.description);
+        }
+    }
+    return text + (below.empty() ? "" : "  keys:\n" + below);
+}
+
+ExitCode run(const ExplainArguments& arguments) {
+    const std::vector<KeyReference>& all = key_reference(*file_kind_named(arguments.kind));
+    const std::string wanted = without_indices(arguments.key);
+    std::string text;
+    for (const KeyReference& key : all) {
+        if (ends_with_key(key.info.path, wanted)) {
+            text += (text.empty() ? "" : "\n") + explanation_of(key, all);
+        }
+    }
+    if (text.empty()) {
+        std::vector<std::string_view> names;
+        for (const KeyReference& key : all) {
+            names.push_back(key.info.path);
+            names.push_back(last_name(key.info.path));
+        }
+        throw UsageError(fmt::format("a {} file has no key '{}'{}", arguments.kind, excerpt(arguments.key),
+                                     did_you_mean(wanted, names)));
+    }
+    fmt::print("{}", text);
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_explain(CLI::App& program, Action& action) {
+    const auto arguments = std::make_shared<ExplainArguments>();
+    CLI::App* command = program.add_subcommand(
+        "explain", "Say what a key of a file means, what is expected there and what it is when left out");
+    command->add_option("KEY", arguments->key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")
+        ->required();
+    command->add_option("--of", arguments->kind, "kind of file; default problem, with its robot")
+        ->type_name("problem|robot|campaign")
+        ->check(CLI::IsMember({"problem", "robot", "campaign"}));
+    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace downwash::cli

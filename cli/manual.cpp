@@ -1,0 +1,204 @@
+#include "downwash/cli/manual.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "downwash/base/text.hpp"
+#include "downwash/base/version.hpp"
+#include "downwash/cli/commands.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+/// The commands right below one, in their order.
+std::vector<const CLI::App*> commands_of(const CLI::App& command) {
+    return command.get_subcommands([](const CLI::App* below) { return !below->get_name().empty(); });
+}
+
+/// "downwash aeromap plot"
+std::string full_name(const CLI::App& command) {
+    const CLI::App* parent = command.get_parent();
+    return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
+}
+
+std::string with_dashes(std::string name) {
+    std::replace(name.begin(), name.end(), ' ', '-');
+    return name;
+}
+
+/// Text as roff shows it: no letter of it is a command.
+std::string in_roff(const std::string& text) {
+    std::string roff;
+    for (const char letter : text) {
+        if (letter == '\\') {
+            roff += "\\e";
+        } else if (letter == '-') {
+            roff += "\\-";
+        } else if ((letter == '.' || letter == '\'') && (roff.empty() || roff.back() == '\n')) {
+            roff += std::string("\\&") + letter;
+        } else {
+            roff += letter;
+        }
+    }
+    return roff;
+}
+
+/// "--seed N" or "PROBLEM"
+std::string spelled(const CLI::Option& option) {
+    std::string text = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
+    if (!option.get_positional() && option.get_items_expected_max() > 0) {
+        text += " " + option.get_type_name();
+    }
+    return text;
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command, bool is_positional) {
+    return command.get_options([=](const CLI::Option* option) { return option->get_positional() == is_positional; });
+}
+
+std::string options_section(const CLI::App& command) {
+    std::string text;
+    for (const bool is_positional : {true, false}) {
+        for (const CLI::Option* option : options_of(command, is_positional)) {
+            text += fmt::format(".TP\n.B {}\n{}\n", in_roff(spelled(*option)), in_roff(option->get_description()));
+        }
+    }
+    return text.empty() ? "" : ".SH OPTIONS\n" + text;
+}
+
+std::string commands_section(const CLI::App& command) {
+    std::string text;
+    for (const CLI::App* below : commands_of(command)) {
+        text += fmt::format(".TP\n.B {}\n{}\n", in_roff(full_name(*below)), in_roff(below->get_description()));
+    }
+    return text.empty() ? "" : ".SH COMMANDS\n" + text;
+}
+
+std::string synopsis(const CLI::App& command) {
+    std::string text = ".B " + in_roff(full_name(command)) + "\n";
+    if (!commands_of(command).empty()) {
+        return text + "COMMAND\n";
+    }
+    for (const CLI::Option* option : options_of(command, true)) {
+        text += in_roff(option->get_name(true)) + (option->get_items_expected_max() > 1 ? "...\n" : "\n");
+    }
+    return text + "[OPTIONS]\n";
+}
+
+/// Calls visit(command) for a command and all below it.
+template <class Visit>
+void for_each_command(const CLI::App& command, const Visit& visit) {
+    visit(command);
+    for (const CLI::App* below : commands_of(command)) {
+        for_each_command(*below, visit);
+    }
+}
+
+/// What may follow a command: names of commands, and options.
+std::string words_after(const CLI::App& command) {
+    std::string words;
+    const auto add = [&words](const std::string& word) { words += (words.empty() ? "" : " ") + word; };
+    for (const CLI::App* below : commands_of(command)) {
+        add(below->get_name());
+    }
+    for (const CLI::Option* option : options_of(command, false)) {
+        for (const std::string& name : option->get_lnames()) {
+            add("--" + name);
+        }
+    }
+    return words;
+}
+
+/// As a case of a shell script: which words follow the commands given so far.
+std::string cases_of(const CLI::App& program) {
+    std::string cases;
+    for_each_command(program, [&cases](const CLI::App& command) {
+        cases += fmt::format("        '{}') words='{}' ;;\n", full_name(command), words_after(command));
+    });
+    return cases;
+}
+
+struct ManualArguments {
+    std::vector<std::string> command;
+    std::string shell;
+};
+
+ExitCode print_man_page(const CLI::App& program, const std::vector<std::string>& names) {
+    const CLI::App* command = &program;
+    for (const std::string& name : names) {
+        const auto below = commands_of(*command);
+        const auto found =
+            std::find_if(below.begin(), below.end(), [&name](const CLI::App* one) { return one->get_name() == name; });
+        if (found == below.end()) {
+            throw UsageError(fmt::format("there is no command '{} {}'", full_name(*command), excerpt(name)));
+        }
+        command = *found;
+    }
+    fmt::print("{}", man_page(*command));
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_manual(CLI::App& program, Action& action) {
+    const auto arguments = std::make_shared<ManualArguments>();
+    CLI::App* manual = program.add_subcommand(
+        "manual", "Print a manual page: downwash manual solve | man -l -; without a command that of the program");
+    manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
+    manual->callback([arguments, &program, &action] {
+        action = [arguments, &program] { return print_man_page(program, arguments->command); };
+    });
+    CLI::App* completion = program.add_subcommand(
+        "completion", "Print what completes command lines in a shell: source <(downwash completion bash)");
+    completion->add_option("SHELL", arguments->shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+    completion->callback([arguments, &program, &action] {
+        action = [arguments, &program] {
+            fmt::print("{}", completion_script(program, arguments->shell));
+            return ExitCode::done;
+        };
+    });
+}
+
+std::string man_page(const CLI::App& command) {
+    const std::string name = full_name(command);
+    std::string title = with_dashes(name);
+    std::transform(title.begin(), title.end(), title.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    std::string page = fmt::format(".TH {} 1 \"\" \"Downwash {}\" \"Downwash\"\n", title, version());
+    page += fmt::format(".SH NAME\n{} \\- {}\n", in_roff(with_dashes(name)), in_roff(command.get_description()));
+    page += ".SH SYNOPSIS\n" + synopsis(command) + options_section(command) + commands_section(command);
+    if (!command.get_footer().empty()) {
+        page += ".SH EXIT STATUS\n" + in_roff(command.get_footer()) + "\n";
+    }
+    return page;
+}
+
+std::string completion_script(const CLI::App& program, const std::string& shell) {
+    const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
+    return head +
+           "# Completes the commands and options of downwash, and names of files.\n_downwash() {\n"
+           "    local given=downwash word words\n"
+           "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
+           "        case \"$given $word\" in\n" +
+           [&program] {
+               std::string names;
+               for_each_command(program, [&names](const CLI::App& command) {
+                   if (command.get_parent() != nullptr) {
+                       names += (names.empty() ? "" : " | ") + ("'" + full_name(command) + "'");
+                   }
+               });
+               return "            " + names + ") given=\"$given $word\" ;;\n";
+           }() +
+           "        esac\n    done\n    case \"$given\" in\n" + cases_of(program) +
+           "    esac\n"
+           "    COMPREPLY=($(compgen -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+           "    [[ ${#COMPREPLY[@]} -gt 0 || ${COMP_WORDS[COMP_CWORD]} == -* ]] ||\n"
+           "        COMPREPLY=($(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+           "}\n"
+           "complete -o filenames -F _downwash downwash\n";
+}
+
+}  // namespace downwash::cli

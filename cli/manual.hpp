@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace downwash::cli {
+
+/// The manual page of a command, as man(1) reads it; of the program as a whole when the command is the program.
+[[nodiscard]] std::string man_page(const CLI::App& command);
+
+/// A script that completes the program's command line in a shell: "bash" or "zsh".
+[[nodiscard]] std::string completion_script(const CLI::App& program, const std::string& shell);
+
+}  // namespace downwash::cli

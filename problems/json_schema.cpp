@@ -1,0 +1,184 @@
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "downwash/problems/key_reference.hpp"
+
+// https://json-schema.org/draft-07: the version that editors of YAML know best.
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json any_of(std::vector<Json> schemas) {
+    return schemas.size() == 1 ? schemas.front() : Json{{"anyOf", std::move(schemas)}};
+}
+
+Json number_schema(const ParameterInfo& info, const char* type) {
+    Json schema{{"type", type}};
+    if (info.range.low) {
+        schema[info.range.excludes_low ? "exclusiveMinimum" : "minimum"] = *info.range.low;
+    }
+    if (info.range.high) {
+        schema[info.range.excludes_high ? "exclusiveMaximum" : "maximum"] = *info.range.high;
+    }
+    return schema;
+}
+
+Json array_schema(Json items, std::size_t count = 0) {
+    Json schema{{"type", "array"}, {"items", std::move(items)}};
+    if (count > 0) {
+        schema["minItems"] = count;
+        schema["maxItems"] = count;
+    }
+    return schema;
+}
+
+Json json_of(const Value& value) {
+    return std::visit(
+        [](const auto& held) -> Json {
+            if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
+                return nullptr;
+            } else {
+                return held;
+            }
+        },
+        value);
+}
+
+std::string description_of(const ParameterInfo& info) {
+    std::string text = info.description;
+    if (!info.condition.empty()) {
+        text += " (" + info.condition + ")";
+    }
+    return text;
+}
+
+class SchemaWriter {
+ public:
+    explicit SchemaWriter(const std::vector<KeyReference>& keys) {
+        for (const KeyReference& key : keys) {
+            children_[std::string(parent_path(key.info.path))].push_back(&key);
+        }
+    }
+
+    /// Of a group of keys.
+    [[nodiscard]] Json object(const std::string& path) const {
+        Json properties = Json::object(), required = Json::array();
+        std::vector<Json> alternatives;
+        for (const KeyReference* key : children(path)) {
+            const std::string name(last_name(key->info.path));
+            properties[name] = property(*key);
+            if (key->info.required) {
+                required.push_back(name);
+            } else if (key->info.exclusive) {
+                alternatives.push_back({{"required", {name}}});
+            }
+        }
+        Json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+        if (!required.empty()) {
+            schema["required"] = std::move(required);
+        }
+        if (!alternatives.empty()) {
+            schema["oneOf"] = std::move(alternatives);
+        }
+        return schema;
+    }
+
+ private:
+    [[nodiscard]] const std::vector<const KeyReference*>& children(const std::string& path) const {
+        static const std::vector<const KeyReference*> none;
+        const auto found = children_.find(path);
+        return found == children_.end() ? none : found->second;
+    }
+
+    [[nodiscard]] Json property(const KeyReference& key) const {
+        const ParameterInfo& info = key.info;
+        std::vector<Json> forms{form(info)};
+        if (info.can_be_none) {
+            forms.push_back({{"const", "none"}});
+        }
+        if (info.can_be_file) {
+            forms.push_back({{"type", "string"}});
+        }
+        if (info.can_be_list) {
+            forms.push_back(array_schema(object(info.path + "[]")));
+        }
+        if (info.can_be_group) {
+            forms.push_back(object(info.path));
+        }
+        if (info.can_be_integers) {
+            forms.push_back(array_schema({{"type", "integer"}, {"minimum", 0}}));
+        }
+        if (info.nullable) {
+            forms.push_back({{"type", "null"}});
+        }
+        Json schema = any_of(std::move(forms));
+        if (const std::string description = description_of(info); !description.empty()) {
+            schema["description"] = description;
+        }
+        if (key.default_value) {
+            schema["default"] = json_of(*key.default_value);
+        }
+        return schema;
+    }
+
+    [[nodiscard]] Json form(const ParameterInfo& info) const {
+        switch (info.kind) {
+            case ParameterKind::group:
+                return object(info.path);
+            case ParameterKind::list:
+                return array_schema(object(info.path + "[]"));
+            case ParameterKind::number:
+                return number_schema(info, "number");
+            case ParameterKind::integer:
+                return number_schema(info, "integer");
+            case ParameterKind::flag:
+                return {{"type", "boolean"}};
+            case ParameterKind::text:
+            case ParameterKind::file:
+                return {{"type", "string"}};
+            case ParameterKind::identifier:
+                return {{"type", "string"}, {"pattern", "^[A-Za-z0-9_-]{1,64}$"}};
+            case ParameterKind::choice:
+                return {{"enum", info.names}};
+            case ParameterKind::numbers:
+                return array_schema(number_schema(info, "number"), info.elements.size());
+            case ParameterKind::points:
+                return array_schema(array_schema(number_schema(info, "number"), 3));
+            case ParameterKind::samples:
+                return array_schema(number_schema(info, "number"));
+            case ParameterKind::choices:
+                return array_schema({{"enum", info.names}});
+            case ParameterKind::files:
+                return array_schema({{"type", "string"}});
+        }
+        return Json::object();
+    }
+
+    std::map<std::string, std::vector<const KeyReference*>> children_;
+};
+
+const char* title_of(FileKind kind) {
+    switch (kind) {
+        case FileKind::robot:
+            return "A robot of Downwash";
+        case FileKind::campaign:
+            return "A campaign of Downwash";
+        case FileKind::problem:
+            break;
+    }
+    return "A problem of Downwash";
+}
+
+}  // namespace
+
+std::string json_schema(FileKind kind) {
+    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title_of(kind)}};
+    schema.update(SchemaWriter(key_reference(kind)).object(""));
+    constexpr int indent = 2;
+    return schema.dump(indent) + "\n";
+}
+
+}  // namespace downwash
