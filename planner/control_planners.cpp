@@ -79,7 +79,7 @@ std::vector<FlightPoint> moments_of(const oc::PathControl& path, const SteeredFl
         const auto number = static_cast<unsigned int>(i);
         const auto steps = std::llround(path.getControlDuration(number) / flights.steps().duration_s());
         for (long long step = 0; step < steps; ++step) {
-            moments.push_back(flights.stepped(moments.back(), velocity_of(path.getControl(number))));
+            moments.push_back(flights.stepped_again(moments.back(), velocity_of(path.getControl(number))));
         }
         if (!is_same_moment(point_of(path.getState(number + 1)), moments.back())) {
             throw std::logic_error("flying a path again did not reproduce it bit for bit");

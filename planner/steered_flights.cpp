@@ -43,12 +43,17 @@ FlightPoint SteeredFlights::resting_at(const Configuration& c) const {
     return point;
 }
 
-FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[3]) const {
+FlightPoint SteeredFlights::steered(const FlightPoint& from, const double velocity[3]) const {
     FlightPoint next = from;
     next.reference = steps_.after(from.reference, velocity);
     next.rest = steps_.rest_of(next.reference);
     next.ticks = from.ticks + steps_.ticks();
     next.is_valid = false;
+    return next;
+}
+
+FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[3]) const {
+    FlightPoint next = steered(from, velocity);
     if (static_cast<double>(next.ticks) + steps_.braking_ticks(next.reference) > static_cast<double>(most_plan_ticks)) {
         flights_.count_rejection("too_long");
         return next;
@@ -65,6 +70,18 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
     if (next.is_valid) {
         next.cost = flights_.cost_after(from.cost, from.vehicle, job.legs.front());
     }
+    return next;
+}
+
+FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[3]) const {
+    FlightPoint next = steered(from, velocity);
+    FlightRules rules = flights_.rules();
+    rules.is_over = {};
+    FlightLeg leg{ReferenceSegment(from.reference, next.reference, steps_.ticks(), flights_.model().tick().tick_s)};
+    leg.flight = fly(flights_.model(), flights_.map(), rules, leg.segment, next.vehicle);
+    leg.end = next.vehicle;
+    next.is_valid = leg.flight.fault == FlightFault::none;
+    next.cost = flights_.cost_after(from.cost, from.vehicle, leg);
     return next;
 }
 

@@ -46,6 +46,9 @@ class SteeredFlights {
     /// @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s]
     [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double velocity[3]) const;
 
+    /// A step that was flown before, flown again: neither counted, nor cut short when the search is over.
+    [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double velocity[3]) const;
+
     /// Whether a moment is so near the goal that closing is worth a flight.
     [[nodiscard]] bool is_worth_closing(const FlightPoint& point) const;
 
@@ -61,6 +64,9 @@ class SteeredFlights {
     void verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const;
 
  private:
+    /// Where a step leads but for its flight: the reference, and the place where that would rest.
+    [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[3]) const;
+
     const Problem& problem_;
     const SearchSpace& space_;
     PlannedFlights& flights_;

@@ -159,6 +159,19 @@ TEST_CASE("SST goes on for better plans, whatever the objective") {
     }
 }
 
+TEST_CASE("every algorithm comes to a good end when its time is over") {
+    for_all([](Variant variant, const AlgorithmInfo& algorithm) {
+        for (Problem problem : {test::ceiling_problem(), test::walled_problem()}) {
+            problem = with(variant, algorithm.name, problem);
+            problem.planner.max_iterations.reset();
+            problem.planner.time_limit_s = 0.1;
+            const Solution solution = solve(problem);
+            CHECK(solution.planning.wall_s < 5);
+            CHECK(solution.execution.has_value() == solution.plan.has_value());
+        }
+    });
+}
+
 TEST_CASE("an algorithm that does not plan for the variant is refused, and another is named") {
     const auto fault_of = [](Variant variant, std::string_view algorithm) {
         const std::vector<Fault> faults = problem_faults(with(variant, algorithm));
