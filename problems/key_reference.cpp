@@ -123,7 +123,7 @@ std::vector<KeyReference> referenced(const ParameterTable<Model>& table) {
     std::vector<KeyReference> keys;
     for (const Parameter<Model>& parameter : table.rows()) {
         KeyReference& key = keys.emplace_back();
-        key.info = parameter;
+        key.info = static_cast<const ParameterInfo&>(parameter);
         if (parameter.required || parameter.exclusive) {
             key.default_text = parameter.required ? "required" : "one of its group";
         } else if (parameter.get) {
