@@ -24,7 +24,10 @@ int main() {
         "# Keys of problem, robot and campaign files\n\n"
         "Printed from the tables that read them (`cmake --build build --target docs`). Angles are degrees in files. "
         "`[]` stands for\nthe elements of a list. A robot may stand inline or in a file of its own with "
-        "`schema: downwash/robot/v1`.\n\n");
+        "`schema: downwash/robot/v1`.\n\n"
+        "`downwash explain KEY` says the same of one key; `downwash check --schema problem` (or robot, campaign) "
+        "prints a JSON "
+        "Schema,\nby which editors complete and check these files.\n\n");
     print_table(FileKind::problem);
     fmt::print(
         "\n## Campaigns\n\nWhat `downwash bench run` reads ([benchmarking.md](benchmarking.md)). Limits stand for "
