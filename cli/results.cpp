@@ -10,7 +10,6 @@
 #include "downwash/problems/solution_file.hpp"
 #include "downwash/problems/trajectory_csv.hpp"
 #include "downwash/problems/tree_csv.hpp"
-#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -154,7 +153,7 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
     }
     table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
-    if (has_pages()) {
+    if (std::error_code ignored; std::filesystem::exists(folder / "report.html", ignored)) {
         table.add("to look at", (folder / "report.html").string());
     }
     return verdict + "\n\n" + table.text();

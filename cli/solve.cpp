@@ -58,6 +58,9 @@ ExitCode run(const SolveArguments& arguments) {
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // building a map now would keep who interrupted waiting
         write_page(folder, solution.map, options.map_cache);
+    } else {
+        std::error_code ignored;
+        std::filesystem::remove(folder.path() / "report.html", ignored);  // of an earlier run
     }
     fmt::print("{}", arguments.as_json ? json : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);

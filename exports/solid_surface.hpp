@@ -21,7 +21,7 @@ struct Surface {
 /// 48 sides, spheres of 24 rings.
 [[nodiscard]] DOWNWASH_EXPORT Surface surface_of(const Obstacle& obstacle);
 
-/// That of a vertical or slanting rod of a robot: a cylinder of 24 sides from the origin along x.
+/// Of an arm: a cylinder of 24 sides, from the origin along x.
 [[nodiscard]] DOWNWASH_EXPORT Surface rod_surface(double length_m, double radius_m);
 
 }  // namespace downwash
