@@ -5,55 +5,15 @@
 #include <limits>
 #include <map>
 
-#include "downwash/base/text.hpp"
+#include "downwash/bench/campaign_rows.hpp"
 
 namespace downwash::bench {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// The runs of one planner on one experiment by place of their seeds; nullptr where a seed is still to be run.
-using Row = std::vector<const Run*>;
-
-Spread spread_of(const std::vector<double>& values) {
-    return {quantile(values, 0), quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75),
-            quantile(values, 0.95)};
-}
-
-/// A figure of every attempted seed.
-template <class Figure>
-std::vector<double> figures_of(const Row& row, const Figure& figure) {
-    std::vector<double> values;
-    for (const Run* run : row) {
-        if (run != nullptr) {
-            values.push_back(figure(*run));
-        }
-    }
-    return values;
-}
 
 template <class Test>
 Share share_in(const Row& row, const Test& test) {
     const std::vector<double> hits = figures_of(row, [&](const Run& run) { return test(run) ? 1.0 : 0.0; });
     return share_of(static_cast<std::size_t>(std::count(hits.begin(), hits.end(), 1.0)), hits.size());
-}
-
-double first_solution_s(const Run& run) {
-    return run.status == RunStatus::solved ? run.first_solution_s.value_or(infinite) : infinite;
-}
-
-double flown_cost(const Run& run) {
-    return run.holds() ? run.flight->cost : infinite;
-}
-
-double cost_at(const Run& run, double time_s) {
-    double cost = infinite;
-    for (const Improvement& improvement : run.improvements) {
-        if (improvement.wall_s <= time_s) {
-            cost = improvement.cost;
-        }
-    }
-    return cost;
 }
 
 /// Why a run has no flight that held; empty when it has.
@@ -99,10 +59,57 @@ std::vector<CostAt> cost_over_time(const CampaignPlan& plan, const Row& row) {
     std::vector<CostAt> costs;
     for (const double time_s : cost_moments_s) {
         if (!plan.stop_at_first_solution && time_s <= plan.time_limit_s.value_or(infinite)) {
-            costs.push_back({time_s, spread_of(figures_of(row, [&](const Run& run) { return cost_at(run, time_s); }))});
+            costs.push_back(costs_at(row, time_s));
         }
     }
     return costs;
+}
+
+/// From the first improvement to the end of the searches, sixteen moments a decade.
+std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
+    double first_s = infinite, end_s = plan.time_limit_s.value_or(0);
+    for (const Run* run : row) {
+        if (run != nullptr && !run->improvements.empty()) {
+            first_s = std::min(first_s, run->improvements.front().wall_s);
+            end_s = std::max(end_s, run->improvements.back().wall_s);
+        }
+    }
+    std::vector<CostAt> costs;
+    if (plan.stop_at_first_solution || first_s == infinite) {
+        return costs;
+    }
+    constexpr double moments_a_decade = 16, least_s = 1e-5;
+    const double begin = std::ceil(moments_a_decade * std::log10(std::max(first_s, least_s)));
+    for (double moment = begin; std::pow(10, moment / moments_a_decade) < end_s; ++moment) {
+        costs.push_back(costs_at(row, std::pow(10, moment / moments_a_decade)));
+    }
+    costs.push_back(costs_at(row, end_s));
+    return costs;
+}
+
+std::vector<SolvedAt> solved_over_time(const Row& row) {
+    std::vector<double> times_s = figures_of(row, first_solution_s);
+    std::sort(times_s.begin(), times_s.end());
+    std::vector<SolvedAt> steps;
+    for (std::size_t i = 0; i < times_s.size() && std::isfinite(times_s[i]); ++i) {
+        const SolvedAt step{times_s[i], share_of(i + 1, times_s.size())};
+        if (!steps.empty() && steps.back().time_s == step.time_s) {
+            steps.back() = step;
+        } else {
+            steps.push_back(step);
+        }
+    }
+    return steps;
+}
+
+std::vector<SeedFigures> seeds_of(const Row& row) {
+    std::vector<SeedFigures> seeds;
+    for (const Run* run : row) {
+        if (run != nullptr) {
+            seeds.push_back({run->seed, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)});
+        }
+    }
+    return seeds;
 }
 
 CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_t planner, const Row& row) {
@@ -115,6 +122,7 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
     cell.held = share_in(row, [](const Run& run) { return run.holds(); });
     cell.failures_by_cause = failures_by_cause(row);
     cell.first_solution_s = spread_of(figures_of(row, first_solution_s));
+    cell.verified_s = spread_of(figures_of(row, verified_s));
     cell.answer_s = spread_of(figures_of(row, [](const Run& run) { return run.wall_s; }));
     cell.flown_cost = spread_of(figures_of(row, flown_cost));
     cell.least_clearance_m = least_clearance_m(row);
@@ -122,7 +130,26 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
         cell.discarded += run != nullptr ? run->discarded : 0;
     }
     cell.cost_over_time = cost_over_time(plan, row);
+    cell.cost_curve = cost_curve(plan, row);
+    cell.solved_over_time = solved_over_time(row);
+    cell.seeds = seeds_of(row);
     return cell;
+}
+
+void add_up(CampaignReport& report) {
+    const auto sum = [](const Share& a, const Share& b) { return share_of(a.hits + b.hits, a.attempts + b.attempts); };
+    for (std::size_t planner = 0; planner < report.plan.planners.size(); ++planner) {
+        PlannerTotals totals{planner, share_of(0, 0), share_of(0, 0), share_of(0, 0), 0};
+        for (const CellFigures& cell : report.cells) {
+            if (cell.planner == planner) {
+                totals.solved = sum(totals.solved, cell.solved);
+                totals.failed_flights = sum(totals.failed_flights, cell.failed_flights);
+                totals.held = sum(totals.held, cell.held);
+                totals.discarded += cell.discarded;
+            }
+        }
+        report.totals.push_back(totals);
+    }
 }
 
 template <class Figure>
@@ -232,45 +259,6 @@ void find_margins(CampaignReport& report) {
     }
 }
 
-std::string count_text(const Share& share) {
-    return std::to_string(share.hits) + "/" + std::to_string(share.attempts);
-}
-
-std::string seconds_text(double seconds) {
-    return std::isfinite(seconds) ? to_text(seconds, 3) + " s" : "none";
-}
-
-void judge(CampaignReport& report) {
-    for (const CampaignExpectation& bar : report.plan.expectations) {
-        for (const CellFigures& cell : report.cells) {
-            if (report.plan.planners[cell.planner].variant != bar.variant) {
-                continue;
-            }
-            const auto add = [&](const std::string& what, const std::string& found, bool is_kept) {
-                report.bars.push_back({cell.experiment, cell.planner, what, found, is_kept && cell.missing == 0});
-            };
-            if (bar.solved_ratio) {
-                const auto least = *bar.solved_ratio * static_cast<double>(cell.solved.attempts);
-                add("solved share at least " + to_text(*bar.solved_ratio), count_text(cell.solved),
-                    static_cast<double>(cell.solved.hits) >= least * (1 - 1e-12));
-            }
-            if (bar.failed_flights) {
-                add("failed flights at most " + std::to_string(*bar.failed_flights), count_text(cell.failed_flights),
-                    cell.failed_flights.hits <= *bar.failed_flights);
-            }
-            if (bar.first_solution_median_s) {
-                add("median first solution within " + seconds_text(*bar.first_solution_median_s),
-                    seconds_text(cell.first_solution_s.median),
-                    cell.first_solution_s.median <= *bar.first_solution_median_s);
-            }
-            if (bar.first_solution_95_s) {
-                add("95 % of first solutions within " + seconds_text(*bar.first_solution_95_s),
-                    seconds_text(cell.first_solution_s.most), cell.first_solution_s.most <= *bar.first_solution_95_s);
-            }
-        }
-    }
-}
-
 }  // namespace
 
 bool CampaignReport::keeps_its_bars() const {
@@ -295,10 +283,11 @@ CampaignReport report_of(const CampaignResults& results) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         report.cells.push_back(cell_of(report.plan, i / planners, i % planners, rows[i]));
     }
+    add_up(report);
     compare_planners(rows, report);
     list_failures(rows, report);
     find_margins(report);
-    judge(report);
+    judge_bars(rows, report);
     return report;
 }
 

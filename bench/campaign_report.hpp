@@ -14,10 +14,26 @@ struct Spread {
     double least = 0, low_quartile = 0, median = 0, high_quartile = 0, most = 0;  ///< `most`: the 95 % quantile
 };
 
-/// The planner's best cost so far at a moment of the search.
+/// The cost of the best plan so far at a moment of the search: of its flight with direct aerodynamics where the planner
+/// flew it (mp-arm-ada), else the planner's own figure.
 struct CostAt {
     double time_s = 0;
     Spread cost;
+};
+
+/// The share of seeds that are solved at a moment of the search.
+struct SolvedAt {
+    double time_s = 0;
+    Share solved;
+};
+
+/// What one seed came to.
+struct SeedFigures {
+    std::uint32_t seed = 0;
+    std::string cause;            ///< why there is no flight that held; empty when there is
+    double first_solution_s = 0;  ///< infinite without a solution, as is flown_cost without a flight that held
+    double answer_s = 0;
+    double flown_cost = 0;
 };
 
 /// One planner on one experiment, over every seed that was attempted.
@@ -29,11 +45,22 @@ struct CellFigures {
     Share held;            ///< solved, and it was
     std::vector<std::pair<std::string, std::size_t>> failures_by_cause;  ///< outcomes and statuses, most frequent first
     Spread first_solution_s;
+    Spread verified_s;             ///< to the first plan that may be reported: that of mp-arm-ada was flown directly
     Spread answer_s;               ///< wall time of the whole run
     Spread flown_cost;             ///< of the flights that held
     double least_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
     std::uint64_t discarded = 0;
-    std::vector<CostAt> cost_over_time;  ///< empty where searches stop at the first solution
+    std::vector<CostAt> cost_over_time;      ///< at cost_moments_s; empty where searches stop at the first solution
+    std::vector<CostAt> cost_curve;          ///< the same at moments close enough to draw
+    std::vector<SolvedAt> solved_over_time;  ///< a step for every first solution, in the order of time
+    std::vector<SeedFigures> seeds;          ///< that were attempted
+};
+
+/// One planner on all experiments together.
+struct PlannerTotals {
+    std::size_t planner = 0;
+    Share solved, failed_flights, held;  ///< as in CellFigures
+    std::uint64_t discarded = 0;
 };
 
 /// Two planners on equal seeds.
@@ -74,7 +101,8 @@ struct BarResult {
 struct CampaignReport {
     CampaignPlan plan;
     std::size_t done = 0;
-    std::vector<CellFigures> cells;  ///< experiments outermost
+    std::vector<CellFigures> cells;     ///< experiments outermost
+    std::vector<PlannerTotals> totals;  ///< in the order of the plan's planners
     std::vector<PlannerComparison> comparisons;
     std::vector<MarginFinding> margins;  ///< empty unless the campaign sweeps margins
     std::vector<FailureGroup> failures;
@@ -92,7 +120,14 @@ inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 /// The report as a Markdown document.
 [[nodiscard]] std::string markdown_of(const CampaignReport& report);
 
-/// The same figures as JSON, null for what is infinite or missing.
+/// The same figures as JSON (`downwash/campaign-report/v1`), with those of every seed; null for what is infinite or
+/// missing.
 [[nodiscard]] std::string json_of(const CampaignReport& report);
+
+/// The table of a paper: LaTeX for the package booktabs, a row for every problem and planner.
+[[nodiscard]] std::string latex_of(const CampaignReport& report);
+
+/// The figures of every problem and planner as CSV (RFC 4180), empty for what is infinite or missing.
+[[nodiscard]] std::string csv_of(const CampaignReport& report);
 
 }  // namespace downwash::bench

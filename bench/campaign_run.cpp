@@ -27,6 +27,7 @@ std::string listed(const Values& values, const Text& text) {
 
 std::string bar_text(const CampaignExpectation& bar) {
     std::string text(downwash::name_of(bar.variant));
+    text += bar.algorithm ? " " + *bar.algorithm : "";
     const auto add = [&](const char* name, const std::optional<double>& value) {
         text += value ? std::string(" ") + name + " " + to_text(*value) : "";
     };
@@ -34,6 +35,11 @@ std::string bar_text(const CampaignExpectation& bar) {
     add("failed_flights", bar.failed_flights ? std::optional(static_cast<double>(*bar.failed_flights)) : std::nullopt);
     add("first_solution_median_s", bar.first_solution_median_s);
     add("first_solution_95_s", bar.first_solution_95_s);
+    add("verified_median_s", bar.verified_median_s);
+    add("cost_after_s", bar.cost_after_s);
+    add("cost_to_best", bar.cost_to_best);
+    text += bar.cheaper_than ? " cheaper_than " + *bar.cheaper_than : "";
+    add("cheaper_than_after_s", bar.cheaper_than_after_s);
     return text;
 }
 

@@ -143,11 +143,12 @@ void CampaignStore::add(const Run& run) {
     const std::uint64_t key = database_.last_key();
     for (const Improvement& improvement : run.improvements) {
         // Two within one tick of the clock: the later one is cheaper.
-        database_.prepare("INSERT OR REPLACE INTO progress (runid, time, iterations, best_cost) VALUES (?, ?, ?, ?)")
+        database_.prepare("INSERT OR REPLACE INTO progress VALUES (?, ?, ?, ?, ?)")
             .bind(key)
             .bind(improvement.wall_s)
             .bind(improvement.iteration)
             .bind(improvement.cost)
+            .bind(improvement.flown_cost)
             .run();
     }
     for (const auto& [cause, edges] : run.refusals) {
@@ -204,11 +205,12 @@ CampaignResults read_results(const std::filesystem::path& folder) {
             throw DatabaseError(file.string() + ": a run belongs to nothing: another program wrote into this file");
         }
     }
-    for (Statement row =
-             database.prepare("SELECT runid, time, iterations, best_cost FROM progress ORDER BY runid, time");
+    for (Statement row = database.prepare(
+             "SELECT runid, time, iterations, best_cost, flown_cost FROM progress ORDER BY runid, time");
          row.step();) {
         if (const auto found = place_of.find(row.integer(0)); found != place_of.end()) {
-            results.runs[found->second].improvements.push_back({row.number(1), row.integer(2), row.number(3)});
+            results.runs[found->second].improvements.push_back(
+                {row.number(1), row.integer(2), row.number(3), row.optional_number(4)});
         }
     }
     for (Statement row = database.prepare("SELECT runid, cause, edges FROM refusals"); row.step();) {

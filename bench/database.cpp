@@ -117,6 +117,10 @@ std::optional<std::uint64_t> Statement::optional_integer(int column) const {
     return is_null(column) ? std::nullopt : std::optional(integer(column));
 }
 
+std::optional<std::string> Statement::optional_text(int column) const {
+    return is_null(column) ? std::nullopt : std::optional(text(column));
+}
+
 void Database::Close::operator()(sqlite3* database) const {
     sqlite3_close(database);
 }

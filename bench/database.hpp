@@ -43,6 +43,7 @@ class Statement {
     [[nodiscard]] std::string text(int column) const;
     [[nodiscard]] std::optional<double> optional_number(int column) const;
     [[nodiscard]] std::optional<std::uint64_t> optional_integer(int column) const;
+    [[nodiscard]] std::optional<std::string> optional_text(int column) const;
 
  private:
     friend class Database;

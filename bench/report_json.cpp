@@ -24,6 +24,38 @@ Json spread_json(const Spread& spread) {
             {"95", number(spread.most)}};
 }
 
+Json costs_json(const std::vector<CostAt>& costs) {
+    Json list = Json::array();
+    for (const CostAt& at : costs) {
+        list.push_back({{"time_s", at.time_s}, {"cost", spread_json(at.cost)}});
+    }
+    return list;
+}
+
+Json steps_json(const std::vector<SolvedAt>& steps) {
+    Json list = Json::array();
+    for (const SolvedAt& at : steps) {
+        list.push_back({{"time_s", at.time_s}, {"solved", share_json(at.solved)}});
+    }
+    return list;
+}
+
+/// By column.
+Json seeds_json(const std::vector<SeedFigures>& seeds) {
+    Json columns;
+    for (const char* name : {"seed", "cause", "first_solution_s", "whole_run_s", "flown_cost"}) {
+        columns[name] = Json::array();
+    }
+    for (const SeedFigures& of : seeds) {
+        columns["seed"].push_back(of.seed);
+        columns["cause"].push_back(of.cause.empty() ? Json() : Json(of.cause));
+        columns["first_solution_s"].push_back(number(of.first_solution_s));
+        columns["whole_run_s"].push_back(number(of.answer_s));
+        columns["flown_cost"].push_back(number(of.flown_cost));
+    }
+    return columns;
+}
+
 template <class T>
 Json optional_json(const std::optional<T>& value) {
     return value ? Json(*value) : Json();
@@ -33,10 +65,6 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
     Json causes = Json::object();
     for (const auto& [cause, count] : cell.failures_by_cause) {
         causes[cause] = count;
-    }
-    Json costs = Json::array();
-    for (const CostAt& at : cell.cost_over_time) {
-        costs.push_back({{"time_s", at.time_s}, {"cost", spread_json(at.cost)}});
     }
     const PlannerSetup& planner = plan.planners[cell.planner];
     return {{"problem", plan.experiments[cell.experiment].problem},
@@ -51,11 +79,23 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
             {"held", share_json(cell.held)},
             {"failures_by_cause", causes},
             {"first_solution_s", spread_json(cell.first_solution_s)},
+            {"verified_s", spread_json(cell.verified_s)},
             {"whole_run_s", spread_json(cell.answer_s)},
             {"flown_cost", spread_json(cell.flown_cost)},
             {"least_clearance_m", number(cell.least_clearance_m)},
             {"discarded", cell.discarded},
-            {"cost_over_time", costs}};
+            {"cost_over_time", costs_json(cell.cost_over_time)},
+            {"cost_curve", costs_json(cell.cost_curve)},
+            {"solved_over_time", steps_json(cell.solved_over_time)},
+            {"seeds", seeds_json(cell.seeds)}};
+}
+
+Json totals_json(const CampaignPlan& plan, const PlannerTotals& totals) {
+    const PlannerSetup& planner = plan.planners[totals.planner];
+    return {{"planner", planner.name()},           {"variant", downwash::name_of(planner.variant)},
+            {"algorithm", planner.algorithm},      {"margin_m", optional_json(planner.margin_m)},
+            {"solved", share_json(totals.solved)}, {"failed_flights", share_json(totals.failed_flights)},
+            {"held", share_json(totals.held)},     {"discarded", totals.discarded}};
 }
 
 Json comparison_json(const CampaignPlan& plan, const PlannerComparison& comparison) {
@@ -91,15 +131,20 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
 
 std::string json_of(const CampaignReport& report) {
     const CampaignPlan& plan = report.plan;
-    Json document;
+    Json document{{"schema", "downwash/campaign-report/v1"}};
     for (const auto& [name, value] : plan.settings) {
         document["settings"][name] = value;
     }
     document["runs_planned"] = plan.run_count();
     document["runs_done"] = report.done;
+    document["time_limit_s"] = optional_json(plan.time_limit_s);
+    document["stop_at_first_solution"] = plan.stop_at_first_solution;
     document["left_out"] = plan.left_out;
-    for (const char* list : {"cells", "comparisons", "margins", "failures", "bars"}) {
+    for (const char* list : {"totals", "cells", "comparisons", "margins", "failures", "bars"}) {
         document[list] = Json::array();
+    }
+    for (const PlannerTotals& totals : report.totals) {
+        document["totals"].push_back(totals_json(plan, totals));
     }
     for (const CellFigures& cell : report.cells) {
         document["cells"].push_back(cell_json(plan, cell));

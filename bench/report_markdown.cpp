@@ -127,18 +127,34 @@ class Document {
                 cell.discarded);
         }
         add("\n");
+        totals();
+    }
+
+    void totals() {
+        if (plan_.experiments.size() < 2) {
+            return;
+        }
+        add("All problems together:\n\n| planner | solved | failed flight | solved and held | discarded |\n"
+            "|---|---|---|---|---|\n");
+        for (const PlannerTotals& all : report_.totals) {
+            add("| {} | {} | {} | {} | {} |\n", in_cell(plan_.planners[all.planner].name()), share_text(all.solved),
+                share_text(all.failed_flights), share_text(all.held), all.discarded);
+        }
+        add("\n");
     }
 
     void first_solutions() {
         add("## Time to the first solution\n\nFrom the start of planning, problem and map ready, to the first plan "
             "that "
-            "the planner accepted; `whole run`: from the parsed problem to the end, the reported\nplan's flight "
-            "included.\n\n| problem | planner | 25 % | median | 75 % | 95 % | whole run, median | 95 % |\n"
-            "|---|---|---|---|---|---|---|---|\n");
+            "the planner accepted; `verified`: to the first plan that may be reported, which the\naware planner has "
+            "flown with direct aerodynamics by then; `whole run`: from the parsed problem to the end, the reported "
+            "plan's flight included.\n\n| problem | planner | 25 % | median | 75 % | 95 % | verified, median | 95 % | "
+            "whole run, median | 95 % |\n|---|---|---|---|---|---|---|---|---|---|\n");
         for (const CellFigures& cell : report_.cells) {
             const Spread& first = cell.first_solution_s;
-            add("{} {} | {} | {} | {} | {} | {} |\n", place(cell), seconds_text(first.low_quartile),
+            add("{} {} | {} | {} | {} | {} | {} | {} | {} |\n", place(cell), seconds_text(first.low_quartile),
                 seconds_text(first.median), seconds_text(first.high_quartile), seconds_text(first.most),
+                seconds_text(cell.verified_s.median), seconds_text(cell.verified_s.most),
                 seconds_text(cell.answer_s.median), seconds_text(cell.answer_s.most));
         }
         add("\n");
@@ -154,10 +170,8 @@ class Document {
 
     void costs() {
         add("## Cost\n\nMedian [quartiles]. `flown`: of the reported plan's flight, where it held, and the "
-            "`least` of them; before it the planner's own figure of its best plan so far. Planners are compared by "
-            "what is\nflown, since their own figures do "
-            "not "
-            "know the same physics.\n\n| problem | planner |");
+            "`least` of them; before it the best plan so far: of the aware planner its flight, of the others "
+            "their own figure, which\ndoes not know the same physics.\n\n| problem | planner |");
         const std::vector<CostAt> none;
         const auto& moments = report_.cells.empty() ? none : report_.cells.front().cost_over_time;
         std::string line = "|---|---|";

@@ -7,7 +7,7 @@ namespace {
 
 /// "Down" in ASCII: says to file(1) and to us whose SQLite file this is.
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 1;
+constexpr std::uint64_t layout_version = 2;
 
 // The first five tables are those that OMPL's ompl_benchmark_statistics.py makes, with the columns that it lets a log
 // add to experiments, runs and progress. Planner Arena reads them as they are.
@@ -31,7 +31,7 @@ CREATE TABLE runs (
   FOREIGN KEY (experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
   FOREIGN KEY (plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);
 CREATE TABLE progress (
-  runid INTEGER, time REAL, iterations INTEGER, best_cost REAL, PRIMARY KEY (runid, time),
+  runid INTEGER, time REAL, iterations INTEGER, best_cost REAL, flown_cost REAL, PRIMARY KEY (runid, time),
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
 CREATE TABLE flights (
   runid INTEGER PRIMARY KEY, outcome TEXT NOT NULL, cost REAL, energy_j REAL, duration_s REAL, length_m REAL,
@@ -48,8 +48,9 @@ CREATE TABLE campaign_limits (time_limit_s REAL, stop_at_first_solution INTEGER 
 CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE);
 CREATE TABLE left_out (place INTEGER PRIMARY KEY, what TEXT NOT NULL);
 CREATE TABLE expectations (
-  place INTEGER PRIMARY KEY, variant TEXT NOT NULL, solved_ratio REAL, failed_flights INTEGER,
-  first_solution_median_s REAL, first_solution_95_s REAL);
+  place INTEGER PRIMARY KEY, variant TEXT NOT NULL, algorithm TEXT, solved_ratio REAL, failed_flights INTEGER,
+  first_solution_median_s REAL, first_solution_95_s REAL, verified_median_s REAL, cost_after_s REAL, cost_to_best REAL,
+  cheaper_than TEXT, cheaper_than_after_s REAL);
 )";
 
 Variant variant_of(const std::string& name) {
@@ -107,13 +108,20 @@ void write_expectations(const Database& database, const CampaignPlan& plan) {
     for (const CampaignExpectation& bar : plan.expectations) {
         database
             .prepare(
-                "INSERT INTO expectations (variant, solved_ratio, failed_flights, first_solution_median_s, "
-                "first_solution_95_s) VALUES (?, ?, ?, ?, ?)")
+                "INSERT INTO expectations (variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, "
+                "first_solution_95_s, verified_median_s, cost_after_s, cost_to_best, cheaper_than, "
+                "cheaper_than_after_s) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
             .bind(downwash::name_of(bar.variant))
+            .bind(bar.algorithm)
             .bind(bar.solved_ratio)
             .bind(bar.failed_flights)
             .bind(bar.first_solution_median_s)
             .bind(bar.first_solution_95_s)
+            .bind(bar.verified_median_s)
+            .bind(bar.cost_after_s)
+            .bind(bar.cost_to_best)
+            .bind(bar.cheaper_than)
+            .bind(bar.cheaper_than_after_s)
             .run();
     }
 }
@@ -176,11 +184,15 @@ CampaignPlan read_plan(const Database& database) {
     for (Statement ask = database.prepare("SELECT seed FROM campaign_seeds ORDER BY place"); ask.step();) {
         plan.seeds.push_back(static_cast<std::uint32_t>(ask.integer(0)));
     }
-    for (Statement ask = database.prepare("SELECT variant, solved_ratio, failed_flights, first_solution_median_s, "
-                                          "first_solution_95_s FROM expectations ORDER BY place");
+    for (Statement ask = database.prepare(
+             "SELECT variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, first_solution_95_s, "
+             "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s FROM expectations "
+             "ORDER BY place");
          ask.step();) {
-        plan.expectations.push_back({variant_of(ask.text(0)), ask.optional_number(1), ask.optional_integer(2),
-                                     ask.optional_number(3), ask.optional_number(4)});
+        plan.expectations.push_back({variant_of(ask.text(0)), ask.optional_text(1), ask.optional_number(2),
+                                     ask.optional_integer(3), ask.optional_number(4), ask.optional_number(5),
+                                     ask.optional_number(6), ask.optional_number(7), ask.optional_number(8),
+                                     ask.optional_text(9), ask.optional_number(10)});
     }
     for (Statement ask = database.prepare("SELECT what FROM left_out ORDER BY place"); ask.step();) {
         plan.left_out.push_back(ask.text(0));

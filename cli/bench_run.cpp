@@ -3,11 +3,16 @@
 #include <filesystem>
 #include <optional>
 
+#include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_run.hpp"
+#include "downwash/bench/campaign_store.hpp"
 #include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/progress.hpp"
+#include "downwash/report/campaign_page.hpp"
+#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -36,7 +41,13 @@ ExitCode run(const BenchRunArguments& arguments) {
         progress = bench::run_campaign(read, options);
     }
     const bool is_over = progress.done == progress.planned;
-    fmt::print("{} of {} runs are in {}; {}\n", progress.done, progress.planned, options.out.string(),
+    const bool has_page = has_pages() && progress.done > 0;
+    if (has_page) {
+        write_result(options.out / "report.html",
+                     campaign_page(bench::json_of(bench::report_of(bench::read_results(options.out)))));
+    }
+    fmt::print("{} of {} runs are in {}{}; {}\n", progress.done, progress.planned, options.out.string(),
+               has_page ? ", report.html shows them" : "",
                is_over ? "see downwash bench report " + options.out.string() : "--resume goes on with the others");
     return is_over ? ExitCode::done : interruption.code();
 }

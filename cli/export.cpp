@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "downwash/base/files.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/exports/export_format.hpp"
 
@@ -81,11 +81,7 @@ ExitCode run(const ExportArguments& arguments) {
     if (format.is_to_be_flown && !arguments.anyway) {
         require_good_flight(record);
     }
-    try {
-        write_file(file, exported(record, format, settings_of(arguments)));
-    } catch (const FileError& fault) {
-        throw UsageError(file.string() + " " + fault.what());
-    }
+    write_result(file, exported(record, format, settings_of(arguments)));
     fmt::print("{}\n", file.string());
     return ExitCode::done;
 }

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "downwash/base/embedded_file.hpp"
-#include "downwash/base/files.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 DOWNWASH_EMBED_FILE(downwash_first_problem, DOWNWASH_FIRST_PROBLEM);
@@ -24,11 +24,7 @@ void write_new(const fs::path& file, std::string_view content) {
     if (fs::exists(fs::symlink_status(file))) {
         throw UsageError(file.string() + " is there already; choose another name");
     }
-    try {
-        write_file(file, content);
-    } catch (const FileError& fault) {
-        throw UsageError(file.string() + " " + fault.what());
-    }
+    write_result(file, content);
 }
 
 ExitCode run(const InitArguments& arguments) {

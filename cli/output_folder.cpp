@@ -9,6 +9,14 @@ namespace downwash::cli {
 
 namespace fs = std::filesystem;
 
+void write_result(const fs::path& file, std::string_view content) {
+    try {
+        write_file(file, content);
+    } catch (const FileError& fault) {
+        throw UsageError(file.string() + " " + fault.what());
+    }
+}
+
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
     std::error_code error;
     fs::create_directories(path_, error);
@@ -25,12 +33,7 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
 }
 
 void OutputFolder::write(const std::string& name, std::string_view content) const {
-    const fs::path file = path_ / name;
-    try {
-        write_file(file, content);
-    } catch (const FileError& fault) {
-        throw UsageError(file.string() + " " + fault.what());
-    }
+    write_result(path_ / name, content);
 }
 
 }  // namespace downwash::cli

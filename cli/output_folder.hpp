@@ -6,6 +6,9 @@
 
 namespace downwash::cli {
 
+/// Writes a file that the user has named, whole or not at all. @throws UsageError when that fails
+void write_result(const std::filesystem::path& file, std::string_view content);
+
 /// Where the results of a command go. Files in it appear whole or not at all.
 class OutputFolder {
  public:

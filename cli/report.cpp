@@ -4,13 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/base/files.hpp"
 #include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/report/run_figures.hpp"
-#include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -26,15 +24,6 @@ struct ReportArguments {
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
-
-void write(const fs::path& file, const std::string& content) {
-    try {
-        write_file(file, content);
-    } catch (const FileError& fault) {
-        throw UsageError(file.string() + " " + fault.what());
-    }
-    fmt::print("{}\n", file.string());
-}
 
 void write_pictures(const ReportArguments& arguments, const ShownRun& run) {
     const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
@@ -62,15 +51,16 @@ ExitCode run(const ReportArguments& arguments) {
     if (arguments.width_px && !arguments.wants_pictures()) {
         throw UsageError("--width: of which picture? Expected --svg, --png or --pdf with it");
     }
-    if (!has_pages() && !arguments.wants_pictures()) {
-        throw UsageError(
-            "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
+    if (!arguments.wants_pictures()) {
+        require_pages();
     }
     const ShownRun run = shown_run(arguments.folder, nullptr, arguments.no_cache ? fs::path() : cache_folder());
     if (arguments.wants_pictures()) {
         write_pictures(arguments, run);
     } else {
-        write(arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / "report.html", page_of(run));
+        const fs::path page = arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / "report.html";
+        write_result(page, page_of(run));
+        fmt::print("{}\n", page.string());
     }
     return ExitCode::done;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "downwash/cli/standard_error.hpp"
+#include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -23,6 +24,13 @@ ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const Ae
         run.map = run.model->make_map(problem.bounds, threads, {}, cache);
     }
     return run;
+}
+
+void require_pages() {
+    if (!has_pages()) {
+        throw UsageError(
+            "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
+    }
 }
 
 std::string page_of(const ShownRun& run) {

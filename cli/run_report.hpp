@@ -23,6 +23,9 @@ struct ShownRun {
 [[nodiscard]] ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
                                  const std::filesystem::path& cache);
 
+/// @throws UsageError unless this build brings pages
+void require_pages();
+
 /// The page of a run. @pre has_pages()
 [[nodiscard]] std::string page_of(const ShownRun& run);
 

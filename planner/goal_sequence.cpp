@@ -121,7 +121,7 @@ void take_improvements(SearchRecord& whole, const SearchRecord& last, double cos
     }
     for (const Improvement& improvement : last.improvements) {
         whole.improvements.push_back({whole.wall_s + improvement.wall_s, whole.iterations + improvement.iteration,
-                                      cost_before + improvement.cost});
+                                      cost_before + improvement.cost, improvement.flown_cost});
     }
 }
 

@@ -47,7 +47,8 @@ enum class Status : std::uint8_t {
 struct Improvement {
     double wall_s = 0;
     std::uint64_t iteration = 0;
-    double cost = 0;
+    double cost = 0;                   ///< by the planner's own model
+    std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
 };
 
 /// What stood between a search and its goal: of the ways into the goal region that were refused, holds included, the

@@ -47,8 +47,8 @@ class Search {
         }
     }
 
-    void improved(double cost, std::uint64_t iteration) {
-        solution_.planning.improvements.push_back({clock_.seconds(), iteration, cost});
+    void improved(double cost, std::uint64_t iteration, std::optional<double> flown_cost) {
+        solution_.planning.improvements.push_back({clock_.seconds(), iteration, cost, flown_cost});
     }
 
     void report(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
@@ -95,7 +95,7 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     };
     hooks.on_improvement = [&](double cost, std::uint64_t iteration) {
         search.found_first(search.seconds());
-        search.improved(cost, iteration);
+        search.improved(cost, iteration, {});
     };
     planning::GeometricResult result = planning::plan_geometrically(problem, model, space, random, hooks);
     solution.tree = std::move(result.tree);
@@ -140,16 +140,18 @@ struct FlightSearch {
 
     bool accept(const Plan& plan, double cost, std::uint64_t iteration) {
         search.found_first(search.seconds());
+        std::optional<double> flown_cost;
         if (problem.planner.variant == Variant::mp_arm_ada) {
             double flight_wall_s = 0;
             Execution flight = fly_directly(start, goals, model, before.continued_by(plan), flight_wall_s);
             if (flight.outcome != Outcome::ok) {
                 return false;
             }
+            flown_cost = cost_of(flight, problem.planner.objective);
             solution.execution = std::move(flight);
             solution.planning.flight_wall_s = flight_wall_s;
         }
-        search.improved(cost, iteration);
+        search.improved(cost, iteration, flown_cost);
         return true;
     }
 

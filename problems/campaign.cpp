@@ -104,6 +104,9 @@ void add_expectations(Rows& rows) {
                        "expect[].variant", "one that the campaign runs",
                        named_variants(), [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).variant; })
                        .is_required());
+    rows.push_back(parameters::choice<Campaign>(
+        "expect[].algorithm", "one that the campaign runs; null: all of them",
+        algorithm_names(), [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).algorithm; }));
     rows.push_back(parameters::number<Campaign>(
                        "expect[].solved_ratio", "least share of seeds that are solved",
                        [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).solved_ratio; })
@@ -120,6 +123,26 @@ void add_expectations(Rows& rows) {
     rows.push_back(parameters::number<Campaign>(
                        "expect[].first_solution_95_s", "longest time to a first solution in 95 % of the seeds",
                        [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).first_solution_95_s; })
+                       .above(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].verified_median_s", "longest median time to a first plan that may be reported",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).verified_median_s; })
+                       .above(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].cost_after_s", "time of the search at which cost_to_best and cheaper_than look",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).cost_after_s; })
+                       .above(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].cost_to_best",
+                       "greatest median cost, in units of the least that any run of the campaign has flown there",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).cost_to_best; })
+                       .at_least(1));
+    rows.push_back(parameters::choice<Campaign>(
+        "expect[].cheaper_than", "algorithm whose median cost is to be beaten",
+        algorithm_names(), [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).cheaper_than; }));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].cheaper_than_after_s", "time of its search at which that one is looked at",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).cheaper_than_after_s; })
                        .above(0));
 }
 

@@ -21,13 +21,22 @@ struct CampaignSeeds {
     [[nodiscard]] DOWNWASH_EXPORT std::vector<std::uint32_t> all() const;
 };
 
-/// What a variant has to reach on every problem, or the campaign's report says that it failed.
+/// What a variant has to reach on every problem, or the campaign's report says that it failed. A seed without a
+/// solution counts as an infinite time and cost.
 struct CampaignExpectation {
     Variant variant = Variant::mp_arm_ada;
+    std::optional<std::string> algorithm;           ///< empty: all of the campaign
     std::optional<double> solved_ratio;             ///< at least, of the attempted seeds
     std::optional<std::uint64_t> failed_flights;    ///< at most
-    std::optional<double> first_solution_median_s;  ///< at most, seeds without a solution counting as infinite
+    std::optional<double> first_solution_median_s;  ///< at most
     std::optional<double> first_solution_95_s;      ///< at most, of the 95 % quantile
+    std::optional<double> verified_median_s;        ///< at most, to the first plan that may be reported
+    /// The median cost after `cost_after_s` is at most `cost_to_best` times the least that any run of the campaign has
+    /// flown there, and below the median that the algorithm `cheaper_than` has after `cheaper_than_after_s`.
+    std::optional<double> cost_after_s;
+    std::optional<double> cost_to_best;
+    std::optional<std::string> cheaper_than;
+    std::optional<double> cheaper_than_after_s;
 };
 
 /// Problems x objectives x variants x algorithms x margins x seeds, each of which is one run.

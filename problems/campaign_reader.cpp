@@ -23,6 +23,31 @@ std::uint64_t run_count(const Campaign& c) {
 }
 
 /// Rules over several values of a campaign.
+/// What a bar asks for that the campaign cannot tell.
+void add_faults_of(const Campaign& c, std::size_t i, std::vector<Fault>& faults) {
+    const CampaignExpectation& bar = c.expect[i];
+    const std::string path = "expect[" + std::to_string(i) + "].";
+    for (const auto& [key, algorithm] : {std::pair{"algorithm", bar.algorithm}, {"cheaper_than", bar.cheaper_than}}) {
+        if (algorithm && std::find(c.algorithms.begin(), c.algorithms.end(), *algorithm) == c.algorithms.end()) {
+            faults.push_back(
+                {path + key, "is " + *algorithm + ", which is not run: expected one of the campaign's algorithms"});
+        }
+    }
+    if ((bar.cost_to_best || bar.cheaper_than) && !bar.cost_after_s) {
+        faults.push_back({path + (bar.cost_to_best ? "cost_to_best" : "cheaper_than"),
+                          "does not say when: expected cost_after_s beside it"});
+    }
+    if (bar.cheaper_than.has_value() != bar.cheaper_than_after_s.has_value()) {
+        faults.push_back({path + (bar.cheaper_than ? "cheaper_than" : "cheaper_than_after_s"),
+                          "is half of a comparison: expected cheaper_than and cheaper_than_after_s together"});
+    }
+    if (bar.cost_after_s && c.stop_at_first_solution) {
+        faults.push_back({path + "cost_after_s",
+                          "asks for costs, but searches stop at their first solution: expected stop_at_first_solution: "
+                          "false"});
+    }
+}
+
 std::vector<Fault> campaign_faults(const Campaign& c) {
     std::vector<Fault> faults;
     if (c.seeds.list.empty() && c.seeds.first + c.seeds.count - 1 > std::numeric_limits<std::uint32_t>::max()) {
@@ -35,6 +60,7 @@ std::vector<Fault> campaign_faults(const Campaign& c) {
                           "fewer of one of them"});
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
+        add_faults_of(c, i, faults);
         if (std::find(c.variants.begin(), c.variants.end(), c.expect[i].variant) == c.variants.end()) {
             faults.push_back({"expect[" + std::to_string(i) + "].variant",
                               "is " + std::string(name_of(c.expect[i].variant)) +

@@ -156,7 +156,10 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
     reader.read_count(*planning, "edges_simulated", record.edges_simulated);
     reader.read_count(*planning, "states_checked", record.states_checked);
     for (const Node& node : reader.groups(JsonReader::member(*planning, "improvements"))) {
-        Improvement improvement{reader.amount(node, "wall_s", 0), 0, reader.amount(node, "cost", 0)};
+        Improvement improvement{reader.amount(node, "wall_s", 0), 0, reader.amount(node, "cost", 0), {}};
+        if (const double flown = reader.amount(node, "flown_cost", -1); flown >= 0) {
+            improvement.flown_cost = flown;
+        }
         reader.read_count(node, "iteration", improvement.iteration);
         record.improvements.push_back(improvement);
     }

@@ -34,7 +34,8 @@ Json planning_json(const SearchRecord& record) {
     for (const Improvement& improvement : record.improvements) {
         improvements.push_back({{"wall_s", number(improvement.wall_s)},
                                 {"iteration", improvement.iteration},
-                                {"cost", number(improvement.cost)}});
+                                {"cost", number(improvement.cost)},
+                                {"flown_cost", number(improvement.flown_cost)}});
     }
     return {{"wall_s", number(record.wall_s)},
             {"map_wall_s", number(record.map_wall_s)},

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <vector>
 
 #include "downwash/base/version.hpp"
@@ -75,29 +74,6 @@ std::string command_of(const Problem& problem, const Json& solution) {
     return command;
 }
 
-/// As it may stand within a script element: no `<`, no line separator that old JavaScript stumbles over. Outside of
-/// strings JSON has none of these letters.
-std::string harmless(const std::string& json) {
-    std::string text;
-    text.reserve(json.size());
-    for (const char letter : json) {
-        switch (letter) {
-            case '<':
-                text += "\\u003c";
-                break;
-            case '>':
-                text += "\\u003e";
-                break;
-            case '&':
-                text += "\\u0026";
-                break;
-            default:
-                text += letter;
-        }
-    }
-    return text;
-}
-
 }  // namespace
 
 bool has_pages() noexcept {
@@ -129,19 +105,11 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
                     {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
                     {"flight", flight_json(run.flight)},
                     {"tree", tree_json(run.tree)}};
-    constexpr int on_one_line = -1;
-    constexpr bool as_ascii = true;
-    return harmless(page.dump(on_one_line, ' ', as_ascii, Json::error_handler_t::replace));
+    return page_data(page);
 }
 
 std::string run_page(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
-    constexpr std::string_view gap = R"({"downwash":"run"})";
-    std::string page(run_page_template());
-    const std::size_t place = page.find(gap);
-    if (place == std::string::npos) {
-        throw std::logic_error("the page has no place for its data");
-    }
-    return page.replace(place, gap.size(), run_page_data(run, model, map));
+    return filled_page(run_page_template(), run_page_data(run, model, map));
 }
 
 }  // namespace downwash

@@ -1,5 +1,6 @@
 #include "downwash/bench/campaign_report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,7 @@ Run run_of(std::size_t planner, std::uint32_t seed, RunStatus status, double fir
     if (status == RunStatus::solved) {
         run.first_solution_s = first_s;
         run.cost = cost;
-        run.improvements = {{first_s, 10, cost + 50}, {first_s + 0.3, 40, cost}};
+        run.improvements = {{first_s, 10, cost + 50, {}}, {first_s + 0.3, 40, cost, {}}};
         run.flight = FlightFigures{outcome, cost + 1, 0, 0, 0, 0.06, 0};
     }
     return run;
@@ -104,7 +105,12 @@ TEST_CASE("planners are compared on equal seeds") {
 
 TEST_CASE("an unfinished campaign says so and keeps no bar") {
     CampaignResults results = some_results();
-    results.plan.expectations = {{Variant::mp_arm_ada, 1.0, 0, 0.25, 0.39}};
+    CampaignExpectation bar;
+    bar.solved_ratio = 1;
+    bar.failed_flights = 0;
+    bar.first_solution_median_s = 0.25;
+    bar.first_solution_95_s = 0.39;
+    results.plan.expectations = {bar};
     const CampaignReport whole = report_of(results);
     CHECK(whole.keeps_its_bars());
     CHECK(whole.bars.size() == 4);
@@ -118,10 +124,18 @@ TEST_CASE("an unfinished campaign says so and keeps no bar") {
 }
 
 TEST_CASE("each bar is missed on its own") {
-    const auto [bar, found] = GENERATE(std::pair(CampaignExpectation{Variant::mp_arm, 0.8, {}, {}, {}}, "3/4"),
-                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, 0, {}, {}}, "1/4"),
-                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, {}, 0.024, {}}, "0.025 s"),
-                                       std::pair(CampaignExpectation{Variant::mp_arm, {}, {}, {}, 100.0}, "none"));
+    using Bar = CampaignExpectation;
+    const auto with = [](auto member, auto value) {
+        Bar bar;
+        bar.variant = Variant::mp_arm;
+        bar.*member = value;
+        return bar;
+    };
+    const auto [bar, found] =
+        GENERATE_COPY(std::pair(with(&Bar::solved_ratio, 0.8), "3/4"), std::pair(with(&Bar::failed_flights, 0U), "1/4"),
+                      std::pair(with(&Bar::first_solution_median_s, 0.024), "0.025 s"),
+                      std::pair(with(&Bar::first_solution_95_s, 100.0), "none"),
+                      std::pair(with(&Bar::verified_median_s, 0.0249), "0.025 s"));
     CampaignResults results = some_results();
     results.plan.expectations = {bar};
     const CampaignReport report = report_of(results);
@@ -129,6 +143,56 @@ TEST_CASE("each bar is missed on its own") {
     CHECK(report.bars[0].found == found);
     CHECK_FALSE(report.bars[0].is_kept);
     CHECK_FALSE(report.keeps_its_bars());
+}
+
+TEST_CASE("a median cost is held against the least that any planner has flown there") {
+    CampaignResults results = some_results();
+    results.plan.planners[1].variant = Variant::mp_arm_ada;
+    results.plan.planners[1].algorithm = "sst";
+    CampaignExpectation bar;
+    bar.algorithm = "rrt-star";
+    bar.cost_after_s = 1;
+    // 115 is the median of 100 to 130; the least flight is one of sst, 91.
+    bar.cost_to_best = 115.0 / 91 + 1e-9;
+    results.plan.expectations = {bar};
+    const CampaignReport kept = report_of(results);
+    REQUIRE(kept.bars.size() == 1);  // none for sst
+    CHECK(kept.bars[0].is_kept);
+    CHECK(kept.bars[0].found == "1.264");
+    results.plan.expectations[0].cost_to_best = 115.0 / 91 - 1e-9;
+    CHECK_FALSE(report_of(results).bars[0].is_kept);
+    results.runs.pop_back();  // of sst: the best is not known yet
+    results.plan.expectations[0].cost_to_best = 2;
+    CHECK_FALSE(report_of(results).bars[0].is_kept);
+}
+
+TEST_CASE("a median cost is held against that of a rival at a time of its own") {
+    CampaignResults results = some_results();
+    results.plan.planners[1] = {Variant::mp_arm_ada, "sst", {}};
+    CampaignExpectation bar;
+    bar.algorithm = "sst";
+    bar.cost_after_s = 0.5;  // 90, 95, 97 and an infinite one
+    bar.cheaper_than = "rrt-star";
+    bar.cheaper_than_after_s = 0.3;  // 150, 160, 170 and an infinite one
+    results.plan.expectations = {bar};
+    const CampaignReport report = report_of(results);
+    REQUIRE(report.bars.size() == 1);
+    CHECK(report.bars[0].planner == 1);
+    CHECK(report.bars[0].found == "96 against 165");
+    CHECK(report.bars[0].is_kept);
+    results.plan.expectations[0].cost_after_s = 0.005;  // before its first plan
+    CHECK(report_of(results).bars[0].found == "none against 165");
+    CHECK_FALSE(report_of(results).bars[0].is_kept);
+}
+
+TEST_CASE("costs over time are those flown, where the planner has flown its plans") {
+    CampaignResults results = some_results();
+    for (Run& run : results.runs) {
+        for (Improvement& improvement : run.improvements) {
+            improvement.flown_cost = improvement.cost + 7;
+        }
+    }
+    CHECK(report_of(results).cells[0].cost_over_time[2].cost.median == Approx(122));
 }
 
 TEST_CASE("the safe margin is the least from which on no flight fails, and what it costs is told") {
@@ -164,6 +228,62 @@ TEST_CASE("the safe margin is the least from which on no flight fails, and what 
     CHECK(report.comparisons.empty());  // planners of different margins are no pair
 }
 
+TEST_CASE("curves have a step for every first solution and end with the searches") {
+    const CellFigures cell = report_of(some_results()).cells[1];
+    REQUIRE(cell.solved_over_time.size() == 3);
+    CHECK(cell.solved_over_time[1].time_s == 0.02);
+    CHECK(cell.solved_over_time[1].solved.hits == 2);
+    CHECK(cell.solved_over_time[1].solved.attempts == 4);  // of all attempted seeds
+    REQUIRE(cell.cost_curve.size() > 16);                  // two decades, sixteen moments each
+    CHECK(cell.cost_curve.front().time_s == Approx(0.01));
+    CHECK(cell.cost_curve.back().time_s == 1);
+    CHECK(cell.cost_curve.back().cost.median == Approx(96));  // 90, 95, 97 and an infinite one
+    CHECK(cell.seeds.size() == 4);
+    CHECK(cell.seeds[1].cause == "none");
+    CHECK(cell.seeds[3].cause.empty());
+    CHECK(cell.seeds[3].flown_cost == 98);
+}
+
+TEST_CASE("planners are counted over all problems together too") {
+    CampaignResults results = some_results();
+    results.plan.experiments.push_back({"rack", "energy"});
+    for (std::uint32_t seed = 1; seed < 4; ++seed) {
+        results.runs.push_back(run_of(1, seed, RunStatus::solved, 0.1, 100, Outcome::unstable));
+        results.runs.back().experiment = 1;
+    }
+    const CampaignReport report = report_of(results);
+    REQUIRE(report.totals.size() == 2);
+    CHECK(report.totals[1].failed_flights.hits == 4);
+    CHECK(report.totals[1].failed_flights.attempts == 7);
+    CHECK(report.totals[1].failed_flights.high == Approx(share_of(4, 7).high));
+    CHECK(markdown_of(report).find("All problems together:") != std::string::npos);
+    CHECK(markdown_of(report_of(some_results())).find("All problems together:") == std::string::npos);
+}
+
+TEST_CASE("the table of a paper escapes what LaTeX would take for a command") {
+    CampaignResults results = some_results();
+    results.plan.experiments[0].problem = "50%_of {a} \\bridge & more~^$#";
+    const std::string latex = latex_of(report_of(results));
+    CHECK(latex.find("50\\%\\_of \\{a\\} \\textbackslash{}bridge \\& "
+                     "more\\textasciitilde{}\\textasciicircum{}\\$\\#, energy & mp-arm-ada rrt-star & "
+                     "4/4 [51.0, 100.0] & 0/4 [0.0, 49.0] & 0.250 [0.175, 0.325] & 116 [108, 124] \\\\\n") !=
+          std::string::npos);
+    CHECK(latex.find(" & mp-arm rrt-star & 2/4 [15.0, 85.0] & 1/4 [4.6, 69.9] & 0.0250 [0.0175, --] & -- \\\\\n") !=
+          std::string::npos);
+    CHECK(latex.ends_with("\\bottomrule\n\\end{tabular}\n"));
+}
+
+TEST_CASE("the same table is there as CSV, with what is infinite left empty") {
+    CampaignResults results = some_results();
+    results.plan.experiments[0].problem = "a \"bridge\", old";
+    const std::string csv = csv_of(report_of(results));
+    const std::size_t first = csv.find("\r\n") + 2, second = csv.find("\r\n", first) + 2;
+    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    CHECK(csv.substr(first).starts_with("\"a \"\"bridge\"\", old\",energy,mp-arm-ada,rrt-star,,4,0,4,"));
+    CHECK(commas(csv.substr(first, second - first)) == commas(csv.substr(0, first)) + 1);
+    CHECK(csv.ends_with(",91,96.25,,,\r\n"));  // flown: 91, 98 and two infinite ones
+}
+
 TEST_CASE("the report is the same in JSON, null for what is infinite") {
     const auto json = nlohmann::json::parse(json_of(report_of(some_results())));
     CHECK(json.at("runs_done") == 8);
@@ -171,6 +291,8 @@ TEST_CASE("the report is the same in JSON, null for what is infinite") {
     CHECK(json.at("cells").at(1).at("first_solution_s").at("95").is_null());
     CHECK(json.at("cells").at(0).at("first_solution_s").at("50") == Approx(0.25));
     CHECK(json.at("failures").at(1).at("seeds") == nlohmann::json{3});
+    CHECK(json.at("cells").at(1).at("seeds").at("flown_cost").at(1).is_null());
+    CHECK(json.at("totals").at(1).at("held").at("hits") == 2);
 }
 
 TEST_CASE("seeds that follow each other are told as a range") {

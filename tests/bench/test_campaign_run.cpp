@@ -107,7 +107,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     written.states_checked = 6;
     written.simulated_s = 7.5;
     written.discarded = 8;
-    written.improvements = {{0.25, 3, 12.5}, {0.5, 9, 1.0 / 7}};
+    written.improvements = {{0.25, 3, 12.5, {}}, {0.5, 9, 1.0 / 7, 2.0 / 7}};
     written.refusals = {{"collision", 11}, {"bounds", 12}};
     written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
     written.fault = "a 'quoted'; fault";
@@ -132,6 +132,8 @@ TEST_CASE("what is read from a file of results is what was written") {
     CHECK(read.discarded == 8);
     REQUIRE(read.improvements.size() == 2);
     CHECK(read.improvements[1].cost == 1.0 / 7);
+    CHECK_FALSE(read.improvements[0].flown_cost.has_value());
+    CHECK(read.improvements[1].flown_cost == 2.0 / 7);
     CHECK(read.refusals == written.refusals);
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->outcome == Outcome::left_flyable_area);

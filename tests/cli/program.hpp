@@ -32,7 +32,8 @@ class ScratchFolder {
 void write_file(const std::filesystem::path& path, const std::string& text);
 
 /// How many files `solve` and `execute` write; the page is one of them where the viewer is built.
-inline constexpr std::size_t files_of_a_run = DOWNWASH_FILES_OF_A_RUN;
+inline constexpr bool has_pages = DOWNWASH_HAS_PAGES;
+inline constexpr std::size_t files_of_a_run = has_pages ? 5 : 4;
 
 /// Every file below a folder, with its content.
 [[nodiscard]] std::map<std::string, std::string> files_in(const std::filesystem::path& folder);

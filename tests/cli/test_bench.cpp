@@ -42,10 +42,11 @@ TEST_CASE("A campaign is run and reported") {
     write_campaign(folder, quick);
     const Result ran = run(folder, {"bench", "run", "campaign.yaml"});
     CHECK(ran.code == 0);
-    CHECK(ran.out ==
-          "4 of 4 runs are in downwash-out/bench-trial; see downwash bench report downwash-out/bench-trial\n");
+    CHECK(ran.out == std::string("4 of 4 runs are in downwash-out/bench-trial") +
+                         (has_pages ? ", report.html shows them" : "") +
+                         "; see downwash bench report downwash-out/bench-trial\n");
     const auto files = files_in(folder.path() / "run/downwash-out");
-    CHECK(files.size() == 1);
+    CHECK(files.size() == (has_pages ? 2 : 1));
     CHECK(files.contains("bench-trial/campaign.db"));
 
     const Result report = run(folder, {"bench", "report", "downwash-out/bench-trial"});
@@ -56,6 +57,28 @@ TEST_CASE("A campaign is run and reported") {
     const auto json = run(folder, {"bench", "report", "downwash-out/bench-trial", "--json"}).json();
     CHECK(json.at("settings").at("seeds") == "3 5");
     CHECK(json.at("cells").size() == 2);
+}
+
+TEST_CASE("A report comes as a page, as JSON, as a table for LaTeX and as CSV, into a file where one is named") {
+    const ScratchFolder folder;
+    write_campaign(folder, quick);
+    CHECK(run(folder, {"bench", "run", "campaign.yaml", "--out", "out"}).code == 0);
+    CHECK(run(folder, {"bench", "report", "out", "--latex"}).out.find("\\begin{tabular}") != std::string::npos);
+    CHECK(run(folder, {"bench", "report", "out", "--csv"}).out.starts_with("problem,objective,variant,"));
+    const Result into_file = run(folder, {"bench", "report", "out", "--json", "-o", "report.json"});
+    CHECK(into_file.code == 0);
+    CHECK(into_file.out.empty());
+    CHECK(read_file(folder.path() / "run/report.json") == run(folder, {"bench", "report", "out", "--json"}).out);
+    CHECK(run(folder, {"bench", "report", "out", "--json", "--csv"}).code == 2);
+    CHECK(run(folder, {"bench", "report", "out", "--csv", "-o", "none/report.csv"}).code == 2);
+
+    const Result page = run(folder, {"bench", "report", "out", "--html"});
+    if (has_pages) {
+        CHECK(page.out == read_file(folder.path() / "run/out/report.html"));
+        CHECK(page.out.find("downwash/campaign-report/v1") != std::string::npos);
+    } else {
+        CHECK(page.code == 2);
+    }
 }
 
 TEST_CASE("A bar that a campaign misses is an exit code of its own") {

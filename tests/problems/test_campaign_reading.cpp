@@ -108,6 +108,14 @@ TEST_CASE("what cannot be run in a campaign is refused with its place and a reme
         Edit{"variant: mp-arm-ada", "variant: mp-arm-da",
              "campaign.yaml:9:20: expect[0].variant is mp-arm-da, which is not run: expected one of the campaign's "
              "variants"},
+        Edit{"failed_flights: 0", "algorithm: sst",
+             "campaign.yaml:9:62: expect[0].algorithm is sst, which is not run: expected one of the campaign's "
+             "algorithms"},
+        Edit{"failed_flights: 0", "cost_to_best: 1.05",
+             "campaign.yaml:9:65: expect[0].cost_to_best does not say when: expected cost_after_s beside it"},
+        Edit{"failed_flights: 0", "cheaper_than_after_s: 30",
+             "campaign.yaml:9:73: expect[0].cheaper_than_after_s is half of a comparison: expected cheaper_than and "
+             "cheaper_than_after_s together"},
         Edit{"[problem.yaml]", "[problem.yaml, ./problem.yaml]",
              "campaign.yaml:3:11: problems name './problem.yaml', which has the name of another, test: expected every "
              "problem once, with a name of its own"},

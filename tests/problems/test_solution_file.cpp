@@ -32,7 +32,7 @@ Solution sample() {
     solution.cost = 1000.0 / 7;
     solution.planning.first_solution_wall_s = 1.0 / 3;
     solution.planning.iterations = 12345678901234567ULL;
-    solution.planning.improvements = {{0.1, 7, 200.0 / 7}, {0.2, 9, 1000.0 / 7}};
+    solution.planning.improvements = {{0.1, 7, 200.0 / 7, {}}, {0.2, 9, 1000.0 / 7, 1001.0 / 7}};
     solution.planning.rejected = {{"collision", 5}, {"bounds", 0}};
     Plan plan;
     plan.tick_s = 1 / problem().robot.controller.rate_hz;

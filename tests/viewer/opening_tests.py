@@ -58,14 +58,15 @@ class Opening(page_test.BrowserTest):
             text = file.read()
         self.assertLess(len(text.encode()), 500e3)
         self.assertIsNone(re.search(r"<(script|link|img|iframe)[^>]*(src|href)=[\"']?(?!data:|[\"'])", text))
-        self.assertEqual(text.count('{"downwash":"run"}'), 1)
+        self.assertEqual(text.count('{"downwash":"nothing"}'), 1)
         self.assertEqual(len(re.findall("</script", text, re.I)), 3)
 
     def test_building_again_gives_the_same_bytes(self):
-        again = os.path.join(page_test.scratch.name, "again.html")
+        again = os.path.join(page_test.scratch.name, "again")
         subprocess.run([os.path.join(page_test.HERE, "..", "..", "viewer", "build.sh"), again], check=True)
-        with open(page_test.arguments.template, "rb") as one, open(again, "rb") as other:
-            self.assertEqual(one.read(), other.read())
+        for template in (page_test.arguments.template, page_test.arguments.campaign_template):
+            with open(template, "rb") as one, open(os.path.join(again, os.path.basename(template)), "rb") as other:
+                self.assertEqual(one.read(), other.read())
 
 
 class Trouble(page_test.BrowserTest):
@@ -93,8 +94,8 @@ class Trouble(page_test.BrowserTest):
     def test_broken_data_is_named_instead_of_half_a_page(self):
         with open(page_test.arguments.template, encoding="utf-8") as file:
             template = file.read()
-        self.says(template.replace('{"downwash":"run"}', '{"schema": "downwash/rep'), "damaged")
-        self.says(template.replace('{"downwash":"run"}', "{}"), "without a schema")
+        self.says(template.replace('{"downwash":"nothing"}', '{"schema": "downwash/rep'), "damaged")
+        self.says(template.replace('{"downwash":"nothing"}', "{}"), "without a schema")
         self.says(self.text_of(lambda r: r.update(schema="downwash/report/v9")), "downwash/report/v9")
         self.says(self.text_of(lambda r: r.pop("robot")), "“robot” is missing")
         self.says(self.text_of(lambda r: r["flight"].update(data=r["flight"]["data"][:5000])), "cannot be unpacked")
@@ -116,11 +117,11 @@ class WrittenPage(page_test.BrowserTest):
 
     def setUp(self):
         super().setUp()
-        if not page_test.arguments.page or not page_test.arguments.run:
+        if not page_test.arguments.run:
             self.skipTest("no --page and --run")
 
     def test_shows_its_run(self):
-        self.assertTrue(self.browser.open(page_test.arguments.page))
+        self.assertTrue(self.browser.open(os.path.join(page_test.arguments.run, "report.html")))
         self.browser.settle()
         self.assertEqual(self.browser.complaints(), [])
         with open(os.path.join(page_test.arguments.run, "trajectory.csv"), encoding="utf-8") as file:

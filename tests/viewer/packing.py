@@ -43,7 +43,7 @@ def script_json(report):
 def write_page(template, report, page):
     with open(template, encoding="utf-8") as file:
         text = file.read()
-    placeholder = '{"downwash":"run"}'
+    placeholder = '{"downwash":"nothing"}'
     assert text.count(placeholder) == 1
     with open(page, "w", encoding="utf-8") as file:
         file.write(text.replace(placeholder, script_json(report)))

@@ -9,7 +9,7 @@ import sample_page
 from browser import Browser
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-arguments = None  # of the command line: template, page, run, expect
+arguments = None  # of the command line
 scratch = tempfile.TemporaryDirectory()
 made = {}
 

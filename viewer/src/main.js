@@ -75,7 +75,7 @@ async function run() {
     const theme = make_theme_switch();
     let model, parts;
     try {
-        const report = read_report(document.getElementById("downwash-run").textContent);
+        const report = read_report(document.getElementById("downwash-data").textContent);
         model = await build_model(report);
         parts = assemble(page, model, theme);
     } catch (error) {

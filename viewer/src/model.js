@@ -1,30 +1,14 @@
 // What the rest of the page works on: the data, checked and decoded once.
 
 import {decode_flight, decode_map, decode_tree, Trouble} from "./decode.js";
+import {read_embedded} from "./embedded.js";
+import {unit_of} from "./words.js";
 
 export const schema = "downwash/report/v1";
 
-/** The object between the tags, or a Trouble that says why there is none. */
+/** The run of this page, or a Trouble that says why there is none. */
 export function read_report(text) {
-    let report;
-    try {
-        report = JSON.parse(text);
-    } catch (error) {
-        throw new Trouble(`The data of this page cannot be read: the file is damaged (${error.message}).`);
-    }
-    if (report?.downwash === "run") {
-        throw new Trouble("This page is an empty template: no run was put into it.");
-    }
-    if (report?.schema !== schema) {
-        throw new Trouble(
-            `The data of this page is “${report?.schema ?? "without a schema"}”; this page shows ${schema}.`);
-    }
-    for (const key of ["solution", "scene", "robot", "start", "goals"]) {
-        if (typeof report[key] !== "object" || report[key] === null) {
-            throw new Trouble(`The data of this page is incomplete: “${key}” is missing.`);
-        }
-    }
-    return report;
+    return read_embedded(text, schema, "run", ["solution", "scene", "robot", "start", "goals"]);
 }
 
 const needed_columns = [
@@ -78,8 +62,6 @@ function rotor_lines(data, count, suffix) {
     }
     return lines;
 }
-
-function unit_of(objective) { return {energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? ""; }
 
 function objective_text(objective) {
     return typeof objective === "string" ?

@@ -29,7 +29,7 @@ export function plots_of(model) {
     const tilt = report.limits?.max_tilt_rad;
     const margin = report.limits?.safety_margin_m;
     const rotor_lines = (lines) =>
-        lines.map(({rotors, values}, index) => ({name: names_of(rotors, count), values, style: `rotor-${index % 8}`}));
+        lines.map(({rotors, values}, index) => ({name: names_of(rotors, count), values, style: `series-${index % 8}`}));
     const as_degrees = (value) => degrees((value * Math.PI) / 180);
     const plots = [
         {

@@ -36,3 +36,6 @@ export const variants = {
     "mp-arm-da": "the tree flies, in free air",
     "mp-arm-ada": "the tree flies, near surfaces too",
 };
+
+/** Of the cost; sums of several have none. */
+export const unit_of = (objective) => ({energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? "");

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""What the page of a run must do, in a browser.
+"""What the pages of runs and campaigns must do, in a browser.
 
-test_run_page.py TEMPLATE.html [--page PAGE.html --run FOLDER] [--expect DIR] [unittest's arguments]
+test_pages.py TEMPLATES [--run FOLDER] [--campaign FOLDER] [--expect DIR] [unittest's arguments]
 
-With --page and --run a page that the program wrote is held against the files of its run as well.
+TEMPLATES is the folder with run.html and campaign.html as viewer/build.sh makes them. With --run and --campaign pages that
+the program wrote are held against the files beside them as well.
 UPDATE_EXPECTED=1 writes the expected pictures anew: look at them before they are committed.
 """
 
@@ -15,6 +16,7 @@ import unittest
 sys.dont_write_bytecode = True
 
 import page_test
+from campaign_tests import *
 from looks_tests import *
 from moving_tests import *
 from opening_tests import *
@@ -22,11 +24,13 @@ from opening_tests import *
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("template")
-    parser.add_argument("--page")
+    parser.add_argument("templates")
     parser.add_argument("--run")
+    parser.add_argument("--campaign")
     parser.add_argument("--expect", default=os.path.join(page_test.HERE, "expected"))
     page_test.arguments, rest = parser.parse_known_args()
+    page_test.arguments.template = os.path.join(page_test.arguments.templates, "run.html")
+    page_test.arguments.campaign_template = os.path.join(page_test.arguments.templates, "campaign.html")
     unittest.main(argv=[sys.argv[0], *rest])
 
 

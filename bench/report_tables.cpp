@@ -1,0 +1,140 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "downwash/bench/campaign_report.hpp"
+#include "downwash/bench/results_layout.hpp"
+
+namespace downwash::bench {
+namespace {
+
+/// As LaTeX sets it letter by letter.
+std::string in_latex(std::string_view text) {
+    std::string escaped;
+    for (const char letter : text) {
+        switch (letter) {
+            case '\\':
+                escaped += "\\textbackslash{}";
+                break;
+            case '~':
+                escaped += "\\textasciitilde{}";
+                break;
+            case '^':
+                escaped += "\\textasciicircum{}";
+                break;
+            case '{':
+            case '}':
+            case '$':
+            case '&':
+            case '#':
+            case '_':
+            case '%':
+                escaped += '\\';
+                escaped += letter;
+                break;
+            case '\n':
+            case '\r':
+                escaped += ' ';
+                break;
+            default:
+                escaped += letter;
+        }
+    }
+    return escaped;
+}
+
+std::string latex_share(const Share& share) {
+    return fmt::format("{}/{} [{:.1f}, {:.1f}]", share.hits, share.attempts, 100 * share.low, 100 * share.high);
+}
+
+std::string latex_number(double value) {
+    if (!std::isfinite(value)) {
+        return "--";
+    }
+    return std::abs(value) >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:#.3g}", value);
+}
+
+std::string latex_spread(const Spread& spread) {
+    if (!std::isfinite(spread.median)) {
+        return "--";
+    }
+    return fmt::format("{} [{}, {}]", latex_number(spread.median), latex_number(spread.low_quartile),
+                       latex_number(spread.high_quartile));
+}
+
+std::string in_csv(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) {
+        return text;
+    }
+    std::string quoted = "\"";
+    for (const char letter : text) {
+        quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+    }
+    return quoted + '"';
+}
+
+std::string csv_number(double value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : "";
+}
+
+std::string csv_share(const Share& share) {
+    return fmt::format("{},{},{}", share.hits, share.low, share.high);
+}
+
+std::string csv_spread(const Spread& spread) {
+    return fmt::format("{},{},{},{},{}", csv_number(spread.least), csv_number(spread.low_quartile),
+                       csv_number(spread.median), csv_number(spread.high_quartile), csv_number(spread.most));
+}
+
+}  // namespace
+
+std::string latex_of(const CampaignReport& report) {
+    const CampaignPlan& plan = report.plan;
+    std::string text = fmt::format(
+        "% Campaign {}, Downwash {} at commit {}, {} of {} runs; needs \\usepackage{{booktabs}}.\n"
+        "% Shares with 95 % Wilson intervals; medians with quartiles over all attempted seeds.\n"
+        "\\begin{{tabular}}{{llrrrr}}\n\\toprule\n"
+        "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Flown cost \\\\\n",
+        in_latex(setting(plan, "campaign")), in_latex(setting(plan, "version")), in_latex(setting(plan, "commit")),
+        report.done, plan.run_count());
+    std::size_t experiment = plan.experiments.size();
+    for (const CellFigures& cell : report.cells) {
+        const bool is_first = cell.experiment != experiment;
+        if (is_first) {
+            text += experiment == plan.experiments.size() ? "\\midrule\n" : "\\addlinespace\n";
+            experiment = cell.experiment;
+        }
+        text += fmt::format(
+            "{} & {} & {} & {} & {} & {} \\\\\n", is_first ? in_latex(plan.experiments[experiment].name()) : "",
+            in_latex(plan.planners[cell.planner].name()), latex_share(cell.held), latex_share(cell.failed_flights),
+            latex_spread(cell.first_solution_s), latex_spread(cell.flown_cost));
+    }
+    return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+std::string csv_of(const CampaignReport& report) {
+    const CampaignPlan& plan = report.plan;
+    std::string text =
+        "problem,objective,variant,algorithm,margin_m,attempted,missing,solved,solved_low,solved_high,failed_flights,"
+        "failed_flights_low,failed_flights_high,held,held_low,held_high,discarded,least_clearance_m";
+    for (const char* spread : {"first_solution_s", "verified_s", "whole_run_s", "flown_cost"}) {
+        for (const char* quantile : {"0", "25", "50", "75", "95"}) {
+            text += fmt::format(",{}_{}", spread, quantile);
+        }
+    }
+    text += "\r\n";
+    for (const CellFigures& cell : report.cells) {
+        const Experiment& experiment = plan.experiments[cell.experiment];
+        const PlannerSetup& planner = plan.planners[cell.planner];
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
+                            in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
+                            planner.margin_m ? csv_number(*planner.margin_m) : "", cell.solved.attempts, cell.missing,
+                            csv_share(cell.solved), csv_share(cell.failed_flights), csv_share(cell.held),
+                            cell.discarded, csv_number(cell.least_clearance_m), csv_spread(cell.first_solution_s),
+                            csv_spread(cell.verified_s), csv_spread(cell.answer_s), csv_spread(cell.flown_cost));
+    }
+    return text;
+}
+
+}  // namespace downwash::bench

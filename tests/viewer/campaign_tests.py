@@ -1,0 +1,168 @@
+"""The page of a campaign."""
+
+import json
+import os
+import re
+import sys
+import xml.etree.ElementTree
+
+import page_test
+import sample_campaign
+from packing import write_page
+from sample_page import HOSTILE
+
+FIGURES = ["success", "costs", "flown-costs", "cost-shares", "first-solutions", "pairs"]
+
+
+class Campaign(page_test.BrowserTest):
+    def setUp(self):
+        super().setUp()
+        self.browser.complaints(), self.browser.requests()
+
+    def show(self, figures):
+        path = os.path.join(page_test.scratch.name, "campaign.html")
+        write_page(page_test.arguments.campaign_template, figures, path)
+        stands = self.browser.open(path)
+        self.browser.settle()
+        return stands
+
+    def points_of(self, selector):
+        """Of the steps and lines of a path: its numbers."""
+        return [float(n) for n in re.findall(r"-?[\d.]+", self.one(selector, "e.getAttribute('d')"))]
+
+    def test_has_every_figure_for_every_problem_and_asks_for_nothing(self):
+        self.assertTrue(self.show(sample_campaign.campaign()))
+        self.assertEqual(self.every("section.figure", "e.id"), FIGURES)
+        self.assertEqual(self.every("section.figure", "e.querySelectorAll('.panel svg:not([hidden])').length"), [2] * 6)
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.browser.requests(), [])
+
+    def test_a_success_curve_ends_at_its_share_and_its_band_at_the_interval(self):
+        figures = sample_campaign.campaign()
+        cell = figures["cells"][0]
+        cell["solved_over_time"] = cell["solved_over_time"][:13]
+        self.show(figures)
+        panel = "#success .panel "
+        ticks = self.every(panel + ".tick[text-anchor=end]", "[e.textContent, Number(e.getAttribute('y'))]")
+        at = {text: y for text, y in ticks}
+        height = at["0%"] - at["100%"]
+        share = (at["0%"] - self.points_of(panel + ".line.series-0")[-2]) / height
+        self.assertAlmostEqual(share, 13 / 20, delta=0.002)
+        highest = (at["0%"] - min(y for y in self.points_of(panel + ".band.series-0")[1::2] if y > 0)) / height
+        self.assertAlmostEqual(highest, cell["solved_over_time"][-1]["solved"]["high"], delta=0.002)
+
+    def test_every_seed_with_a_flight_that_held_is_a_dot(self):
+        figures = sample_campaign.campaign()
+        self.show(figures)
+        for i, cell in enumerate(figures["cells"][:3]):
+            held = cell["held"]["hits"]
+            dots = self.js("return document.querySelector('#flown-costs .panel').querySelectorAll(arguments[0]).length",
+                           f".seed-dot.series-{i}")
+            self.assertEqual(dots, held)
+        pair = figures["comparisons"][0]
+        self.assertEqual(self.js("return document.querySelector('#pairs .panel').querySelectorAll('.seed-dot').length"),
+                         pair["pairs"])
+
+    def test_a_planner_that_is_switched_off_leaves_all_figures(self):
+        self.show(sample_campaign.campaign())
+        lines = "return document.querySelectorAll('.panel .series-1').length"
+        self.assertGreater(self.js(lines), 10)
+        self.js("document.querySelectorAll('.planner input')[1].click()")
+        self.assertEqual(self.js(lines), 0)
+        self.assertGreater(self.js("return document.querySelectorAll('.panel .series-0').length"), 10)
+        self.js("document.querySelectorAll('.planner input').forEach(e => e.checked && e.click())")
+        self.assertEqual(self.js("return document.querySelectorAll('.panel svg:not([hidden])').length"), 0)
+        self.assertIn("None of the planners shown", self.one("#success .panel", "e.textContent"))
+
+    def test_a_sweep_shows_what_margins_buy_and_starts_with_the_first(self):
+        figures = sample_campaign.campaign(margins=(0.05, 0.1, 0.2, 0.4))
+        self.show(figures)
+        self.assertEqual(self.every(".planner input", "e.checked").count(True), 3)
+        dots = self.js("return document.querySelector('#margins .panel').querySelectorAll('.dot.series-2').length")
+        self.assertEqual(dots, 4)
+
+    def test_the_head_says_what_came_of_it(self):
+        figures = sample_campaign.campaign()
+        self.show(figures)
+        self.assertEqual(self.one(".verdict h2", "e.textContent"), "All 1 bars are kept")
+        figures["bars"].append({**figures["bars"][0], "kept": False, "found": "3/20"})
+        self.show(figures)
+        self.assertEqual(self.one(".verdict h2", "e.textContent"), "1 of 2 bars is missed")
+        self.assertIn("found 3/20", self.one(".verdict", "e.textContent"))
+        figures["runs_done"] = 7
+        self.show(figures)
+        self.assertEqual(self.one(".verdict h2", "e.textContent"), "Not finished: 7 of 120 runs")
+        figures.update(runs_done=120, bars=[])
+        self.show(figures)
+        self.assertIn("sets no bars", self.one(".verdict h2", "e.textContent"))
+
+    def test_an_empty_campaign_stands_too(self):
+        figures = sample_campaign.campaign()
+        for cell in figures["cells"]:
+            cell.update(solved=sample_campaign.share(0, 0), solved_over_time=[], cost_curve=[], cost_over_time=[])
+            cell["seeds"] = {name: [] for name in cell["seeds"]}
+        figures.update(runs_done=0, comparisons=[], failures=[])
+        for totals in figures["totals"]:
+            totals.update(failed_flights=sample_campaign.share(0, 0), held=sample_campaign.share(0, 0))
+        self.assertTrue(self.show(figures))
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_text_of_others_stays_text(self):
+        text = json.dumps(sample_campaign.campaign())
+        figures = json.loads(text)
+        for cell in figures["cells"][:3]:
+            cell["problem"] = HOSTILE + "w" * 10000
+        figures["settings"].update(campaign=HOSTILE, description=HOSTILE * 3)
+        figures["failures"][0]["cause"] = HOSTILE
+        self.assertTrue(self.show(figures))
+        self.assertEqual(self.one("h1", "e.textContent"), HOSTILE)
+        self.assertEqual(self.js("return document.querySelectorAll('main script, main img, main iframe').length"), 0)
+        self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), 1400)
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_no_page_is_wider_than_a_phone(self):
+        for width in (360, 768):
+            self.browser.resize(width, 800, mobile=width < 700)
+            self.show(sample_campaign.campaign(margins=(0.05, 0.1)))
+            self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+            self.browser.settle()
+            self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), width)
+
+    def test_a_figure_is_saved_with_the_colours_that_it_has(self):
+        self.show(sample_campaign.campaign())
+        saved = self.browser.driver.execute_async_script(
+            "const done = arguments[0], make = URL.createObjectURL;"
+            "URL.createObjectURL = blob => { blob.text().then(done); return make(blob); };"
+            "document.querySelector('#success .panel button').click()")
+        root = xml.etree.ElementTree.fromstring(saved)
+        self.assertTrue(root.tag.endswith("svg"))
+        self.assertNotIn("var(", saved)
+        strokes = {e.get("stroke") for e in root.iter() if e.tag.endswith("path")}
+        self.assertIn("rgb(0, 96, 184)", strokes)
+        self.assertIn("time of the search [s]", saved)
+
+    def test_a_page_without_a_campaign_says_so(self):
+        self.assertFalse(self.browser.open(page_test.arguments.campaign_template))
+        self.assertIn("empty template", self.one("[role=alert]", "e.textContent"))
+        self.assertFalse(self.show({"schema": "downwash/campaign-report/v9"}))
+        self.assertIn("campaign-report/v9", self.one("[role=alert]", "e.textContent"))
+
+    def test_a_large_campaign_is_small_and_opens_within_a_second(self):
+        figures = sample_campaign.campaign(problems=[f"problem {i}" for i in range(8)], seeds=200)
+        self.show(figures)
+        size = os.path.getsize(os.path.join(page_test.scratch.name, "campaign.html"))
+        opened = self.js("return performance.getEntriesByName('downwash-ready')[0].startTime")
+        print(f"4800 runs open in {opened:.0f} ms, {size / 1e3:.0f} kB", file=sys.stderr)
+        self.assertLess(size, 2e6)
+        self.assertLess(opened, 1000)
+
+    def test_the_programs_page_holds_the_figures_of_its_report(self):
+        if not page_test.arguments.campaign:
+            self.skipTest("no page of the program given")
+        folder = page_test.arguments.campaign
+        self.assertTrue(self.browser.open(os.path.join(folder, "report.html")))
+        with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
+            self.assertEqual(self.js("return downwash.figures"), json.load(file))
+        self.assertEqual(self.every("section.figure", "e.id"), FIGURES + ["margins"])
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.browser.requests(), [])

@@ -1,0 +1,67 @@
+// Puts the page of a campaign together.
+
+import d3_licence from "../../licences/d3.txt";
+import {Trouble} from "../decode.js";
+import {foreign, h} from "../dom.js";
+import {make_theme_switch} from "../theme.js";
+import {make_costs} from "./costs.js";
+import {make_margins} from "./margins.js";
+import {build_model, read_figures} from "./model.js";
+import {make_first_solutions, make_flown_costs, make_pairs} from "./rows.js";
+import {make_cost_shares, make_success} from "./success.js";
+import {make_settings, make_tables} from "./tables.js";
+import {make_head, make_verdict} from "./verdict.js";
+
+function make_foot(version) {
+    return h(
+        "footer", {class: "foot"},
+        h("p", null, `Made by Downwash ${version ?? ""}. The page needs no network and sends nothing anywhere.`),
+        h("details", {class: "licences screen-only"}, h("summary", null, "Licences of the libraries in this page"),
+          h("pre", {tabindex: "0"}, d3_licence)));
+}
+
+/** Which line is whose; switching a planner off takes it out of all figures. */
+function make_legend({planners, shown}) {
+    return h(
+        "fieldset", {class: "planners"}, h("legend", null, "Planners"),
+        planners.map((planner) => h(
+                         "label", {class: "planner"}, h("input", {
+                             type: "checkbox",
+                             checked: shown.has(planner),
+                             onchange: (event) => shown.set(planner, event.target.checked)
+                         }),
+                         h("span", {class: `key ${planner.style}`, "aria-hidden": "true"}), foreign(planner.name))));
+}
+
+function assemble(page, model, theme) {
+    page.replaceChildren(
+        h("a", {class: "skip screen-only", href: "#success"}, "To the figures"), make_head(model, theme.element),
+        h("main", null, make_verdict(model), make_legend(model), make_success(model), make_costs(model),
+          make_flown_costs(model), make_cost_shares(model), make_first_solutions(model), make_pairs(model),
+          make_margins(model), make_tables(model), make_settings(model)),
+        make_foot(model.figures.settings.version));
+    document.title = `${model.figures.settings.campaign ?? "Campaign"} · Downwash`;
+}
+
+/** @returns {object|null} the figures shown; null when the page shows an error instead */
+function run() {
+    const page = document.getElementById("page");
+    const theme = make_theme_switch();
+    try {
+        const model = build_model(read_figures(document.getElementById("downwash-data").textContent));
+        assemble(page, model, theme);
+        performance.mark("downwash-ready");
+        return model.figures;
+    } catch (error) {
+        const text = error instanceof Trouble ?
+            error.message :
+            `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
+        page.replaceChildren(
+            h("main", null, h("p", {class: "page-trouble", role: "alert"}, text)), make_foot(null));
+        return null;
+    }
+}
+
+const figures = run();
+// For tests and the curious: whether the page stands, and its data.
+Object.defineProperty(window, "downwash", {value: Object.freeze({ready: Promise.resolve(figures !== null), figures})});

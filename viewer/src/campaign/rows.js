@@ -1,0 +1,187 @@
+// Spreads as rows: box plots with every seed as a dot, and differences between planners on equal seeds.
+
+import {isolated, s} from "../dom.js";
+import {number} from "../format.js";
+import {shown_cells} from "./model.js";
+import {around, make_figure, make_panel, plain} from "./panel.js";
+
+const row_height = 40;
+const p_text = (p) => (p === null ? "" : p < 0.0001 ? "p < 0.0001" : `p = ${number(p, ".2g")}`);
+
+/** Dots spread evenly across their row, the same way each time. */
+const jitter = (index) => ((index * 0.6180339887498949) % 1) - 0.5;
+
+function dots(values, y, frame, style) {
+    return values.map(
+        (value, i) => Number.isFinite(value) ? s("circle", {
+            class: `seed-dot ${style}`,
+            cx: frame.x(value).toFixed(1),
+            cy: (y + 12 * jitter(i)).toFixed(1),
+            r: values.length > 60 ? 1.3 : 2
+        }) :
+                                               []);
+}
+
+const row_at = (frame, index) => frame.top + (index + 0.64) * row_height;
+
+function row_name(frame, y, text) {
+    return s("text", {class: "row-name", x: frame.left, y: y - 12}, isolated(text, 80));
+}
+
+function box(spread, y, frame, style) {
+    const {x, right} = frame;
+    const place = (value) => (Number.isFinite(value) ? x(value) : right);
+    const [low, quarter, median, three, high] = ["0", "25", "50", "75", "95"].map((q) => spread[q]);
+    if (!Number.isFinite(low)) {
+        return [];
+    }
+    const title = s("title", null,
+                    `least ${plain(low)}, 25 % ${plain(quarter)}, median ${plain(median)}, 75 % ${plain(three)}, ` +
+                        `95 % ${plain(high)}`);
+    const begin = place(quarter), end = place(three);
+    return [
+        s("path", {class: `whisker ${style}`, d: `M${x(low)} ${y}H${begin}M${end} ${y}H${place(high)}`}),
+        // A quartile that is infinite leaves the box open.
+        s("path", {
+            class: `box ${style}`,
+            d: Number.isFinite(three) ? `M${begin} ${y - 7}H${end}V${y + 7}H${begin}Z` :
+                                        `M${end} ${y - 7}H${begin}V${y + 7}H${end}`
+        },
+          title),
+        Number.isFinite(median) ? s("path", {class: `median ${style}`, d: `M${place(median)} ${y - 8}v16`}) : []
+    ];
+}
+
+function make_boxes(model, {id, title, note, measure, axis_of}) {
+    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
+        const cells = shown_cells(model, experiment);
+        const all = cells.flatMap((cell) => cell.seeds[measure]).filter((value) => Number.isFinite(value) && value > 0);
+        if (all.length === 0) {
+            return "None of the planners shown has a value here.";
+        }
+        const axis = axis_of(experiment);
+        const told = cells.map(({planner, [measure]: spread}) => `${planner.name}: median ${plain(spread["50"])}`);
+        return {
+            label: `${title}. ${told.join("; ")}.`,
+            height: 42 + row_height * cells.length + 8,
+            left: 12,
+            right: 12,
+            x: {...axis, domain: around(Math.min(...all), Math.max(...all), {is_log: axis.is_log})},
+            y: null,
+            draw: (frame) => cells.map((cell, index) => {
+                const y = row_at(frame, index), {style, name} = cell.planner;
+                const without = cell.seeds[measure].filter((value) => !Number.isFinite(value)).length;
+                return [
+                    dots(cell.seeds[measure], y, frame, style), box(cell[measure], y, frame, style),
+                    row_name(frame, y, name + (without > 0 ? `, ${without} of ${cell.seeds.seed.length} without` : ""))
+                ];
+            }),
+        };
+    }));
+    return make_figure(id, title, note, panels);
+}
+
+const how_to_read = "Box: quartiles and median; whiskers: least and 95 %; dots: seeds. Quantiles are over all " +
+    "attempted seeds, those without a value counting as infinite: then a box is open to the right.";
+
+export const make_first_solutions = (model) => make_boxes(model, {
+    id: "first-solutions",
+    title: "Time to the first solution",
+    note: how_to_read,
+    measure: "first_solution_s",
+    axis_of: () => ({name: "time of the search [s]", is_log: true}),
+});
+
+export const make_flown_costs = (model) => make_boxes(model, {
+    id: "flown-costs",
+    title: "Flown cost",
+    note: `Cost of the reported plan's flight with direct aerodynamics, where it held. ${how_to_read}`,
+    measure: "flown_cost",
+    axis_of: ({unit}) => ({name: `flown cost${unit ? ` [${unit}]` : ""}`}),
+});
+
+/** Differences first - second of the pairs in which both have a value. */
+function differences(first, second, measure) {
+    const of_seed = new Map(second.seeds.seed.map((seed, i) => [seed, second.seeds[measure][i]]));
+    return first.seeds.seed.map((seed, i) => first.seeds[measure][i] - (of_seed.get(seed) ?? Infinity))
+        .filter(Number.isFinite);
+}
+
+function make_pairs_of(model, measure, name, unit_for) {
+    return model.experiments
+        .map((experiment) => {
+            const compared = model.figures.comparisons.filter(
+                (pair) => pair.experiment === experiment.name && pair.measure === name);
+            if (compared.length === 0) {
+                return null;
+            }
+            const cell_of = (planner) => experiment.cells.find((cell) => cell.planner.name === planner);
+            return make_panel(model, experiment.name, () => {
+                const rows = compared.map((pair) => ({pair, first: cell_of(pair.first), second: cell_of(pair.second)}))
+                                 .filter(({first, second}) => model.shown.has(first.planner) &&
+                                             model.shown.has(second.planner))
+                                 .map((row) => ({...row, values: differences(row.first, row.second, measure)}));
+                const all = rows.flatMap(({values}) => values);
+                if (all.length === 0) {
+                    return "No two of the planners shown both have values on a seed.";
+                }
+                const unit = unit_for(experiment);
+                const told = rows.map(
+                    ({pair}) => `${pair.first} against ${pair.second}: ${pair.first_smaller} to ${
+                        pair.second_smaller} seeds, median difference ${plain(pair.median_difference)}`);
+                return {
+                    label: `Differences on equal seeds. ${told.join("; ")}.`,
+                    height: 42 + row_height * rows.length + 8,
+                    left: 12,
+                    right: 12,
+                    x: {
+                        name: `first − second${unit ? ` [${unit}]` : ""}`,
+                        domain: around(Math.min(0, ...all), Math.max(0, ...all))
+                    },
+                    y: null,
+                    draw: (frame) => [
+                        s("path", {class: "zero", d: `M${frame.x(0)} ${frame.top}V${frame.bottom}`}),
+                        rows.map(({pair, first, values}, index) => {
+                            const y = row_at(frame, index), {style} = first.planner;
+                            const median = pair.median_difference;
+                            return [
+                                dots(values, y, frame, style),
+                                median === null ?
+                                    [] :
+                                    s("path", {class: `median ${style}`, d: `M${frame.x(median)} ${y - 8}v16`}),
+                                row_name(
+                                    frame, y,
+                                    `${pair.first} − ${pair.second}: ${pair.first_smaller} : ${
+                                        pair.second_smaller}, ${p_text(pair.sign_test_p)}`)
+                            ];
+                        })
+                    ],
+                };
+            });
+        })
+        .filter((panel) => panel !== null);
+}
+
+export function make_pairs(model) {
+    const costs = make_pairs_of(model, "flown_cost", "flown cost", ({unit}) => unit);
+    const times = make_pairs_of(model, "first_solution_s", "first solution [s]", () => "s");
+    if (costs.length + times.length === 0) {
+        return null;
+    }
+    return make_figure(
+        "pairs", "Differences on equal seeds",
+        "Dots: seeds on which both have a value; tick: their median. Left of zero the first planner is the cheaper or " +
+            "the faster one. The counts say on how many seeds the first, and the second, has the smaller value, none " +
+            "losing to any; p of the two-sided sign test over them.",
+        [
+            costs.length > 0 ? h3("Flown cost") : null, ...costs, times.length > 0 ? h3("First solution") : null,
+            ...times
+        ]);
+}
+
+function h3(text) {
+    const element = document.createElement("h3");
+    element.className = "panels-title";
+    element.textContent = text;
+    return element;
+}

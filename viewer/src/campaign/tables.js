@@ -1,0 +1,162 @@
+// The figures as tables, for those who want numbers; the same as in the Markdown report.
+
+import {foreign, h} from "../dom.js";
+import {meters, number} from "../format.js";
+import {plain} from "./panel.js";
+
+const share = ({hits, attempts, low, high}) =>
+    `${hits}/${attempts} [${number(100 * low, ".1f")}, ${number(100 * high, ".1f")} %]`;
+const seconds = (value) => !Number.isFinite(value) ? "none" :
+    value < 1 ? `${number(1e3 * value, ".3~g")} ms` : `${number(value, ".3~g")} s`;
+const cost = (value) => (Number.isFinite(value) ? plain(value) : "none");
+const p_value = (p) => (p === null ? "–" : p < 0.0001 ? "< 0.0001" : number(p, ".2g"));
+
+/** @param {string[]} names of columns; the first `texts` hold words */
+function table(title, names, texts, rows) {
+    const cell = (content, index) => index === 0 ? h("th", {scope: "row", class: "foreign-name"}, foreign(content)) :
+                                                   h("td", {class: index < texts ? "words" : null}, foreign(content));
+    return h(
+        "div", {class: "scroll", tabindex: "0", role: "region", "aria-label": title},
+        h("table", {class: "numbers campaign-table"},
+          h("thead", null, h("tr", null, names.map((name, i) => h("th", {
+                                                       scope: "col",
+                                                       class: i < texts ? "words" : null
+                                                   },
+                                                                  name)))),
+          h("tbody", null, rows.map((row) => h("tr", null, row.map(cell))))));
+}
+
+const folded = (title, content) => h("details", null, h("summary", null, title), content);
+
+function cells_of(model) {
+    return model.experiments.flatMap(
+        (experiment) => experiment.cells.map((cell) => ({cell, place: [experiment.name, cell.planner.name]})));
+}
+
+const causes = (counts) => Object.entries(counts).map(([cause, count]) => `${cause} ${count}`).join(", ");
+
+function flights_table(model) {
+    return table(
+        "Success and flights",
+        [
+            "problem", "planner", "solved", "failed flight", "solved and held", "least clearance", "discarded",
+            "failures by cause"
+        ],
+        2,
+        cells_of(model).map(
+            ({cell, place}) =>
+                [...place, share(cell.solved), share(cell.failed_flights), share(cell.held),
+                 cell.least_clearance_m === null ? "–" : meters(cell.least_clearance_m), String(cell.discarded),
+                 causes(cell.failures_by_cause)]));
+}
+
+const quantiles = (spread, text) => ["25", "50", "75", "95"].map((q) => text(spread[q]));
+
+function times_table(model) {
+    return table(
+        "Time to the first solution",
+        [
+            "problem", "planner", "25 %", "median", "75 %", "95 %", "verified, median", "95 %", "whole run, median",
+            "95 %"
+        ],
+        2,
+        cells_of(model).map(
+            ({cell, place}) =>
+                [...place, ...quantiles(cell.first_solution_s, seconds), seconds(cell.verified_s["50"]),
+                 seconds(cell.verified_s["95"]), seconds(cell.whole_run_s["50"]), seconds(cell.whole_run_s["95"])]));
+}
+
+function costs_table(model) {
+    const moments = model.experiments[0]?.cells[0]?.cost_over_time ?? [];
+    const text = (spread) => Number.isFinite(spread["25"]) ?
+        `${cost(spread["50"])} [${cost(spread["25"])}, ${cost(spread["75"])}]` :
+        "none";
+    return table(
+        "Costs, median and quartiles",
+        ["problem", "planner", ...moments.map(({time_s}) => `after ${seconds(time_s)}`), "flown", "least flown"], 2,
+        cells_of(model).map(
+            ({cell, place}) =>
+                [...place, ...cell.cost_over_time.map((at) => text(at.cost)), text(cell.flown_cost),
+                 cost(cell.flown_cost["0"])]));
+}
+
+function pairs_table({figures}) {
+    return table(
+        "Paired comparisons",
+        [
+            "problem", "first", "second", "measure", "first smaller", "second smaller", "equal", "sign test p", "pairs",
+            "median difference", "signed rank p"
+        ],
+        4,
+        figures.comparisons.map(
+            (pair) =>
+                [pair.experiment, pair.first, pair.second, pair.measure, String(pair.first_smaller),
+                 String(pair.second_smaller), String(pair.equal), p_value(pair.sign_test_p), String(pair.pairs),
+                 cost(pair.median_difference ?? NaN), p_value(pair.signed_rank_p)]));
+}
+
+function margins_tables({figures}) {
+    return figures.margins.map((finding) => [
+        h("p", null,
+          `${finding.variant} ${finding.algorithm}: `,
+          finding.safe_margin_m === null ?
+              "no margin that was tried is safe on all problems." :
+              `safe on all problems from a margin of ${plain(finding.safe_margin_m)} m on.`),
+        table(
+            "Margins",
+            ["problem", "safe there from", "solved with the margin that is safe everywhere"], 1,
+            finding.experiments.map(
+                ({experiment, safe_margin_m, solved_when_safe_everywhere: solved}) =>
+                    [experiment, safe_margin_m === null ? "no margin tried" : `${plain(safe_margin_m)} m`,
+                     solved === null ? "none" : share(solved)]))
+    ]);
+}
+
+function bars_table({figures}) {
+    return table(
+        "Bars", ["problem", "planner", "bar", "found", ""], 4,
+        figures.bars.map(
+            ({experiment, planner, bar, found, kept}) => [experiment, planner, bar, found, kept ? "kept" : "missed"]));
+}
+
+function failures_list({figures}) {
+    if (figures.failures.length === 0) {
+        return h("p", null, "Every run has a flight that held.");
+    }
+    return table(
+        "Failures", ["problem", "planner", "cause", "count", "seeds"], 3,
+        figures.failures.map(
+            ({experiment, planner, cause, seeds}) =>
+                [experiment, planner, cause, String(seeds.length), seeds.join(" ")]));
+}
+
+export function make_tables(model) {
+    const {figures} = model;
+    const count = figures.failures.reduce((sum, {seeds}) => sum + seeds.length, 0);
+    return h(
+        "section", {class: "tables", id: "tables", "aria-labelledby": "tables-title"},
+        h("h2", {id: "tables-title"}, "Tables"),
+        h("p", {class: "muted note"},
+          "Shares are of all attempted seeds, with 95 % Wilson intervals. A failed flight: the reported plan, flown with " +
+              "direct aerodynamics and held at the goal, collided, left the flyable area, became unstable or missed the " +
+              "goal. Discarded: plans of the aware planner that failed so and were not reported. Verified: to the first " +
+              "plan that may be reported, which the aware planner has flown with direct aerodynamics by then."),
+        flights_table(model), figures.bars.length > 0 ? folded(`The ${figures.bars.length} bars`, bars_table(model)) : null,
+        folded("Time to the first solution", times_table(model)), folded("Costs", costs_table(model)),
+        figures.comparisons.length > 0 ? folded("Paired comparisons", pairs_table(model)) : null,
+        figures.margins.length > 0 ? folded("Margins", margins_tables(model).flat()) : null,
+        folded(`The ${number(count, ",d")} runs without a flight that held`, failures_list(model)),
+        figures.left_out.length > 0 ?
+            h("p", {class: "muted"}, "Left out, since it does not exist: ", foreign(figures.left_out.join("; "))) :
+            null);
+}
+
+export function make_settings({figures}) {
+    return h(
+        "section", {class: "repeat", "aria-labelledby": "settings-title"},
+        h("h2", {id: "settings-title"}, "What was run"),
+        h("dl", {class: "pairs"},
+          Object.entries(figures.settings)
+              .map(([name, value]) => h("div", null, h("dt", null, foreign(name)),
+                                        h("dd", {class: /^[0-9a-f]{64}$/.test(value) ? "hash" : null}, foreign(value))))));
+}

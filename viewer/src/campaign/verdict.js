@@ -1,0 +1,83 @@
+// The head of the page: what campaign it is, and what came of it.
+
+import {foreign, h} from "../dom.js";
+import {number} from "../format.js";
+
+const counted = (count, one, many) => `${number(count, ",d")} ${count === 1 ? one : many}`;
+
+/** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
+export function verdict_of(model) {
+    const {bars, failures, runs_done, runs_planned} = model.figures;
+    const without = failures.reduce((sum, {seeds}) => sum + seeds.length, 0);
+    const held = `${counted(runs_done, "run", "runs")}: ${number(runs_done - without, ",d")} ended with a flight that ` +
+        `held, ${number(without, ",d")} did not.`;
+    const missed = bars.filter((bar) => !bar.kept);
+    if (model.is_unfinished) {
+        return {
+            kind: "none",
+            mark: "…",
+            title: `Not finished: ${number(runs_done, ",d")} of ${number(runs_planned, ",d")} runs`,
+            lines: [held, "All figures are of the runs so far; bars cannot be judged yet."]
+        };
+    }
+    if (bars.length === 0) {
+        return {kind: "none", mark: "–", title: "Finished; the campaign sets no bars", lines: [held]};
+    }
+    if (missed.length === 0) {
+        return {kind: "good", mark: "✓", title: `All ${bars.length} bars are kept`, lines: [held]};
+    }
+    const told = missed.slice(0, 5).map(
+        ({experiment, planner, bar, found}) => `${experiment}, ${planner}: ${bar}; found ${found}.`);
+    if (missed.length > told.length) {
+        told.push(`And ${missed.length - told.length} more.`);
+    }
+    return {
+        kind: "bad",
+        mark: "✕",
+        title: `${missed.length} of ${bars.length} bars ${missed.length === 1 ? "is" : "are"} missed`,
+        lines: [held, ...told]
+    };
+}
+
+export function make_head(model, theme_switch) {
+    const {settings, stop_at_first_solution} = model.figures;
+    const fact = (key, value) => h("span", {class: "fact"}, h("span", {class: "muted"}, key), " ", foreign(value));
+    const limits = [
+        settings.time_limit_s === "none" ? null : `${settings.time_limit_s} s`,
+        settings.max_iterations === "none" ? null : `${settings.max_iterations} iterations`,
+        stop_at_first_solution ? "up to the first solution" : null
+    ].filter((limit) => limit !== null);
+    return h(
+        "header", {class: "head"},
+        h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash campaign"), theme_switch),
+        h("h1", null, foreign(settings.campaign ?? "unnamed campaign")),
+        settings.description && settings.description !== "none" ?
+            h("p", {class: "description"}, foreign(settings.description)) :
+            null,
+        h("p", {class: "facts"}, fact("a search", limits.join(", ") || "without limits"), fact("seeds", settings.seeds),
+          fact("searches at a time", settings.jobs), fact("on", settings.processor),
+          fact("commit", settings.commit)));
+}
+
+export function make_verdict(model) {
+    const {kind, mark, title, lines} = verdict_of(model);
+    const percent = (share) => number(100 * share, ".1f");
+    return h(
+        "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
+        h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
+          h("div", null, h("h2", {id: "verdict-title"}, title),
+            lines.map((text) => h("p", null, foreign(text))))),
+        h("dl", {class: "figures of-planners"},
+          model.planners.map(
+              ({name, totals}) => h(
+                  "div", null, h("dt", null, foreign(name)),
+                  h("dd", null,
+                    h("span", {class: "figure"},
+                      `${number(totals.held.hits, ",d")} of ${number(totals.held.attempts, ",d")}`),
+                    h("span", {class: "muted"}, "solved, and the flight held"),
+                    h("span", {class: "muted"},
+                      totals.failed_flights.attempts > 0 ?
+                          `failed flights: ${number(totals.failed_flights.hits, ",d")}, 95 % interval ${
+                              percent(totals.failed_flights.low)} to ${percent(totals.failed_flights.high)} %` :
+                          "not run yet"))))));
+}
