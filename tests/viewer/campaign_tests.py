@@ -163,6 +163,6 @@ class Campaign(page_test.BrowserTest):
         self.assertTrue(self.browser.open(os.path.join(folder, "report.html")))
         with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
             self.assertEqual(self.js("return downwash.figures"), json.load(file))
-        self.assertEqual(self.every("section.figure", "e.id"), FIGURES + ["margins"])
+        self.assertEqual(self.every("section.figure", "e.id"), ["margins"] + FIGURES)
         self.assertEqual(self.browser.complaints(), [])
         self.assertEqual(self.browser.requests(), [])

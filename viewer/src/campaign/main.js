@@ -36,9 +36,9 @@ function make_legend({planners, shown}) {
 function assemble(page, model, theme) {
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#success"}, "To the figures"), make_head(model, theme.element),
-        h("main", null, make_verdict(model), make_legend(model), make_success(model), make_costs(model),
+        h("main", null, make_verdict(model), make_margins(model), make_legend(model), make_success(model), make_costs(model),
           make_flown_costs(model), make_cost_shares(model), make_first_solutions(model), make_pairs(model),
-          make_margins(model), make_tables(model), make_settings(model)),
+          make_tables(model), make_settings(model)),
         make_foot(model.figures.settings.version));
     document.title = `${model.figures.settings.campaign ?? "Campaign"} · Downwash`;
 }

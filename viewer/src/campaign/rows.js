@@ -6,6 +6,7 @@ import {shown_cells} from "./model.js";
 import {around, make_figure, make_panel, plain} from "./panel.js";
 
 const row_height = 40;
+const pair_height = 54;
 const p_text = (p) => (p === null ? "" : p < 0.0001 ? "p < 0.0001" : `p = ${number(p, ".2g")}`);
 
 /** Dots spread evenly across their row, the same way each time. */
@@ -22,10 +23,12 @@ function dots(values, y, frame, style) {
                                                []);
 }
 
-const row_at = (frame, index) => frame.top + (index + 0.64) * row_height;
+/** Middle of a row's marks, below its words. */
+const row_at = (frame, index, height) => frame.top + (index + 1) * height - 14;
 
 function row_name(frame, y, text) {
-    return s("text", {class: "row-name", x: frame.left, y: y - 12}, isolated(text, 80));
+    const letters = Math.floor((frame.right - frame.left) / 6.3);
+    return s("text", {class: "row-name", x: frame.left, y}, isolated(text, letters));
 }
 
 function box(spread, y, frame, style) {
@@ -69,11 +72,11 @@ function make_boxes(model, {id, title, note, measure, axis_of}) {
             x: {...axis, domain: around(Math.min(...all), Math.max(...all), {is_log: axis.is_log})},
             y: null,
             draw: (frame) => cells.map((cell, index) => {
-                const y = row_at(frame, index), {style, name} = cell.planner;
+                const y = row_at(frame, index, row_height), {style, name} = cell.planner;
                 const without = cell.seeds[measure].filter((value) => !Number.isFinite(value)).length;
                 return [
                     dots(cell.seeds[measure], y, frame, style), box(cell[measure], y, frame, style),
-                    row_name(frame, y, name + (without > 0 ? `, ${without} of ${cell.seeds.seed.length} without` : ""))
+                    row_name(frame, y - 12, name + (without > 0 ? `, ${without} of ${cell.seeds.seed.length} without` : ""))
                 ];
             }),
         };
@@ -131,7 +134,7 @@ function make_pairs_of(model, measure, name, unit_for) {
                         pair.second_smaller} seeds, median difference ${plain(pair.median_difference)}`);
                 return {
                     label: `Differences on equal seeds. ${told.join("; ")}.`,
-                    height: 42 + row_height * rows.length + 8,
+                    height: 42 + pair_height * rows.length + 8,
                     left: 12,
                     right: 12,
                     x: {
@@ -142,17 +145,18 @@ function make_pairs_of(model, measure, name, unit_for) {
                     draw: (frame) => [
                         s("path", {class: "zero", d: `M${frame.x(0)} ${frame.top}V${frame.bottom}`}),
                         rows.map(({pair, first, values}, index) => {
-                            const y = row_at(frame, index), {style} = first.planner;
+                            const y = row_at(frame, index, pair_height), {style} = first.planner;
                             const median = pair.median_difference;
                             return [
                                 dots(values, y, frame, style),
                                 median === null ?
                                     [] :
                                     s("path", {class: `median ${style}`, d: `M${frame.x(median)} ${y - 8}v16`}),
+                                row_name(frame, y - 27, `${pair.first} − ${pair.second}`),
                                 row_name(
-                                    frame, y,
-                                    `${pair.first} − ${pair.second}: ${pair.first_smaller} : ${
-                                        pair.second_smaller}, ${p_text(pair.sign_test_p)}`)
+                                    frame, y - 13,
+                                    `smaller ${pair.first_smaller} : ${pair.second_smaller}, ${
+                                        p_text(pair.sign_test_p)}`)
                             ];
                         })
                     ],
