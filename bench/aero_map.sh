@@ -4,7 +4,7 @@ set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
 ./dev build --target bench_aero_map >&2
-commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+commit=$(bench/source_commit.sh)
 mkdir -p bench/results
 build/bench/bench_aero_map bench/aero_map/girder_deck.yaml problems/*.yaml --commit "$commit" "$@" \
     >bench/results/aero_map.md.new

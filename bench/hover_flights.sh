@@ -4,7 +4,7 @@ set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
 ./dev build --target bench_hover_flights >&2
-commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+commit=$(bench/source_commit.sh)
 problems=(problems/bridge_inspection.yaml)  # first: its bounds hold the random scenes
 for file in problems/*.yaml; do
     # In open air there is nothing to be unstable about.

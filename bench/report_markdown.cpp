@@ -49,10 +49,10 @@ class Document {
     [[nodiscard]] std::string written() {
         head();
         bars();
+        margins();
         flights();
         first_solutions();
         costs();
-        margins();
         comparisons();
         failures();
         return text_;

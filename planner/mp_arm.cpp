@@ -226,6 +226,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     result.states_checked = counts.states;
     result.refused_collision = counts.refused_collision;
     result.refused_bounds = counts.refused_bounds;
+    result.nearest_approach_m = space.goal_distance_m(start);
     if (definition->getSolutionPath() != nullptr) {
         const auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
         const std::vector<Waypoint> waypoints = unwrapped(*path, space, start);
@@ -233,6 +234,9 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
         const bool is_exact = definition->hasExactSolution();
         if (is_exact || waypoints.size() > 1) {
             result.status = is_exact ? Status::solved : Status::approximate;
+            const Waypoint& end = waypoints.back();
+            result.nearest_approach_m =
+                std::min(result.nearest_approach_m, space.goal_distance_m({end.x_m, end.z_m, end.arm_rad}));
             result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
                                      model.tick().tick_s);
             if (is_exact && !best_cost) {

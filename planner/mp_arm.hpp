@@ -18,7 +18,8 @@ struct GeometricResult {
     std::uint64_t states_checked = 0;
     std::uint64_t refused_collision = 0;
     std::uint64_t refused_bounds = 0;
-    std::vector<TreeNode> tree;  ///< if it was to be kept
+    std::vector<TreeNode> tree;     ///< if it was to be kept
+    double nearest_approach_m = 0;  ///< how near to the goal region the start, or the end of the plan, is
 };
 
 /// A glance at a running geometric search.

@@ -71,8 +71,8 @@ struct SearchRecord {
     std::uint64_t states_checked = 0;  ///< collision queries of single states
     std::vector<Improvement> improvements;
     std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
-    /// Of a search by flights that found no plan: how near to the goal region the vehicle was brought [m], and what
-    /// stopped it there.
+    /// Of a search that found no plan: how near to the goal region the vehicle was brought [m], and, of a search by
+    /// flights, what stopped it there.
     std::optional<double> nearest_approach_m;
     std::optional<Obstruction> obstruction;
 };

@@ -106,6 +106,9 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     record.rejected = planning::no_rejections();
     record.rejected["collision"] = result.refused_collision;
     record.rejected["bounds"] = result.refused_bounds;
+    if (result.status != Status::solved) {
+        record.nearest_approach_m = result.nearest_approach_m;
+    }
     if (result.plan && result.plan->reference.back().tick > most_plan_ticks) {
         record.rejected["too_long"] = 1;
         record.improvements.clear();

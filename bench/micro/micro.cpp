@@ -12,6 +12,7 @@
 #include "bridge.hpp"
 #include "downwash/aeromap/map_cache.hpp"
 #include "downwash/aeromap/volume_map.hpp"
+#include "downwash/planner/solve.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 
@@ -250,6 +251,24 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     }
     return true;
 }();
+
+/// Edges that a whole search flies, up to the same iteration whatever the number of threads.
+void search(benchmark::State& state, int threads) {
+    const Bridge& bridge = Bridge::get();
+    Problem problem = bridge.problem;
+    problem.planner.max_iterations = 1000;
+    problem.planner.time_limit_s.reset();
+    SolveOptions how;
+    how.threads = threads;
+    how.map = bridge.map;
+    std::int64_t edges = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        edges += static_cast<std::int64_t>(solve(problem, how).planning.edges_simulated);
+    }
+    state.SetItemsProcessed(edges);
+}
+BENCHMARK_CAPTURE(search, one_thread, 1)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(search, two_threads, 2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {

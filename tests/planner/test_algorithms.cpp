@@ -107,7 +107,9 @@ TEST_CASE("no algorithm calls a walled problem solved") {
         CHECK(solution.planning.improvements.empty());
         CHECK_FALSE(solution.planning.first_solution_wall_s);
         CHECK(solution.planning.iterations <= 200);
-        CHECK(solution.planning.nearest_approach_m.has_value() == (variant != Variant::mp_arm));
+        REQUIRE(solution.planning.nearest_approach_m.has_value());
+        CHECK(*solution.planning.nearest_approach_m > 0);
+        CHECK(solution.planning.obstruction.has_value() <= (variant != Variant::mp_arm));
         if (solution.plan) {
             CHECK(solution.execution->outcome != Outcome::ok);
             const ReferencePoint& end = solution.plan->reference.back().point;
