@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the page of a run, one HTML file without data: viewer/build.sh OUT.html
-# Needs esbuild, node-d3 and libjs-three of Debian; the same sources and packages give the same bytes.
+# Needs esbuild ($ESBUILD may name it), node-d3 and libjs-three of Debian; the same sources and packages give the same bytes.
 set -euo pipefail
 
 if [[ $# -ne 1 ]]; then
@@ -16,7 +16,7 @@ trap 'rm -rf "$parts"' EXIT
 
 # Browsers of early 2023: the first that can inflate in Firefox and Safari.
 bundle() {
-    NODE_PATH=/usr/share/nodejs esbuild "$@" --bundle --minify --charset=utf8 --legal-comments=none \
+    NODE_PATH=/usr/share/nodejs "${ESBUILD:-esbuild}" "$@" --bundle --minify --charset=utf8 --legal-comments=none \
         --log-level=warning --format=iife --target=chrome110,firefox113,safari16.4
 }
 bundle src/main.js --loader:.txt=text --outfile="$parts/page.js"
