@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
@@ -123,6 +125,7 @@ std::string cases_of(const CLI::App& program) {
 
 struct ManualArguments {
     std::vector<std::string> command;
+    std::optional<std::string> all;
     std::string shell;
 };
 
@@ -141,15 +144,31 @@ ExitCode print_man_page(const CLI::App& program, const std::vector<std::string>&
     return ExitCode::done;
 }
 
+ExitCode write_man_pages(const CLI::App& program, const std::string& folder) {
+    const OutputFolder pages(folder);
+    for_each_command(program, [&pages](const CLI::App& command) {
+        pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
+    });
+    return ExitCode::done;
+}
+
 }  // namespace
 
 void add_manual(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<ManualArguments>();
     CLI::App* manual = program.add_subcommand(
         "manual", "Print a manual page: downwash manual solve | man -l -; without a command that of the program");
-    manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
+    CLI::Option* command = manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
+    manual
+        ->add_option("--all", arguments->all,
+                     "write the pages of all commands to a folder instead: downwash-solve.1...")
+        ->type_name("DIR")
+        ->excludes(command);
     manual->callback([arguments, &program, &action] {
-        action = [arguments, &program] { return print_man_page(program, arguments->command); };
+        action = [arguments, &program] {
+            return arguments->all ? write_man_pages(program, *arguments->all)
+                                  : print_man_page(program, arguments->command);
+        };
     });
     CLI::App* completion = program.add_subcommand(
         "completion", "Print what completes command lines in a shell: source <(downwash completion bash)");
