@@ -118,7 +118,7 @@ std::string words_after(const CLI::App& command) {
 std::string cases_of(const CLI::App& program) {
     std::string cases;
     for_each_command(program, [&cases](const CLI::App& command) {
-        cases += fmt::format("        '{}') words='{}' ;;\n", full_name(command), words_after(command));
+        cases += fmt::format("        '{}') next='{}' ;;\n", full_name(command), words_after(command));
     });
     return cases;
 }
@@ -197,10 +197,13 @@ std::string man_page(const CLI::App& command) {
 
 std::string completion_script(const CLI::App& program, const std::string& shell) {
     const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
+    // Found on zsh's path of functions, all this is the body of the first call.
+    const std::string tail =
+        shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
     return head +
            "# Completes the commands and options of downwash, and names of files.\n_downwash() {\n"
-           "    local given=downwash word words\n"
-           "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
+           "    local given=downwash word next\n"
+           "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
            "        case \"$given $word\" in\n" +
            [&program] {
                std::string names;
@@ -213,11 +216,12 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            }() +
            "        esac\n    done\n    case \"$given\" in\n" + cases_of(program) +
            "    esac\n"
-           "    COMPREPLY=($(compgen -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+           "    COMPREPLY=($(compgen -W \"$next\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
            "    [[ ${#COMPREPLY[@]} -gt 0 || ${COMP_WORDS[COMP_CWORD]} == -* ]] ||\n"
            "        COMPREPLY=($(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
            "}\n"
-           "complete -o filenames -F _downwash downwash\n";
+           "complete -o filenames -F _downwash downwash\n" +
+           tail;
 }
 
 }  // namespace downwash::cli
