@@ -14,7 +14,9 @@ namespace downwash {
 /// Keys whose values cannot be trusted, and with them everything above and below them.
 class DOWNWASH_EXPORT FaultyKeys {
  public:
+    /// Marks one key.
     void add(std::string key) { keys_.push_back(std::move(key)); }
+    /// Marks the key of every fault.
     void add(const std::vector<Fault>& faults);
 
     /// Whether a faulty key is this one, stands below it, or above it. An index in a key path starts a new level.
@@ -24,6 +26,7 @@ class DOWNWASH_EXPORT FaultyKeys {
     std::vector<std::string> keys_;
 };
 
+/// Puts faults behind those that are known.
 inline void append(std::vector<Fault>& faults, const std::vector<Fault>& more) {
     faults.insert(faults.end(), more.begin(), more.end());
 }

@@ -19,6 +19,7 @@ struct Fault {
 /// Thrown at the edge of a module when input cannot be used; carries every fault that was found in one reading.
 class DOWNWASH_EXPORT InputError : public std::runtime_error {
  public:
+    /// @pre there is at least one fault
     explicit InputError(std::vector<Fault> faults);
     [[nodiscard]] const std::vector<Fault>& faults() const noexcept { return faults_; }
 

@@ -9,19 +9,24 @@
 
 namespace downwash::lane {
 
+/// `yes` where the condition holds, `no` where not; both are computed.
 inline double select(bool condition, double yes, double no) {
     return condition ? yes : no;
 }
+/// Correctly rounded.
 inline double sqrt(double x) {
     return std::sqrt(x);
 }
+/// Without its sign, that of zeros and NaN too.
 inline double abs(double x) {
     return std::fabs(x);
 }
+/// The lesser; a when either is NaN.
 template <class T>
 T min(T a, T b) {
     return select(b < a, b, a);
 }
+/// The greater; a when either is NaN.
 template <class T>
 T max(T a, T b) {
     return select(a < b, b, a);

@@ -13,11 +13,12 @@ namespace downwash {
 /// Faults of one text file, each with its place; reading ends with the twentieth.
 class DOWNWASH_EXPORT LineFaults {
  public:
+    /// @param file its name in messages
     explicit LineFaults(std::string file) : file_(std::move(file)) {}
 
-    /// @param line counted from 1; 0 for the file as a whole  @throws InputError with the twentieth
+    /// In a line, counted from 1; 0 stands for the file as a whole. @throws InputError with the twentieth
     void add(std::size_t line, const std::string& message);
-    /// @param column of the line's bytes, counted from 1
+    /// At a column, counted from 1 in bytes of the line. @throws InputError with the twentieth
     void add(std::size_t line, std::size_t column, const std::string& message);
     /// @throws InputError when there are any
     void throw_any() const;

@@ -101,13 +101,21 @@ struct Parameter : ParameterInfo {
     std::function<bool(const Model&, std::size_t)> applies;        ///< empty function: always
     std::function<std::string(const Model&, std::size_t)> digest;  ///< of a file: SHA-256 of what was read from it
 
+    /// Values greater than `low` make sense.
     Parameter above(double low) && { return range.low = low, range.excludes_low = true, std::move(*this); }
+    /// `low` and greater values make sense.
     Parameter at_least(double low) && { return range.low = low, std::move(*this); }
+    /// Values less than `high` make sense.
     Parameter below(double high) && { return range.high = high, range.excludes_high = true, std::move(*this); }
+    /// `high` and lesser values make sense.
     Parameter at_most(double high) && { return range.high = high, std::move(*this); }
+    /// A file must have it.
     Parameter is_required() && { return required = true, std::move(*this); }
+    /// See ParameterInfo::exclusive.
     Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
+    /// See ParameterInfo::can_be_none.
     Parameter or_none() && { return can_be_none = true, std::move(*this); }
+    /// See ParameterInfo::can_be_file.
     Parameter or_file() && { return can_be_file = true, std::move(*this); }
     /// @param is_group whether it has the form of a group now   @param begin gives it that form
     Parameter or_group(std::function<bool(const Model&)> is_group, std::function<void(Model&)> begin) && {
@@ -118,6 +126,7 @@ struct Parameter : ParameterInfo {
         resize = [begin = std::move(begin)](Model& model, std::size_t, std::size_t) { begin(model); };
         return std::move(*this);
     }
+    /// Applies only when a test of the model holds, which `when` puts into words: see ParameterInfo::condition.
     Parameter only(std::string_view when, std::function<bool(const Model&, std::size_t)> test) && {
         return condition = when, applies = std::move(test), std::move(*this);
     }

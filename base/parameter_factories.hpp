@@ -21,16 +21,21 @@ decltype(auto) at(const Member& member, Model& model, std::size_t index) {
     }
 }
 
+/// The type of a member that a lambda names.
 template <class Model, class Member>
 using MemberType = std::remove_cvref_t<decltype(at(std::declval<const Member&>(), std::declval<Model&>(), 0))>;
 
+/// Whether a member may hold nothing: `null` in a file.
 template <class T>
 struct IsOptional : std::false_type {};
+/// One that may.
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {
+    /// What it holds otherwise.
     using Inner = T;
 };
 
+/// A row that says what stands where, without access to it.
 template <class Model>
 Parameter<Model> row(ParameterKind kind, std::string_view path, std::string_view description) {
     Parameter<Model> parameter;
@@ -69,26 +74,32 @@ Parameter<Model> member_row(ParameterKind kind, std::string_view path, std::stri
     return parameter;
 }
 
+/// A finite number; the member is a double or an optional one.
 template <class Model, class Member>
 Parameter<Model> number(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, double>(ParameterKind::number, path, description, member);
 }
+/// A whole number that is not negative; the member is of an integer type or an optional one.
 template <class Model, class Member>
 Parameter<Model> integer(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, std::uint64_t>(ParameterKind::integer, path, description, member);
 }
+/// True or false.
 template <class Model, class Member>
 Parameter<Model> flag(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, bool>(ParameterKind::flag, path, description, member);
 }
+/// Any text.
 template <class Model, class Member>
 Parameter<Model> text(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, std::string>(ParameterKind::text, path, description, member);
 }
+/// Text that may become part of a path.
 template <class Model, class Member>
 Parameter<Model> identifier(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, std::string>(ParameterKind::identifier, path, description, member);
 }
+/// A list of points of three coordinates.
 template <class Model, class Member>
 Parameter<Model> points(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, std::vector<Vector3>>(ParameterKind::points, path, description, member);

@@ -25,6 +25,7 @@ struct ExecuteArguments {
     std::string plan;
     std::string aero = "on";
     std::optional<std::string> out;
+    bool no_cache = false;
     bool as_json = false;
 };
 
@@ -71,7 +72,7 @@ ExitCode run(const ExecuteArguments& arguments) {
     const OutputFolder folder(folder_for(arguments, problem));
     fly(problem, arguments.aero == "on", solution);
     const std::string json = write_results(folder, problem, arguments.problem, solution);
-    write_page(folder, nullptr, cache_folder());
+    write_page(folder, nullptr, arguments.no_cache ? fs::path() : cache_folder());
     fmt::print("{}",
                arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
@@ -97,6 +98,8 @@ void add_execute(CLI::App& program, Action& action) {
             "folder of the results; default downwash-out/NAME-VARIANT-SEED/, with -executed behind it when the "
             "plan itself lies there")
         ->type_name("DIR");
+    command->add_flag("--no-cache", arguments->no_cache,
+                      "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
     command->add_flag("--json", arguments->as_json, "print solution.json on standard output instead of a summary");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

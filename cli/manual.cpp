@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
@@ -116,13 +118,14 @@ std::string words_after(const CLI::App& command) {
 std::string cases_of(const CLI::App& program) {
     std::string cases;
     for_each_command(program, [&cases](const CLI::App& command) {
-        cases += fmt::format("        '{}') words='{}' ;;\n", full_name(command), words_after(command));
+        cases += fmt::format("        '{}') next='{}' ;;\n", full_name(command), words_after(command));
     });
     return cases;
 }
 
 struct ManualArguments {
     std::vector<std::string> command;
+    std::optional<std::string> all;
     std::string shell;
 };
 
@@ -141,15 +144,31 @@ ExitCode print_man_page(const CLI::App& program, const std::vector<std::string>&
     return ExitCode::done;
 }
 
+ExitCode write_man_pages(const CLI::App& program, const std::string& folder) {
+    const OutputFolder pages(folder);
+    for_each_command(program, [&pages](const CLI::App& command) {
+        pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
+    });
+    return ExitCode::done;
+}
+
 }  // namespace
 
 void add_manual(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<ManualArguments>();
     CLI::App* manual = program.add_subcommand(
         "manual", "Print a manual page: downwash manual solve | man -l -; without a command that of the program");
-    manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
+    CLI::Option* command = manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
+    manual
+        ->add_option("--all", arguments->all,
+                     "write the pages of all commands to a folder instead: downwash-solve.1...")
+        ->type_name("DIR")
+        ->excludes(command);
     manual->callback([arguments, &program, &action] {
-        action = [arguments, &program] { return print_man_page(program, arguments->command); };
+        action = [arguments, &program] {
+            return arguments->all ? write_man_pages(program, *arguments->all)
+                                  : print_man_page(program, arguments->command);
+        };
     });
     CLI::App* completion = program.add_subcommand(
         "completion", "Print what completes command lines in a shell: source <(downwash completion bash)");
@@ -178,10 +197,13 @@ std::string man_page(const CLI::App& command) {
 
 std::string completion_script(const CLI::App& program, const std::string& shell) {
     const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
+    // Found on zsh's path of functions, all this is the body of the first call.
+    const std::string tail =
+        shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
     return head +
            "# Completes the commands and options of downwash, and names of files.\n_downwash() {\n"
-           "    local given=downwash word words\n"
-           "    for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
+           "    local given=downwash word next\n"
+           "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
            "        case \"$given $word\" in\n" +
            [&program] {
                std::string names;
@@ -194,11 +216,12 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            }() +
            "        esac\n    done\n    case \"$given\" in\n" + cases_of(program) +
            "    esac\n"
-           "    COMPREPLY=($(compgen -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+           "    COMPREPLY=($(compgen -W \"$next\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
            "    [[ ${#COMPREPLY[@]} -gt 0 || ${COMP_WORDS[COMP_CWORD]} == -* ]] ||\n"
            "        COMPREPLY=($(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
            "}\n"
-           "complete -o filenames -F _downwash downwash\n";
+           "complete -o filenames -F _downwash downwash\n" +
+           tail;
 }
 
 }  // namespace downwash::cli

@@ -1,9 +1,14 @@
-# cmake --install: the program, its problems, and the package that other projects find with find_package(downwash).
+# cmake --install: the program, its manual pages, completions and problems, and the package that other projects find with find_package(downwash).
 
 include(CMakePackageConfigHelpers)
 
 if(TARGET downwash)
   install(TARGETS downwash RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+if(DOWNWASH_HELP)
+  install(DIRECTORY ${DOWNWASH_HELP}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(FILES ${DOWNWASH_HELP}/downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
 install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems

@@ -149,6 +149,7 @@ ControlStep<T> model_inversion_control(const PlantModel& model, const Controller
     return step;
 }
 
+/// The same where the motion at q and u is not known yet.
 template <class T>
 ControlStep<T> model_inversion_control(const PlantModel& model, const ControllerGains& gains, const T q[4],
                                        const T u[4], const ControllerState<T>& memory, const Setpoint<T>& reference,

@@ -93,7 +93,9 @@ T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
 }
 
 /// du/dt of the plant under the free-air thrusts of its rotors.
-/// @param motion at q and u: motion_at(model, q, u)
+/// @param q coordinates [m, m, rad, rad]   @param motion at q and the speeds u: motion_at(model, q, u)
+/// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench()
+/// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
 template <class T, class Factor>
 void accelerations(const PlantModel& model, const T q[4], const Motion<T>& motion, const T thrust_n[max_rotors],
                    T joint_torque_nm, const Factor& factor, T du[4]) {
@@ -106,7 +108,7 @@ void accelerations(const PlantModel& model, const T q[4], const Motion<T>& motio
 
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surface effect
 /// is evaluated at the rotor positions of every stage.
-/// @param motion that of the state
+/// @param motion that of the state   @param dt_s > 0   @param factor as for rotor_wrench()
 template <class T, class Factor>
 PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
                           const PlantCommand<T>& command, T dt_s, const Factor& factor) {
@@ -175,6 +177,7 @@ PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, c
     return next;
 }
 
+/// The same where the motion of the state is not known yet.
 template <class T, class Factor>
 PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
                           const Factor& factor) {
@@ -183,6 +186,7 @@ PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, c
 
 /// The tick as one Runge-Kutta step; for planning.
 struct OneStep {
+    /// The state after `dt_s`; see flight_step().
     template <class T, class Factor>
     PlantState<T> operator()(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
                              const PlantCommand<T>& command, T dt_s, const Factor& factor) const {
@@ -197,6 +201,7 @@ struct RefinedStep {
     double tolerance = 1e-7;  ///< of every coordinate and rate, SI units
     int most_halvings = 8;
 
+    /// The state after `dt_s`; see flight_step().
     template <class Factor>
     PlantState<double> operator()(const PlantModel& model, const PlantState<double>& state,
                                   const Motion<double>& motion, const PlantCommand<double>& command, double dt_s,

@@ -16,6 +16,7 @@ struct Attitude {
     T joint_x, joint_z;  ///< r: centre of mass of the multirotor -> joint, world [m]
 };
 
+/// The attitude at a pitch and at an arm angle relative to the multirotor. @pre both together at most 1e5 rad
 template <class T>
 Attitude<T> attitude(const PlantModel& model, T pitch_rad, T arm_rad) {
     Attitude<T> a;
@@ -38,6 +39,7 @@ struct EquationsOfMotion {
     T bias[4];           ///< c [N, N, N m, N m]
 };
 
+/// The equations at an attitude and at speeds u [m/s, m/s, rad/s, rad/s].
 template <class T>
 EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude<T>& a, const T u[4]) {
     EquationsOfMotion<T> e;
@@ -73,6 +75,7 @@ struct Motion {
     EquationsOfMotion<T> equations;
 };
 
+/// The motion at coordinates q [m, m, rad, rad] with speeds u [m/s, m/s, rad/s, rad/s].
 template <class T>
 Motion<T> motion_at(const PlantModel& model, const T q[4], const T u[4]) {
     const Attitude<T> a = attitude(model, q[2], q[3]);
@@ -89,6 +92,7 @@ struct RotationalSystem {
     T arm_coupling;      ///< torque on the arm from the translation [N m]
 };
 
+/// The system under the generalised forces Q of x, z and pitch [N, N, N m].
 template <class T>
 RotationalSystem<T> rotational_system(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3]) {
     RotationalSystem<T> s;

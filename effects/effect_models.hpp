@@ -34,6 +34,7 @@ struct EffectModelInfo {
 /// Every model there is, in the order of EffectModel.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const EffectModelInfo> effect_models();
 
+/// What is known of one of them.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo& info(EffectModel model);
 
 /// The model of that name; nullptr when there is none.

@@ -5,9 +5,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "downwash/base/little_endian.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/exports/formats.hpp"
-#include "downwash/exports/solid_surface.hpp"
+#include "downwash/scene/obstacle_placement.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 // glTF 2.0 in one binary file (Khronos, "glTF 2.0 Specification", 4.4): a head, a piece of JSON, a piece of numbers.
 
@@ -20,12 +22,6 @@ using Json = nlohmann::ordered_json;
 constexpr int unsigned_int_type = 5125, float_type = 5126;
 constexpr int vertex_buffer = 34962, index_buffer = 34963;
 constexpr int line_strip_mode = 3;
-
-void append(std::string& bytes, std::uint32_t word) {
-    for (int shift = 0; shift < 32; shift += 8) {
-        bytes.push_back(static_cast<char>((word >> shift) & 0xFFU));
-    }
-}
 
 struct Quaternion {
     double x = 0, y = 0, z = 0, w = 1;
@@ -57,7 +53,7 @@ class Gltf {
             most.push_back(high);
         }
         for (const float number : numbers) {
-            append(bytes_, std::bit_cast<std::uint32_t>(number));
+            append_little_endian(bytes_, std::bit_cast<std::uint32_t>(number));
         }
         constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
         return add_accessor({{"componentType", float_type},
@@ -68,7 +64,7 @@ class Gltf {
                             4 * numbers.size(), is_vertex ? vertex_buffer : 0);
     }
 
-    std::size_t add_mesh(const Surface& surface, Material material) {
+    std::size_t add_mesh(const TriangleMesh& surface, Material material) {
         std::vector<float> vertices;
         for (const Vector3& vertex_m : surface.vertices_m) {
             vertices.insert(vertices.end(), {static_cast<float>(vertex_m[0]), static_cast<float>(vertex_m[1]),
@@ -77,7 +73,7 @@ class Gltf {
         const std::size_t positions = add_floats(vertices, 3, true);
         for (const auto& triangle : surface.triangles) {
             for (const std::uint32_t corner : triangle) {
-                append(bytes_, corner);
+                append_little_endian(bytes_, corner);
             }
         }
         const std::size_t count = 3 * surface.triangles.size();
@@ -123,14 +119,14 @@ class Gltf {
         constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
         constexpr std::size_t head = 12, chunk_head = 8;
         std::string file;
-        append(file, magic);
-        append(file, format_version);
-        append(file, static_cast<std::uint32_t>(head + 2 * chunk_head + json.size() + bytes_.size()));
-        append(file, static_cast<std::uint32_t>(json.size()));
-        append(file, json_chunk);
+        append_little_endian(file, magic);
+        append_little_endian(file, format_version);
+        append_little_endian(file, static_cast<std::uint32_t>(head + 2 * chunk_head + json.size() + bytes_.size()));
+        append_little_endian(file, static_cast<std::uint32_t>(json.size()));
+        append_little_endian(file, json_chunk);
         file += json;
-        append(file, static_cast<std::uint32_t>(bytes_.size()));
-        append(file, binary_chunk);
+        append_little_endian(file, static_cast<std::uint32_t>(bytes_.size()));
+        append_little_endian(file, binary_chunk);
         return file + bytes_;
     }
 
@@ -174,10 +170,6 @@ std::vector<float> floats_of(const Quaternion& q) {
     return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
 }
 
-Obstacle body_obstacle(const BodyShape& body) {
-    return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}};
-}
-
 /// Where the vehicle is at the beginning, for viewers that show no animation.
 struct Pose {
     Vector3 place_m{};
@@ -204,14 +196,14 @@ std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot, co
     std::vector<std::size_t> parts;
     for (const BodyShape& body : robot.body) {
         parts.push_back(
-            gltf.add_node({{"name", "body"}, {"mesh", gltf.add_mesh(surface_of(body_obstacle(body)), Gltf::vehicle)}}));
+            gltf.add_node({{"name", "body"}, {"mesh", gltf.add_mesh(surface_of(as_obstacle(body)), Gltf::vehicle)}}));
     }
     constexpr double disc_thickness_m = 0.01;
     for (const Vector3& hub_m : robot.rotors.positions_m) {
         const Obstacle disc{"", Cylinder{robot.rotors.radius_m, disc_thickness_m}, hub_m, {}};
         parts.push_back(gltf.add_node({{"name", "rotor"}, {"mesh", gltf.add_mesh(surface_of(disc), Gltf::vehicle)}}));
     }
-    const Surface rod = rod_surface(robot.arm.length_m, robot.arm.radius_m);
+    const TriangleMesh rod = rod_surface(robot.arm.length_m, robot.arm.radius_m);
     const std::size_t arm = gltf.add_node({{"name", "arm"},
                                            {"translation", {robot.arm.joint_x_m, 0., robot.arm.joint_z_m}},
                                            {"rotation", floats_of(pose.arm)},

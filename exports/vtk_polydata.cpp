@@ -5,7 +5,7 @@
 #include "downwash/base/fault.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/exports/formats.hpp"
-#include "downwash/exports/solid_surface.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 // VTK's XML format for polydata, its numbers as text: points, lines or triangles between them, named arrays.
 
@@ -99,7 +99,7 @@ std::string vtk_scene(const RunRecord& run, const ExportSettings&) {
     PieceCounts counts;
     const std::vector<Obstacle>& all = run.problem.obstacles;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const Surface surface = surface_of(all[i]);
+        const TriangleMesh surface = surface_of(all[i]);
         for (const Vector3& vertex_m : surface.vertices_m) {
             append(points, vertex_m);
         }

@@ -21,6 +21,7 @@ struct GridAxis {
     [[nodiscard]] double step_m() const noexcept {
         return count > 1 ? (high_m - low_m) / static_cast<double>(count - 1) : 0;
     }
+    /// Coordinate number i, 0 <= i < count; the last is high_m to the bit.
     [[nodiscard]] double at(std::size_t i) const noexcept {
         return i + 1 < count ? low_m + static_cast<double>(i) * step_m() : high_m;
     }

@@ -32,8 +32,9 @@ DOWNWASH_EXPORT void write_factor_grid(const std::filesystem::path& file, const 
 /// Whether write_factor_grid would get as far as its first byte. @throws InputError when it would not
 DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
 
-/// What write_factor_grid writes.
+/// What write_factor_grid writes to a .vti file.
 [[nodiscard]] DOWNWASH_EXPORT std::string vti_text(const FactorGrid& grid);
+/// What it writes to a .csv file.
 [[nodiscard]] DOWNWASH_EXPORT std::string grid_csv_text(const FactorGrid& grid);
 
 /// Larger files are refused unread [bytes].

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "downwash/base/base64.hpp"
+#include "downwash/base/little_endian.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
@@ -11,17 +12,11 @@
 namespace downwash {
 namespace {
 
-void append_little_endian(std::string& bytes, std::uint64_t word) {
-    for (int i = 0; i < 8; ++i) {
-        bytes += static_cast<char>(word >> 8 * i & 255U);
-    }
-}
-
 /// The count of bytes, then the numbers.
 std::string array_data(const double* values, std::size_t count) {
     std::string bytes;
     bytes.reserve((count + 1) * sizeof(double));
-    append_little_endian(bytes, count * sizeof(double));
+    append_little_endian(bytes, std::uint64_t{count * sizeof(double)});
     for (std::size_t i = 0; i < count; ++i) {
         append_little_endian(bytes, std::bit_cast<std::uint64_t>(values[i]));
     }

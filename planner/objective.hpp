@@ -18,6 +18,7 @@ enum class Objective {
     clearance,  ///< integral of dt / (clearance + 0.1 m) [s/m]
 };
 
+/// Each once, in their order.
 inline constexpr std::array all_objectives{Objective::energy, Objective::time, Objective::length, Objective::clearance};
 
 /// Name as in problem files: "energy".

@@ -103,8 +103,9 @@ struct Solution {
     std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
 };
 
-/// Names as in problem and solution files: "mp-arm-ada", "solved".
+/// Name as in problem files: "mp-arm-ada".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
+/// Name as in solution files: "solved".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Status status);
 
 /// What an executed flight costs.

@@ -51,6 +51,7 @@ struct AlgorithmInfo {
     bool plans_flights = false;  ///< for mp-arm-da and mp-arm-ada
     std::span<const AlgorithmParameter> parameters = {};
 
+    /// Whether a problem may name it together with a variant.
     [[nodiscard]] bool plans_for(Variant variant) const noexcept {
         return variant == Variant::mp_arm ? plans_lines : plans_flights;
     }

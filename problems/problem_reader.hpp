@@ -26,6 +26,7 @@ struct LocatedFault {
 /// A problem or robot file cannot be used; what() has one line for every fault.
 class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
  public:
+    /// @pre there is at least one fault
     explicit ProblemFileError(std::vector<LocatedFault> faults);
     [[nodiscard]] const std::vector<LocatedFault>& faults() const noexcept { return faults_; }
 

@@ -54,6 +54,7 @@ struct CurveFigure {
 /// error bars differ, or the width is out of range  @throws PictureError when gnuplot cannot draw
 [[nodiscard]] DOWNWASH_EXPORT std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings);
 
+/// The same of one figure.
 [[nodiscard]] inline std::string draw(const CurveFigure& figure, const PictureSettings& settings) {
     return draw(std::span(&figure, 1), settings);
 }

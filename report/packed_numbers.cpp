@@ -6,31 +6,22 @@
 #include <new>
 
 #include "downwash/base/base64.hpp"
+#include "downwash/base/little_endian.hpp"
 
 namespace downwash {
-namespace {
-
-void append(std::string& bytes, std::uint32_t bits) {
-    for (int shift = 0; shift < 32; shift += 8) {
-        bytes.push_back(static_cast<char>((bits >> shift) & 0xFFU));
-    }
-}
-
-}  // namespace
-
 void PackedNumbers::add(std::span<const std::uint8_t> list) {
     bytes_.insert(bytes_.end(), list.begin(), list.end());
 }
 
 void PackedNumbers::add(std::span<const float> list) {
     for (const float number : list) {
-        append(bytes_, std::bit_cast<std::uint32_t>(number));
+        append_little_endian(bytes_, std::bit_cast<std::uint32_t>(number));
     }
 }
 
 void PackedNumbers::add(std::span<const std::int32_t> list) {
     for (const std::int32_t number : list) {
-        append(bytes_, static_cast<std::uint32_t>(number));
+        append_little_endian(bytes_, static_cast<std::uint32_t>(number));
     }
 }
 

@@ -11,6 +11,8 @@
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/packed_numbers.hpp"
 #include "downwash/report/robot_outline.hpp"
+#include "downwash/scene/obstacle_placement.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 namespace downwash {
 namespace {
@@ -42,45 +44,26 @@ Vector3 direction(const ObstacleFrame& frame, const Vector3& own) {
     return {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
 }
 
-/// Triangles of a solid that has no closed form.
-class Triangles {
- public:
-    std::int32_t add_vertex(const Vector3& point_m) {
-        for (const double coordinate : point_m) {
-            vertices_.push_back(static_cast<float>(coordinate));
-        }
-        return static_cast<std::int32_t>(vertices_.size() / 3) - 1;
-    }
-    void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c) { indices_.insert(indices_.end(), {a, b, c}); }
-
-    void add_cube(const OccupiedCube& cube, const ObstacleFrame& frame) {
-        std::int32_t corner[8];
-        for (std::size_t i = 0; i < 8; ++i) {
-            Vector3 own_m = cube.center_m;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                own_m[axis] += ((i >> axis) & 1U) != 0 ? cube.side_m / 2 : -cube.side_m / 2;
-            }
-            corner[i] = add_vertex(frame(own_m));
-        }
-        constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-        for (const auto& face : faces) {
-            add_triangle(corner[face[0]], corner[face[1]], corner[face[2]]);
-            add_triangle(corner[face[0]], corner[face[2]], corner[face[3]]);
+/// Triangles of a solid that has no closed form, in the coordinates of the plane: x, lateral, z.
+Json triangles_json(const Obstacle& obstacle, const PlaneOfMotion& plane) {
+    const TriangleMesh surface = surface_of(obstacle);
+    std::vector<float> coordinates;
+    for (const Vector3& vertex_m : surface.vertices_m) {
+        for (const double coordinate : plane.from_world(vertex_m)) {
+            coordinates.push_back(static_cast<float>(coordinate));
         }
     }
-
-    [[nodiscard]] Json json() const {
-        PackedNumbers vertices, indices;
-        vertices.add(vertices_);
-        indices.add(indices_);
-        return {{"triangles", {{"vertices", vertices.text()}, {"indices", indices.text()}}}};
+    std::vector<std::int32_t> corners;
+    for (const auto& triangle : surface.triangles) {
+        for (const std::uint32_t corner : triangle) {
+            corners.push_back(static_cast<std::int32_t>(corner));
+        }
     }
-
- private:
-    std::vector<float> vertices_;
-    std::vector<std::int32_t> indices_;
-};
+    PackedNumbers vertices, indices;
+    vertices.add(coordinates);
+    indices.add(corners);
+    return {{"triangles", {{"vertices", vertices.text()}, {"indices", indices.text()}}}};
+}
 
 /// Meshes and octrees with more pieces are shown by their outlines alone, so that a page stays small.
 constexpr std::size_t most_shown_triangles = 20000;
@@ -88,7 +71,8 @@ constexpr std::size_t most_shown_triangles = 20000;
 /// The kind of a shape and its solid.
 class SolidOf {
  public:
-    explicit SolidOf(const ObstacleFrame& frame) : frame_(frame) {}
+    SolidOf(const Obstacle& obstacle, const PlaneOfMotion& plane)
+        : obstacle_(obstacle), plane_(plane), frame_(obstacle, plane, 0) {}
 
     Json operator()(const Box& box) const {
         return {{"box",
@@ -111,33 +95,19 @@ class SolidOf {
         return {{"sphere", {{"radius_m", sphere.radius_m}, {"center_m", point_json(frame_({0, 0, 0}))}}}};
     }
     Json operator()(const Mesh& mesh) const {
-        if (mesh.surface->triangles.size() > most_shown_triangles) {
-            return {};
-        }
-        Triangles triangles;
-        for (const Vector3& own : mesh.surface->vertices_m) {
-            triangles.add_vertex(frame_({mesh.scale * own[0], mesh.scale * own[1], mesh.scale * own[2]}));
-        }
-        for (const auto& corners : mesh.surface->triangles) {
-            triangles.add_triangle(static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
-                                   static_cast<std::int32_t>(corners[2]));
-        }
-        return triangles.json();
+        return mesh.surface->triangles.size() > most_shown_triangles ? Json() : triangles_json(obstacle_, plane_);
     }
     Json operator()(const Octomap& octomap) const {
         constexpr std::size_t triangles_of_cube = 12;
-        if (octomap.tree->cubes.size() * triangles_of_cube > most_shown_triangles) {
-            return {};
-        }
-        Triangles triangles;
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
-            triangles.add_cube(cube, frame_);
-        }
-        return triangles.json();
+        return octomap.tree->cubes.size() * triangles_of_cube > most_shown_triangles
+                   ? Json()
+                   : triangles_json(obstacle_, plane_);
     }
 
  private:
-    const ObstacleFrame& frame_;
+    const Obstacle& obstacle_;
+    const PlaneOfMotion& plane_;
+    ObstacleFrame frame_;
 };
 
 constexpr const char* kinds[] = {"box", "cylinder", "sphere", "mesh", "octree"};
@@ -178,13 +148,12 @@ Json scene_json(const Problem& problem, const Scene& scene) {
     Json obstacles = Json::array();
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const Obstacle& obstacle = scene.obstacles()[i];
-        const ObstacleFrame frame(obstacle, problem.plane, 0);
         obstacles.push_back({{"name", obstacle.name},
                              {"kind", kinds[obstacle.shape.index()]},
                              {"section", cuts[i].is_cut ? rings_json(cuts[i].rings) : Json::array()},
                              {"section_lines", rings_json(cuts[i].lines)},
                              {"projection", rings_json(projections[i].rings)},
-                             {"solid", std::visit(SolidOf(frame), obstacle.shape)}});
+                             {"solid", std::visit(SolidOf(obstacle, problem.plane), obstacle.shape)}});
     }
     const Bounds& bounds = problem.bounds;
     return {
@@ -199,8 +168,8 @@ Json robot_json(const Robot& robot) {
     Json shapes = Json::array();
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         const Obstacle body = as_obstacle(robot.body[i]);
-        const ObstacleFrame frame(body, body_plane, 0);
-        shapes.push_back({{"outline", ring_json(outlines[i])}, {"solid", std::visit(SolidOf(frame), body.shape)}});
+        shapes.push_back(
+            {{"outline", ring_json(outlines[i])}, {"solid", std::visit(SolidOf(body, body_plane), body.shape)}});
     }
     Json hubs = Json::array();
     for (const Vector3& hub_m : robot.rotors.positions_m) {

@@ -22,7 +22,9 @@ struct PictureSettings {
     int width_px = 1200;  ///< from least_picture_width_px to most_picture_width_px
 };
 
+/// Least PictureSettings::width_px.
 inline constexpr int least_picture_width_px = 400;
+/// Greatest PictureSettings::width_px.
 inline constexpr int most_picture_width_px = 8000;
 
 /// The format that a file's extension asks for, .svg, .png or .pdf in any case; empty for any other.

@@ -1,8 +1,7 @@
 #include "downwash/report/robot_outline.hpp"
 
-#include <variant>
-
 #include "downwash/report/obstacle_outline.hpp"
+#include "downwash/scene/obstacle_placement.hpp"
 
 namespace downwash {
 
@@ -17,10 +16,6 @@ std::vector<std::vector<PlanePoint>> body_outlines(const std::vector<BodyShape>&
         outlines.push_back(outline.rings.front());
     }
     return outlines;
-}
-
-Obstacle as_obstacle(const BodyShape& body) {
-    return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_m, {}};
 }
 
 }  // namespace downwash

@@ -12,7 +12,4 @@ namespace downwash {
 /// What is seen of a robot's bodies from beside: one convex ring each, in its own frame.
 [[nodiscard]] std::vector<std::vector<PlanePoint>> body_outlines(const std::vector<BodyShape>& bodies);
 
-/// A body as an obstacle of its own frame.
-[[nodiscard]] Obstacle as_obstacle(const BodyShape& body);
-
 }  // namespace downwash

@@ -36,6 +36,7 @@ class DOWNWASH_EXPORT Scene {
     struct Bounds {
         Vector3 low_m, high_m;
     };
+    /// Of the obstacle of that number in obstacles().
     [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;
 
     /// Obstacles consist of convex parts: a mesh of its triangles, an octree of boxes that fill what its cubes fill,

@@ -122,6 +122,7 @@ DOWNWASH_IN_ONE_PIECE State<T> tick(const TickModel& model, const State<T>& stat
 
 #undef DOWNWASH_IN_ONE_PIECE
 
+/// The same where the motion of the state is not known yet.
 template <class T, class Factor, class Integrate = dynamics::OneStep>
 State<T> tick(const TickModel& model, const State<T>& state, const controllers::Setpoint<T>& reference,
               const Factor& factor, TickRecord<T>& record, const Integrate& integrate = {}) {

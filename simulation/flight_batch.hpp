@@ -44,6 +44,7 @@ enum class Instructions : std::uint8_t {
 
 /// Those that this build and this processor have, the widest last.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const Instructions> known_instructions() noexcept;
+/// The widest of them.
 [[nodiscard]] inline Instructions best_instructions() noexcept {
     return known_instructions().back();
 }
@@ -66,6 +67,7 @@ class DOWNWASH_EXPORT FlightCrew {
     /// Not to be called from two threads at once.
     void fly(std::span<FlightJob> jobs);
 
+    /// As given to the constructor.
     [[nodiscard]] const FlightRules& rules() const noexcept;
 
  private:

@@ -10,7 +10,9 @@ namespace downwash::simulation {
 
 /// No surface effect anywhere.
 struct NoEffect {
+    /// K = 1 at any hub.
     double operator()(int, double, double) const noexcept { return 1; }
+    /// All rotors share the first one's.
     [[nodiscard]] int same_as(int) const noexcept { return 0; }
 };
 
@@ -19,6 +21,7 @@ struct NoEffect {
 /// are those of AeroMap::factor() to the last bit. Not to be shared between threads.
 class MapEffect {
  public:
+    /// @pre both outlive the object, and the map has the model's layers
     MapEffect(const FlightModel& model, const AeroMap& map) : model_(model), map_(map) {
         const PlantModel& plant = model.tick().plant;
         for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
@@ -34,6 +37,7 @@ class MapEffect {
             }
         }
     }
+    /// K at the hub of a rotor, or of the body, in the plane.
     double operator()(int rotor, double x_m, double z_m) const noexcept {
         Layer& layer = layers_[rotor];
         const double u = (x_m - layer.view.x_low_m) * layer.view.cells_per_m;
@@ -50,6 +54,7 @@ class MapEffect {
         }
         return bilinear(layer.patch.corner, s, t);
     }
+    /// The earliest rotor, or the rotor itself, that shares its look-up.
     [[nodiscard]] int same_as(int rotor) const noexcept { return same_as_[rotor]; }
 
  private:
@@ -67,9 +72,11 @@ class MapEffect {
 /// The effect evaluated exactly.
 struct DirectFactor {
     const FlightModel& model;
+    /// K at the hub of a rotor, or of the body, in the plane.
     double operator()(int rotor, double x_m, double z_m) const { return model.direct_factor(rotor, x_m, z_m); }
 };
 
+/// A point of a reference as the controller takes it.
 inline controllers::Setpoint<double> setpoint(const ReferencePoint& point) noexcept {
     controllers::Setpoint<double> s;
     for (int i = 0; i < 3; ++i) {

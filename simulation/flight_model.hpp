@@ -32,8 +32,9 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
     /// The effect with its place beside the plane, as a map stores it.
     [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers_[rotor_layer_[rotor]]; }
-    /// Distance of rotor i, or of the body, to the left of the plane [m], and its layer in the aero map.
+    /// Distance of rotor i, or of the body, to the left of the plane [m].
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
+    /// Number of its layer in the aero map, from 0.
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
     /// Whether surfaces act on the rotors at all.
     [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
@@ -69,6 +70,7 @@ struct EffectLayers {
     std::vector<MapLayer> layers;
     std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body, if the fountain pushes it
 };
+/// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
 [[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
                                                          const std::shared_ptr<const Scene>& scene,
                                                          const AeroSettings& aero);

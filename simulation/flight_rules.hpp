@@ -17,6 +17,7 @@ struct RuleLimits {
     double max_tracking_error_m, max_arm_error_rad;
 };
 
+/// Those of a flight with this arm.
 inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return {rules.bounds.x_low_m,

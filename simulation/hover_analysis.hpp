@@ -30,8 +30,9 @@ enum class HoldLimit : std::uint8_t {
     gain,          ///< a loop without gain cannot ask for what is needed
 };
 
-/// The names in files, for example "no_equilibrium" and "rotor_thrust".
+/// Name in files: "no_equilibrium".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldVerdict verdict);
+/// Name in files: "rotor_thrust".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldLimit limit);
 
 /// How a vehicle hovers: the equilibrium of its closed loop near surfaces.

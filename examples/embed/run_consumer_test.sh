@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs a build of Downwash into a temporary prefix and uses it from outside: compiles every installed header alone,
-# builds and runs this example plainly and with -march=native, and calls the installed program.
+# builds and runs this example plainly and with -march=native, and calls the installed program and its completion.
 # Usage: examples/embed/run_consumer_test.sh [build folder, default: build]
 set -euo pipefail
 
@@ -57,3 +57,12 @@ fi
 echo "the installed program"
 "$prefix/bin/downwash" --version
 "$prefix/bin/downwash" check "$problem"
+
+echo "its manual pages and completions"
+grep -qF '.TH DOWNWASH-AEROMAP-PLOT 1' "$prefix/share/man/man1/downwash-aeromap-plot.1"
+bash -c '
+    source "$1"
+    COMP_WORDS=(downwash aeromap pl) COMP_CWORD=2
+    _downwash
+    [[ ${COMPREPLY[*]} == plot ]]' completes "$prefix/share/bash-completion/completions/downwash"
+[[ $(head -n 1 "$prefix/share/zsh/site-functions/_downwash") == '#compdef downwash' ]]

@@ -102,3 +102,16 @@ TEST_CASE("Queries use the maps of earlier runs, and the flights of other varian
                                        "--max-iterations", "5", "--json"});
     CHECK(result.json().at("planning").at("map_wall_s") == 0);
 }
+
+TEST_CASE("The page of a plan that is flown again keeps its map, unless that is not wanted") {
+    const ScratchFolder folder;
+    const std::string problem = problem_file("bridge_inspection");
+    REQUIRE(run(folder, {"solve", problem, "--max-iterations", "200", "--no-cache", "--out", "out"}).code == 0);
+    std::vector<std::string> again{"execute", problem, "--plan", "out/solution.json", "--out", "again"};
+    CHECK(run(folder, again).code == 0);
+    CHECK(fs::exists(folder / "cache") == (files_of_a_run == 5));
+    fs::remove_all(folder / "cache");
+    again.emplace_back("--no-cache");
+    CHECK(run(folder, again).code == 0);
+    CHECK_FALSE(fs::exists(folder / "cache"));
+}

@@ -126,6 +126,11 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(seed.at("default") == 1);
     CHECK_THAT(run(folder, {"manual", "aeromap", "plot"}).out,
                Catch::StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Catch::Contains(".SH OPTIONS"));
+    CHECK(run(folder, {"manual", "--all", "man"}).code == 0);
+    const auto pages = files_in(folder.path() / "run/man");
+    CHECK(pages.at("downwash-aeromap-plot.1") == run(folder, {"manual", "aeromap", "plot"}).out);
+    CHECK(pages.at("downwash.1") == run(folder, {"manual"}).out);
+    CHECK(run(folder, {"manual", "solve", "--all", "man"}).code == 2);
     CHECK_THAT(run(folder, {"completion", "bash"}).out,
                Catch::Contains("'downwash solve') words='") && Catch::Contains("--seed"));
     CHECK(run(folder, {"completion", "fish"}).code == 2);

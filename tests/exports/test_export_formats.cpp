@@ -14,17 +14,9 @@
 
 using namespace downwash;
 using nlohmann::json;
+using test::record;
 
 namespace {
-
-/// One run for all tests, in a plane that is not the world's.
-const RunRecord& record() {
-    static const RunRecord run = [] {
-        const test::SolvedRun solved;
-        return read_run(solved.folder());
-    }();
-    return run;
-}
 
 std::string written(const char* format, const RunRecord& run = record(), const ExportSettings& settings = {}) {
     for (const ExportFormat& one : export_formats()) {

@@ -8,16 +8,9 @@
 #include "pictures.hpp"
 
 using namespace downwash;
+using test::record;
 
 namespace {
-
-const RunRecord& record() {
-    static const RunRecord run = [] {
-        const test::SolvedRun solved;
-        return read_run(solved.folder());
-    }();
-    return run;
-}
 
 FieldFigure snapshots() {
     return snapshot_figure(record(), *make_flight_model(record().problem), nullptr);

@@ -5,6 +5,7 @@
 #include "downwash/base/files.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/run_record.hpp"
 #include "downwash/problems/solution_file.hpp"
 #include "downwash/problems/trajectory_csv.hpp"
 #include "downwash/problems/tree_csv.hpp"
@@ -37,5 +38,11 @@ class SolvedRun {
  private:
     ScratchFolder scratch_;
 };
+
+/// One run for all tests of a program.
+inline const RunRecord& record() {
+    static const RunRecord run = read_run(SolvedRun().folder());
+    return run;
+}
 
 }  // namespace downwash::test

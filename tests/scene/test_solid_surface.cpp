@@ -1,4 +1,4 @@
-#include "downwash/exports/solid_surface.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +10,7 @@ using namespace downwash;
 namespace {
 
 /// By the divergence theorem; positive when the triangles face outwards.
-double volume_of(const Surface& surface) {
+double volume_of(const TriangleMesh& surface) {
     double volume = 0;
     for (const auto& [i, j, k] : surface.triangles) {
         const Vector3 &a = surface.vertices_m[i], &b = surface.vertices_m[j], &c = surface.vertices_m[k];
@@ -21,7 +21,7 @@ double volume_of(const Surface& surface) {
     return volume;
 }
 
-bool is_closed(const Surface& surface) {
+bool is_closed(const TriangleMesh& surface) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     for (const auto& triangle : surface.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -42,24 +42,24 @@ const Vector3 somewhere{1, -2, 3}, turned{0.3, -0.4, 2};
 }  // namespace
 
 TEST_CASE("surfaces of solids are closed, face outwards and hold the solid's volume") {
-    const Surface box = surface_of({"", Box{{1, 2, 3}}, somewhere, turned});
+    const TriangleMesh box = surface_of({"", Box{{1, 2, 3}}, somewhere, turned});
     CHECK(is_closed(box));
     CHECK(volume_of(box) == Approx(6));
     const Vector3 axis = GENERATE(Vector3{0, 0, 1}, Vector3{1, 2, -3}, Vector3{0, 0, -2}, Vector3{0, 5, 0});
-    const Surface cylinder = surface_of({"", Cylinder{0.5, 4, axis}, somewhere, turned});
+    const TriangleMesh cylinder = surface_of({"", Cylinder{0.5, 4, axis}, somewhere, turned});
     CHECK(is_closed(cylinder));
     CHECK(volume_of(cylinder) == Approx(48 / 2. * std::sin(2 * pi / 48) * 0.25 * 4));
-    const Surface sphere = surface_of({"", Sphere{0.5}, somewhere, turned});
+    const TriangleMesh sphere = surface_of({"", Sphere{0.5}, somewhere, turned});
     CHECK(is_closed(sphere));
     CHECK(volume_of(sphere) == Approx(4 * pi / 3 / 8).epsilon(0.01));
     CHECK(volume_of(sphere) < 4 * pi / 3 / 8);
-    const Surface rod = rod_surface(1.2, 0.03);
+    const TriangleMesh rod = rod_surface(1.2, 0.03);
     CHECK(is_closed(rod));
     CHECK(volume_of(rod) == Approx(12 * std::sin(2 * pi / 24) * 0.0009 * 1.2));
 }
 
 TEST_CASE("a cylinder's surface lies along its axis") {
-    const Surface surface = surface_of({"", Cylinder{0.5, 4, {3, 0, 4}}, {10, 0, 0}, {}});
+    const TriangleMesh surface = surface_of({"", Cylinder{0.5, 4, {3, 0, 4}}, {10, 0, 0}, {}});
     for (const Vector3& vertex_m : surface.vertices_m) {
         const double along_m = 0.6 * (vertex_m[0] - 10) + 0.8 * vertex_m[2];
         CHECK(std::abs(along_m) == Approx(2));

@@ -1,9 +1,10 @@
-#include "downwash/exports/solid_surface.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 #include <cmath>
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/scene/obstacle_placement.hpp"
 
 namespace downwash {
 namespace {
@@ -87,7 +88,7 @@ class SurfaceBuilder {
         for (const Vector3& vertex : mesh.surface->vertices_m) {
             surface.vertices_m.push_back({mesh.scale * vertex[0], mesh.scale * vertex[1], mesh.scale * vertex[2]});
         }
-        surface.triangles.assign(mesh.surface->triangles.begin(), mesh.surface->triangles.end());
+        surface.triangles = mesh.surface->triangles;
     }
     void operator()(const Octomap& octomap) {
         for (const OccupiedCube& cube : octomap.tree->cubes) {
@@ -95,7 +96,7 @@ class SurfaceBuilder {
         }
     }
 
-    Surface surface;
+    TriangleMesh surface;
 
  private:
     /// A point of a frame whose z axis is turned into a direction, the shortest way.
@@ -112,30 +113,19 @@ class SurfaceBuilder {
     }
 };
 
-/// Rz(yaw) Ry(pitch) Rx(roll), then to the centre.
-Vector3 placed(const Obstacle& obstacle, const Vector3& own_m) {
-    double s[3], c[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-        lane::sin_cos(obstacle.rpy_rad[i], s[i], c[i]);
-    }
-    Vector3 p{own_m[0], c[0] * own_m[1] - s[0] * own_m[2], s[0] * own_m[1] + c[0] * own_m[2]};
-    p = {c[1] * p[0] + s[1] * p[2], p[1], -s[1] * p[0] + c[1] * p[2]};
-    p = {c[2] * p[0] - s[2] * p[1], s[2] * p[0] + c[2] * p[1], p[2]};
-    return {p[0] + obstacle.center_m[0], p[1] + obstacle.center_m[1], p[2] + obstacle.center_m[2]};
-}
-
 }  // namespace
 
-Surface surface_of(const Obstacle& obstacle) {
+TriangleMesh surface_of(const Obstacle& obstacle) {
     SurfaceBuilder builder;
     std::visit(builder, obstacle.shape);
+    const ObstaclePlacement placement(obstacle);
     for (Vector3& vertex_m : builder.surface.vertices_m) {
-        vertex_m = placed(obstacle, vertex_m);
+        vertex_m = placement.to_world(vertex_m);
     }
     return builder.surface;
 }
 
-Surface rod_surface(double length_m, double radius_m) {
+TriangleMesh rod_surface(double length_m, double radius_m) {
     constexpr std::uint32_t sides = 24;
     SurfaceBuilder builder;
     builder.add_upright_cylinder(radius_m, 0, length_m, sides);
