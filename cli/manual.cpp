@@ -119,7 +119,9 @@ std::string markdown_options(const CLI::App& command) {
             }
             std::string name = spelled(*option);
             name.erase(std::min(name.find(':'), name.size()));  // what follows is a check, and stands in the text
-            rows += fmt::format("| `{}` | {}{} |\n", in_cell(name), in_cell(option->get_description()),
+            const std::string standard = option->get_default_str();
+            rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option->get_description()),
+                                standard.empty() ? "" : "; default " + in_cell(standard),
                                 option->get_required() && !is_positional ? " (required)" : "");
         }
     }
