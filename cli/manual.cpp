@@ -90,6 +90,46 @@ std::string synopsis(const CLI::App& command) {
     return text + "[OPTIONS]\n";
 }
 
+/// Text as the cell of a Markdown table.
+std::string in_cell(const std::string& text) {
+    std::string cell;
+    for (const char letter : text) {
+        cell += letter == '|' ? "\\|" : letter == '\n' ? " " : std::string(1, letter);
+    }
+    return cell;
+}
+
+/// How a command is written: "downwash solve [OPTIONS] PROBLEM"
+std::string usage_line(const CLI::App& command) {
+    if (!commands_of(command).empty()) {
+        return full_name(command) + " COMMAND";
+    }
+    std::string line = full_name(command) + " [OPTIONS]";
+    for (const CLI::Option* option : options_of(command, true)) {
+        const std::string name = option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
+        line += option->get_required() ? " " + name : " [" + name + "]";
+    }
+    return line;
+}
+
+std::string markdown_options(const CLI::App& command) {
+    std::string rows;
+    for (const bool is_positional : {true, false}) {
+        for (const CLI::Option* option : options_of(command, is_positional)) {
+            if (option == command.get_help_ptr()) {
+                continue;
+            }
+            std::string name = spelled(*option);
+            name.erase(std::min(name.find(':'), name.size()));  // what follows is a check, and stands in the text
+            const std::string standard = option->get_default_str();
+            rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option->get_description()),
+                                standard.empty() ? "" : "; default " + in_cell(standard),
+                                option->get_required() && !is_positional ? " (required)" : "");
+        }
+    }
+    return rows.empty() ? "" : "\n| | |\n| --- | --- |\n" + rows;
+}
+
 /// Calls visit(command) for a command and all below it.
 template <class Visit>
 void for_each_command(const CLI::App& command, const Visit& visit) {
@@ -126,6 +166,7 @@ std::string cases_of(const CLI::App& program) {
 struct ManualArguments {
     std::vector<std::string> command;
     std::optional<std::string> all;
+    bool is_markdown = false;
     std::string shell;
 };
 
@@ -159,13 +200,20 @@ void add_manual(CLI::App& program, Action& action) {
     CLI::App* manual = program.add_subcommand(
         "manual", "Print a manual page: downwash manual solve | man -l -; without a command that of the program");
     CLI::Option* command = manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
-    manual
-        ->add_option("--all", arguments->all,
-                     "write the pages of all commands to a folder instead: downwash-solve.1...")
-        ->type_name("DIR")
-        ->excludes(command);
+    CLI::Option* all = manual
+                           ->add_option("--all", arguments->all,
+                                        "write the pages of all commands to a folder instead: downwash-solve.1...")
+                           ->type_name("DIR")
+                           ->excludes(command);
+    manual->add_flag("--markdown", arguments->is_markdown, "all commands as one Markdown page instead")
+        ->excludes(command)
+        ->excludes(all);
     manual->callback([arguments, &program, &action] {
         action = [arguments, &program] {
+            if (arguments->is_markdown) {
+                fmt::print("{}", markdown_page(program));
+                return ExitCode::done;
+            }
             return arguments->all ? write_man_pages(program, *arguments->all)
                                   : print_man_page(program, arguments->command);
         };
@@ -193,6 +241,27 @@ std::string man_page(const CLI::App& command) {
         page += ".SH EXIT STATUS\n" + in_roff(command.get_footer()) + "\n";
     }
     return page;
+}
+
+std::string markdown_page(const CLI::App& program) {
+    std::string contents;
+    std::string sections;
+    for_each_command(program, [&](const CLI::App& command) {
+        if (command.get_parent() == nullptr) {
+            return;
+        }
+        const std::string name = full_name(command);
+        contents += fmt::format("| [`{}`](#{}) | {} |\n", name, with_dashes(name), in_cell(command.get_description()));
+        sections += fmt::format("\n## {}\n\n{}.\n\n```\n{}\n```\n{}", name, command.get_description(),
+                                usage_line(command), markdown_options(command));
+    });
+    return fmt::format(
+        "# Commands\n\n"
+        "Printed from the table that reads the command line (`cmake --build build --target docs`). `{0} COMMAND "
+        "--help` says the same\nof one command, `{0} manual COMMAND | man -l -` shows it as a manual page, `{0} "
+        "completion bash` completes it.\n\n"
+        "| command | |\n| --- | --- |\n{1}\n{2}\n{3}",
+        program.get_name(), contents, program.get_footer(), sections);
 }
 
 std::string completion_script(const CLI::App& program, const std::string& shell) {

@@ -77,9 +77,10 @@ void add_solve(CLI::App& program, Action& action) {
     command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     arguments->planner.add_to(*command);
     command
-        ->add_option("--threads", arguments->threads,
-                     "threads that build the aero map: 1 to 256; the result does not depend on it; default: one per "
-                     "processor")
+        ->add_option(
+            "--threads", arguments->threads,
+            "threads that fly and build the aero map: 1 to 256; the result does not depend on it; default: one per "
+            "processor")
         ->type_name("N")
         ->check(CLI::Range(1, most_threads));
     command->add_option("--out", arguments->out, "folder of the results; default downwash-out/NAME-VARIANT-SEED/")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws every figure of README.md, docs/aeromap.md and docs/hold.md anew, and writes the tables between the marks in aeromap.md.
+# Draws every figure of README.md and docs/*.md anew, and writes the tables between the marks in aeromap.md.
 # Usage: docs/figures/make.sh [downwash]   (./dev figures builds the program first)
 set -euo pipefail
 
@@ -32,19 +32,30 @@ plot hold_bridge.svg "$bridge" --what hold --arm-deg 90
 plot force_bridge.svg "$bridge" --what force
 plot torque_bridge.svg "$bridge" --what torque
 
-# Runs: what geometry alone plans, and what the aware planner does.
-runs=$(mktemp -d)
-trap 'rm -rf "$runs"' EXIT
-for variant in mp-arm mp-arm-ada; do
-    code=0
-    "$downwash" solve "$bridge" --variant "$variant" --max-iterations 1000 --quiet --out "$runs" >/dev/null || code=$?
-    if [[ $variant == mp-arm && $code != 3 || $variant == mp-arm-ada && $code != 0 ]]; then
-        echo "make.sh: $variant ended with $code: README.md would not say the truth of it" >&2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Concepts, on the problem that `downwash init` writes.
+"$downwash" init "$work/first.yaml" >/dev/null
+plot concepts_factor.svg --model cheeseman-bennett sanchez-cuevas --z-over-r 0.2 4 --width 900
+plot concepts_map.svg "$work/first.yaml" --width 900
+plot concepts_hold.svg "$work/first.yaml" --what hold --arm-deg 0 --width 900
+
+# Runs: what geometry alone and dynamics alone plan, and what the aware planner does.
+run() { # VARIANT ITERATIONS EXIT-CODE: the picture of a flight, left in the folder work/run too
+    local code=0
+    "$downwash" solve "$bridge" --variant "$1" --max-iterations "$2" --quiet --out "$work/run" >/dev/null || code=$?
+    if [[ $code != "$3" ]]; then
+        echo "make.sh: $1 ended with $code instead of $3: README.md and concepts.md would not say the truth of it" >&2
         exit 1
     fi
-    "$downwash" report "$runs" --svg --width 900 >/dev/null
-    mv "$runs/flight.svg" "flight_${variant//-/_}.svg"
-done
+    "$downwash" report "$work/run" --svg --width 900 >/dev/null
+    cp "$work/run/flight.svg" "flight_${1//-/_}.svg"
+}
+run mp-arm 1000 3
+run mp-arm-da 3000 3
+cp "$work/run/plots.svg" plots_mp_arm_da.svg
+run mp-arm-ada 1000 0
 
 # Tables: what stands between <!-- NAME --> and <!-- /NAME --> in the page is replaced.
 replace() { # NAME, new text on standard input
