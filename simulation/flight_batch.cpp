@@ -355,7 +355,7 @@ struct FlightCrew::Impl {
             flights.emplace_back(world, lanes, i);
         }
         for (;;) {
-            for (Lane& lane : flights) {
+            for (Lane& lane : std::span(flights).first(lanes_used)) {
                 while (lane.is_free()) {
                     const std::size_t job = next_job++;
                     if (job >= jobs.size()) {
@@ -424,6 +424,7 @@ struct FlightCrew::Impl {
     Kernels kernels;
 
     std::span<FlightJob> jobs;
+    std::size_t lanes_used = lane_count;  ///< of every thread: few jobs are shared out evenly
     std::atomic<std::size_t> next_job{0};
 
     std::mutex mutex;
@@ -459,8 +460,11 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     Impl& crew = *impl_;
     crew.jobs = jobs;
     crew.next_job = 0;
-    // What fits into the lanes of one thread is not worth waking others for.
-    if (crew.others.empty() || jobs.size() <= 2) {
+    // The pace of one or two lanes is the same: two flights are not worth waking others for.
+    const bool is_alone = crew.others.empty() || jobs.size() <= 2;
+    const std::size_t threads = is_alone ? 1 : crew.others.size() + 1;
+    crew.lanes_used = std::clamp<std::size_t>((jobs.size() + threads - 1) / threads, 1, lane_count);
+    if (is_alone) {
         crew.work();
         return;
     }
