@@ -126,12 +126,12 @@ def groups_of(document):
 
 
 def misspelt(document):
-    """The document with one key misspelt, for every key: good until the next is asked for."""
+    """The document with a misspelt key beside the right one, for every key; changed in place."""
     for group in list(groups_of(document)):
         for key in list(group):
-            group[key + "_"] = group.pop(key)
+            group[key + "_"] = group[key]
             yield key, document
-            group[key] = group.pop(key + "_")
+            del group[key + "_"]
 
 
 # --- set-points -------------------------------------------------------------------------------------------------------
