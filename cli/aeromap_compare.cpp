@@ -20,9 +20,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr double max_factor = 2;
 constexpr char explanation[] =
-    "Errors are K minus thrust ratio, K clamped to [1, 2] as in flight: above zero a model overstates the effect and "
-    "a\n"
-    "plan is careful, below zero it understates the effect and a plan is optimistic.\n";
+    "Errors are K minus thrust ratio, K clamped to [1, 2] as in flight: above zero a model overstates the effect,\n"
+    "below zero it understates it. Under a ceiling overstating is careful: a plan expects more pull than there is,\n"
+    "and only the energy that the pull saves is promised too high. Over the ground overstating is optimistic: lift,\n"
+    "stiffness and savings are promised that are not there. Understating is the other way round.\n";
 
 struct CompareArguments {
     MeasuredData data;

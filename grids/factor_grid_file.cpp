@@ -1,6 +1,8 @@
 #include "downwash/grids/factor_grid_file.hpp"
 
 #include <charconv>
+#include <cstdint>
+#include <system_error>
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
@@ -63,15 +65,21 @@ FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, co
 }
 
 FactorGrid read_factor_grid(const std::filesystem::path& file, const GridReading& reading) {
+    const auto require_readable = [&file](std::uintmax_t bytes) {
+        if (bytes > largest_grid_file) {
+            refuse(file.string() + " is larger than 2 GiB: expected a grid of thrust factors");
+        }
+    };
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    require_readable(unknown ? 0 : size);  // before memory is asked for
     std::string bytes;
     try {
         bytes = read_file(file, largest_grid_file + 1);
     } catch (const FileError& error) {
         refuse(file.string() + " " + error.what());
     }
-    if (bytes.size() > largest_grid_file) {
-        refuse(file.string() + " is larger than 2 GiB: expected a grid of thrust factors");
-    }
+    require_readable(bytes.size());
     return parse_factor_grid(bytes, file.string(), reading);
 }
 

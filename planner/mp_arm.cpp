@@ -21,6 +21,7 @@
 #include "downwash/planner/ompl_space.hpp"
 #include "downwash/planner/quiet_ompl.hpp"
 #include "downwash/planner/search_tree.hpp"
+#include "downwash/simulation/flight.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -185,9 +186,8 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
                                    Random& random, const GeometricHooks& hooks) {
     const QuietOmpl quiet;
     QueryCounts counts;
-    // A motion is checked so densely that the margin covers what happens between two checks; without a margin a corner
-    // may be cut by 2.5 mm.
-    const double step_m = std::clamp(2 * problem.planner.safety_margin_m, 0.005, 0.1);
+    // A motion is checked so densely that the margin covers what happens between two checks.
+    const double step_m = std::min(greatest_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
     const FreeAirCost free_air_cost(problem, model, space);
     const Configuration start{problem.start.x_m, problem.start.z_m, problem.start.arm_rad};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
 
@@ -67,7 +68,9 @@ class Recorder {
     }
 
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
-    FlightFault judge(const FlightState& state, const ReferencePoint& reference) {
+    /// @param before one tick ago; nullptr at the start
+    FlightFault judge(const FlightState& state, const ReferencePoint& reference, const FlightState* before = nullptr) {
+        const double clearance_before_m = clearance_m_;
         clearance_m_ = model_.collisions().clearance_m(pose_of(state));
         execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
         execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
@@ -76,6 +79,14 @@ class Recorder {
         }
         if (clearance_m_ <= 0) {
             return FlightFault::collision;
+        }
+        if (before != nullptr) {
+            const double between_m = simulation::least_clearance_between_m(model_, pose_of(*before), clearance_before_m,
+                                                                           pose_of(state), clearance_m_);
+            if (between_m <= 0) {
+                execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
+                return FlightFault::collision;
+            }
         }
         if (execution_.aero && !is_flyable(state)) {
             return FlightFault::flyable_area;
@@ -87,7 +98,7 @@ class Recorder {
                            const FlightState& next, const ReferencePoint& next_reference) {
         add_row(before, reference, record);
         execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
-        const FlightFault fault = judge(next, next_reference);
+        const FlightFault fault = judge(next, next_reference, &before);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
         return fault;
     }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
 
@@ -21,7 +22,7 @@ bool is_flyable(const FlightModel& model, const AeroMap& map, const FlightState&
 /// The rules, cheapest first.
 FlightFault broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                         const simulation::RuleLimits& limits, const TickRecord<double>& record,
-                        const FlightState& state, const ReferencePoint& reference) {
+                        const FlightState& before, const FlightState& state, const ReferencePoint& reference) {
     const double broken = simulation::broken_rule(limits, record.saturation, state, simulation::setpoint(reference));
     if (broken > 0) {
         return static_cast<FlightFault>(static_cast<int>(broken));
@@ -29,7 +30,8 @@ FlightFault broken_rule(const FlightModel& model, const AeroMap* map, const Flig
     if (map != nullptr && !is_flyable(model, *map, state)) {
         return FlightFault::flyable_area;
     }
-    if (model.collisions().is_nearer_than(pose_of(state), rules.margin_m)) {
+    if (model.collisions().is_nearer_than(pose_of(state), rules.margin_m) ||
+        simulation::comes_nearer_between(model, pose_of(before), pose_of(state), rules.margin_m)) {
         return FlightFault::collision;
     }
     return FlightFault::none;
@@ -49,7 +51,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
                 return FlightFault::interrupted;
             }
             flight.length_m += std::sqrt(simulation::squared_step_m2(model.tick().plant, before, next));
-            const FlightFault fault = broken_rule(model, map, rules, limits, record, next, next_reference);
+            const FlightFault fault = broken_rule(model, map, rules, limits, record, before, next, next_reference);
             if (fault == FlightFault::none && rules.measures_clearance) {
                 flight.clearance_integral +=
                     model.tick().tick_s * simulation::clearance_density(model.collisions().clearance_m(pose_of(next)));

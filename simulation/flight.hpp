@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -28,9 +29,16 @@ inline constexpr double unstable_pitch_rad = 1.3962634015954636;
 /// Farther than this from its reference a flight has nothing to do with its plan any more [m].
 inline constexpr double unstable_error_m = 3.0;
 
+/// So far may a robot move between two looks for collisions [m]: a robot that keeps the margin at both then touches
+/// nothing on the way, as each of its points is within half of that from where it was seen. Below a margin of 2.5 mm
+/// corners may be cut by so much.
+[[nodiscard]] inline double greatest_unseen_motion_m(double margin_m) noexcept {
+    return std::max(2 * margin_m, 0.005);
+}
+
 /// What refuses a flight while planning.
 struct FlightRules {
-    double margin_m = 0.05;             ///< least clearance
+    double margin_m = 0.05;             ///< least clearance; also between ticks: see greatest_unseen_motion_m
     Bounds bounds;                      ///< of the centre of mass
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -232,6 +233,10 @@ class Lane {
         }
         const PlanarPose pose = pose_of(now);
         const CollisionChecker& collisions = world_->model.collisions();
+        // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
+        if (simulation::comes_nearer_between(world_->model, pose_before(), pose, world_->rules.margin_m)) {
+            return FlightFault::collision;
+        }
         if (world_->rules.measures_clearance || !find_free_motion(pose)) {
             look_after_every_tick();
             if (collisions.is_nearer_than(pose, world_->rules.margin_m)) {
@@ -260,6 +265,11 @@ class Lane {
         }
         level_ = no_free_motion;
         return false;
+    }
+
+    [[nodiscard]] PlanarPose pose_before() const noexcept {
+        const auto& before = lanes_->before;
+        return {before[0][number_], before[1][number_], before[2][number_], before[3][number_]};
     }
 
     void end_with(FlightFault fault) {

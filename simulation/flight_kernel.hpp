@@ -35,7 +35,8 @@ struct alignas(64) FlightLanes {
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.
-    double fault[lane_count];  ///< number of a FlightFault
+    double before[4][lane_count];  ///< the pose at the tick before
+    double fault[lane_count];      ///< number of a FlightFault
     /// 1 where a closer look is due: the flyable area, motion beyond free_motion_m, look_tick or max_speed_m_s ask for
     /// it.
     double is_unclear[lane_count];

@@ -221,6 +221,8 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     Pack unclear(0);
     Pack anchor[4];
     group.load(anchor, lanes.anchor);
+    Pack before[4];
+    group.load(before, lanes.q);
     const Pack free_motion_m = group.load(lanes.free_motion_m);
     const Pack look_tick = group.load(lanes.look_tick);
     const Pack max_speed_m_s = group.load(lanes.max_speed_m_s);
@@ -233,6 +235,9 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
         tick_count = tick_count + Pack(1);
         reference = reference_at(group, tick_count, Pack(model.tick->tick_s));
         length_m = length_m + lane::sqrt(squared_step_m2(plant, state, next));
+        for (int i = 0; i < 4; ++i) {
+            before[i] = state.plant.q[i];
+        }
         state = next;
         motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
         fault = broken_rule(model.limits, record.saturation, state, reference);
@@ -253,6 +258,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     group.store(reference.acceleration, lanes.reference[2]);
     group.store(tick_count, lanes.tick);
     group.store(length_m, lanes.length_m);
+    group.store(before, lanes.before);
     group.store(fault, lanes.fault);
     group.store(unclear, lanes.is_unclear);
 }

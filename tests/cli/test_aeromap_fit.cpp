@@ -161,6 +161,21 @@ TEST_CASE("A comparison lists every model for every source and surface") {
     CHECK_THAT(text, Catch::Contains("jirs2024, ceiling: 16 measurements, z/R 0.328 to 2.297\n"));
 }
 
+TEST_CASE("A comparison says for each surface what too high a K does, and a page shows it whole") {
+    const ScratchFolder folder;
+    const std::string markdown =
+        run(folder, {"aeromap", "compare", DOWNWASH_MEASUREMENTS, "--rotor-spacing", "2.5", "--markdown"}).out;
+    CHECK_THAT(markdown, Catch::Contains("Under a ceiling overstating is careful"));
+    CHECK_THAT(markdown, Catch::Contains("Over the ground overstating is optimistic"));
+    const std::string page = read_file(DOWNWASH_AEROMAP_PAGE);
+    const std::string begin = "<!-- comparison -->\n";
+    const auto first = page.find(begin);
+    const auto last = page.find("<!-- /comparison -->\n");
+    REQUIRE(first < last);
+    REQUIRE(last != std::string::npos);
+    CHECK(page.substr(first + begin.size(), last - first - begin.size()) == markdown);
+}
+
 TEST_CASE("A comparison without a column of surfaces takes all measurements at the surface that is asked for") {
     const ScratchFolder folder;
     write_file(folder / "m.csv", "z_over_r,thrust_ratio\n0.5,1.3\n1,1.1\n2,1.02\n");

@@ -147,6 +147,22 @@ TEST_CASE("many faults do not make an endless message, many coordinates no large
     CHECK(fault_of(text) == "g.csv: has 10000 rows for 100000000 combinations of its coordinates: expected one each");
 }
 
+TEST_CASE("a file of a byte more than two GiB is refused by its size, whatever it is called") {
+    const test::ScratchFolder folder;
+    for (const char* name : {"huge.csv", "huge.vti"}) {
+        const auto file = folder / name;
+        write_file(file, "");
+        std::filesystem::resize_file(file, 2147483649);  // sparse: it takes no space
+        std::string message = "none";
+        try {
+            static_cast<void>(read_factor_grid(file));
+        } catch (const InputError& error) {
+            message = error.what();
+        }
+        CHECK(message == file.string() + " is larger than 2 GiB: expected a grid of thrust factors");
+    }
+}
+
 TEST_CASE("files of grids are told apart by their first letter and written by their name") {
     const test::ScratchFolder folder;
     test::Random random(4);
