@@ -132,7 +132,7 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(pages.at("downwash.1") == run(folder, {"manual"}).out);
     CHECK(run(folder, {"manual", "solve", "--all", "man"}).code == 2);
     CHECK_THAT(run(folder, {"completion", "bash"}).out,
-               Catch::Contains("'downwash solve') words='") && Catch::Contains("--seed"));
+               Catch::Contains("'downwash solve') next='") && Catch::Contains("--seed"));
     CHECK(run(folder, {"completion", "fish"}).code == 2);
 }
 
