@@ -78,8 +78,8 @@ void add_solve(CLI::App& program, Action& action) {
     arguments->planner.add_to(*command);
     command
         ->add_option("--threads", arguments->threads,
-                     "threads that build the aero map: 1 to 256; the result does not depend on it; default: one per "
-                     "processor")
+                     "threads that build the aero map and fly edges: 1 to 256; the result does not depend on it; "
+                     "default: one per processor")
         ->type_name("N")
         ->check(CLI::Range(1, most_threads));
     command->add_option("--out", arguments->out, "folder of the results; default downwash-out/NAME-VARIANT-SEED/")
