@@ -52,12 +52,13 @@ ExitCode run(const SolveArguments& arguments) {
     {
         ProgressDisplay display(arguments.is_quiet);
         display.say(announcement(problem));
+        options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = solve(problem, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // building a map now would keep who interrupted waiting
-        write_page(folder, solution.map, options.map_cache);
+        write_page(folder, solution.map, options.map_cache, arguments.is_quiet);
     } else {
         std::error_code ignored;
         std::filesystem::remove(folder.path() / "report.html", ignored);  // of an earlier run
