@@ -227,9 +227,15 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     for (Problem problem : read.problems) {
         problem.planner.time_limit_s = plan.time_limit_s;
         problem.planner.max_iterations = read.campaign.max_iterations;
-        const auto map = needs_maps && problem.aero.enabled && !options.stop.stop_requested()
-                             ? make_flight_model(problem)->make_map(problem.bounds, jobs, {}, options.map_cache)
-                             : nullptr;
+        const auto on_map_progress = [&](double share) {
+            if (options.on_map_progress) {
+                options.on_map_progress(problem.name, share);
+            }
+        };
+        const auto map =
+            needs_maps && problem.aero.enabled && !options.stop.stop_requested()
+                ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
+                : nullptr;
         for (const CostFunction& objective : objectives_of(read.campaign, problem)) {
             problem.planner.objective = objective;
             problems.push_back(problem);

@@ -18,6 +18,8 @@ struct CampaignRunOptions {
     std::filesystem::path map_cache;          ///< folder in which aero maps are kept between runs; empty: nowhere
     std::stop_token stop;                     ///< ends it; searches that are cut short are not kept
     std::function<void(double)> on_progress;  ///< share of all runs that is done; called from the calling thread
+    /// Name of a problem and the share of its aero map that is begun, before the runs; likewise.
+    std::function<void(const std::string&, double)> on_map_progress;
 };
 
 /// How far a campaign has come.

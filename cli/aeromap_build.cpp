@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,10 +10,12 @@
 #include <vector>
 
 #include "downwash/aeromap/grid_sampling.hpp"
+#include "downwash/base/files.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/cli/vehicle_table.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -27,6 +30,7 @@ struct BuildArguments {
     std::optional<double> step_m;
     std::optional<int> rotor;  ///< from 1 on
     std::vector<double> lateral_m;
+    std::vector<double> pitch_deg;  ///< of the whole vehicle; empty: factors of rotors
     int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
     bool is_quiet = false;
 };
@@ -75,16 +79,54 @@ FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, cons
     return sample_volume(*first.effect, arguments.lateral_m[0], arguments.lateral_m[1], sampling, provenance);
 }
 
+/// Before anything is evaluated.
+void require_sound_output(const BuildArguments& arguments) {
+    if (arguments.pitch_deg.empty()) {
+        require_grid_writable(arguments.output);
+        return;
+    }
+    for (const double pitch_deg : arguments.pitch_deg) {
+        static_cast<void>(pitch_option(pitch_deg));
+    }
+    if (std::filesystem::path(arguments.output).extension() != ".csv") {
+        throw UsageError("--output " + arguments.output +
+                         ": the whole vehicle (--pitch-deg) is written as CSV, expected a name that ends in .csv");
+    }
+    try {
+        require_writable(arguments.output);
+    } catch (const FileError& error) {
+        throw UsageError("--output " + arguments.output + " " + error.what());
+    }
+}
+
+ExitCode build_vehicle(const BuildArguments& arguments, const Problem& problem, const FlightModel& model) {
+    ProgressDisplay display(arguments.is_quiet);
+    const std::string table =
+        vehicle_table(problem, model, arguments.pitch_deg, step_of(arguments, problem), arguments.threads,
+                      [&display](double share) { display.show("evaluating the vehicle", share); });
+    try {
+        write_file(arguments.output, table);
+    } catch (const FileError& error) {
+        throw UsageError("--output " + arguments.output + " " + error.what());
+    }
+    display.say(
+        fmt::format("{}: the whole vehicle at {} pitch angle(s)", arguments.output, arguments.pitch_deg.size()));
+    return ExitCode::done;
+}
+
 ExitCode build(const BuildArguments& arguments) {
     if (arguments.threads < 1 || arguments.threads > 256) {
         throw UsageError(fmt::format("--threads {}: expected a number from 1 to 256", arguments.threads));
     }
-    require_grid_writable(arguments.output);
+    require_sound_output(arguments);
     const Problem problem = read_problem(arguments.problem);
     if (!problem.aero.enabled) {
         throw UsageError(arguments.problem + ": aero is none, so there is no map to build");
     }
     const auto model = make_flight_model(problem);
+    if (!arguments.pitch_deg.empty()) {
+        return build_vehicle(arguments, problem, *model);
+    }
     ProgressDisplay display(arguments.is_quiet);
     GridSampling sampling{problem.plane, rotor_extent(problem.robot.rotors, problem.bounds),
                           step_of(arguments, problem), arguments.threads,
@@ -103,8 +145,9 @@ ExitCode build(const BuildArguments& arguments) {
 
 void add_aeromap_build(CLI::App& aeromap, Action& action) {
     const auto arguments = std::make_shared<BuildArguments>();
-    CLI::App* build_command = aeromap.add_subcommand(
-        "build", "Evaluate a problem's surface effects on a regular grid and write it as a file");
+    CLI::App* build_command = aeromap.add_subcommand("build",
+                                                     "Evaluate a problem's surface effects, on rotors or the whole "
+                                                     "vehicle, on a regular grid and write it as a file");
     build_command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     build_command
         ->add_option("-o,--output", arguments->output, "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
@@ -112,15 +155,24 @@ void add_aeromap_build(CLI::App& aeromap, Action& action) {
         ->required();
     build_command->add_option("--step", arguments->step_m, "most distance between nodes [m]; default aero.grid_m")
         ->type_name("M");
+    CLI::Option* rotor =
+        build_command
+            ->add_option("--rotor", arguments->rotor,
+                         "only the plane of this rotor, 1 the first; default: one layer for every lateral offset")
+            ->type_name("N");
+    CLI::Option* lateral =
+        build_command
+            ->add_option("--lateral", arguments->lateral_m,
+                         "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
+            ->type_name("LOW HIGH")
+            ->expected(2);
     build_command
-        ->add_option("--rotor", arguments->rotor,
-                     "only the plane of this rotor, 1 the first; default: one layer for every lateral offset")
-        ->type_name("N");
-    build_command
-        ->add_option("--lateral", arguments->lateral_m,
-                     "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
-        ->type_name("LOW HIGH")
-        ->expected(2);
+        ->add_option("--pitch-deg", arguments->pitch_deg,
+                     "the whole vehicle at these pitch angles instead of rotors: force factor, pitch torque and its "
+                     "factor over where its centre of mass may be, as .csv; positive nose down")
+        ->type_name("P...")
+        ->excludes(rotor)
+        ->excludes(lateral);
     build_command->add_option("--threads", arguments->threads, "threads; the result does not depend on it")
         ->type_name("N");
     build_command->add_flag("--quiet", arguments->is_quiet, "say nothing but faults");

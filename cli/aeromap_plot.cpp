@@ -19,6 +19,7 @@
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/cli/vehicle_figures.hpp"
+#include "downwash/cli/vehicle_table.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_model.hpp"
@@ -35,12 +36,16 @@ FieldFigure vehicle_figure(const Problem& problem, Make make) {
     return figure;
 }
 
-FieldFigure force_kind(const PlotRequest& /*request*/, const Problem& problem, const MapExtent& extent) {
-    return vehicle_figure(problem, [&](const FlightModel& model) { return force_figure(problem, model, extent); });
+FieldFigure force_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+    return vehicle_figure(problem, [&](const FlightModel& model) {
+        return force_figure(problem, model, extent, pitch_option(request.pitch_deg));
+    });
 }
 
-FieldFigure torque_kind(const PlotRequest& /*request*/, const Problem& problem, const MapExtent& extent) {
-    return vehicle_figure(problem, [&](const FlightModel& model) { return torque_figure(problem, model, extent); });
+FieldFigure torque_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+    return vehicle_figure(problem, [&](const FlightModel& model) {
+        return torque_figure(problem, model, extent, pitch_option(request.pitch_deg));
+    });
 }
 
 FieldFigure hold_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
@@ -55,8 +60,8 @@ constexpr std::array<FieldKind, 6> field_kinds{{
     {"factor", "factor on a rotor's thrust", one_rotor, &factor_figure},
     {"ground", "the same from surfaces below alone", one_rotor, &factor_figure},
     {"ceiling", "the same from surfaces above alone", one_rotor, &factor_figure},
-    {"force", "factor on the level vehicle's thrust", whole_vehicle, &force_kind},
-    {"torque", "pitch torque on it", whole_vehicle, &torque_kind},
+    {"force", "factor on the whole vehicle's thrust, level or at --pitch-deg", whole_vehicle, &force_kind},
+    {"torque", "pitch torque on it in Nm", whole_vehicle, &torque_kind},
     {"hold", "where it can hover, with --arm-deg", where_to_hover, &hold_kind},
 }};
 
@@ -88,11 +93,12 @@ struct OptionUse {
 };
 
 constexpr unsigned any_of_a_problem = one_rotor | whole_vehicle | where_to_hover;
-constexpr std::array<OptionUse, 11> option_uses{{
+constexpr std::array<OptionUse, 12> option_uses{{
     {"--what", any_of_a_problem, "it goes with PROBLEM"},
     {"--rotor", one_rotor, "it goes with PROBLEM and --what factor, ground or ceiling"},
     {"--lateral", one_rotor, "it goes with PROBLEM and --what factor, ground or ceiling"},
     {"--arm-deg", where_to_hover, "it goes with PROBLEM and --what hold"},
+    {"--pitch-deg", whole_vehicle, "it goes with PROBLEM and --what force or torque"},
     {"--x", any_of_a_problem, "it goes with PROBLEM"},
     {"--z", any_of_a_problem, "it goes with PROBLEM"},
     {"--surface", curves, "it goes with --data"},
@@ -171,6 +177,7 @@ void require_sound_options(const PlotRequest& request) {
     if (!(std::abs(request.arm_deg) <= 1e5)) {
         throw UsageError(fmt::format("--arm-deg {}: expected degrees, at most 1e5 either way", request.arm_deg));
     }
+    static_cast<void>(pitch_option(request.pitch_deg));
     if (request.lateral_m && !(std::abs(*request.lateral_m) <= 1e6)) {
         throw UsageError(fmt::format("--lateral {}: expected a finite distance in m, at most 1e6", *request.lateral_m));
     }
@@ -217,6 +224,10 @@ void add_options(CLI::App& plot, PlotRequest& request) {
         ->excludes(rotor);
     plot.add_option("--arm-deg", request.arm_deg, "angle of the arm with --what hold")
         ->type_name("A")
+        ->capture_default_str();
+    plot.add_option("--pitch-deg", request.pitch_deg,
+                    "pitch of the vehicle with --what force or torque, positive nose down")
+        ->type_name("P")
         ->capture_default_str();
     plot.add_option("--x", request.x_m, "shown part of the plane [m]; default: where rotors can be")
         ->expected(2)

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/model_option.hpp"
+#include "downwash/cli/progress.hpp"
 #include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
@@ -89,7 +91,11 @@ class Effects {
 
     const AeroMap& map() {
         if (!map_) {
-            map_ = model_->make_map(problem_.bounds, 1, {}, cache_);
+            const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+            ProgressDisplay display(false);
+            map_ = model_->make_map(
+                problem_.bounds, threads, [&display](double share) { display.show("building the map", share); },
+                cache_);
         }
         return *map_;
     }

@@ -38,6 +38,9 @@ ExitCode run(const BenchRunArguments& arguments) {
         ProgressDisplay display(arguments.is_quiet);
         display.say(fmt::format("{}: running into {}", read.campaign.name, options.out.string()));
         options.on_progress = [&](double share) { display.show(read.campaign.name, share); };
+        options.on_map_progress = [&](const std::string& problem, double share) {
+            display.show("aero map of " + problem, share);
+        };
         progress = bench::run_campaign(read, options);
     }
     const bool is_over = progress.done == progress.planned;

@@ -17,6 +17,7 @@ struct PlotRequest {
     int rotor = 1;
     std::optional<double> lateral_m;
     double arm_deg = 0;
+    double pitch_deg = 0;          ///< of the whole vehicle
     std::vector<double> x_m, z_m;  ///< low and high, or empty
     std::vector<std::string> models;
     std::string data, surface, source;

@@ -69,6 +69,10 @@ void ProgressDisplay::show(const std::string& task, double share) {
     if (is_quiet_) {
         return;
     }
+    if (task != task_) {
+        task_ = task;
+        logged_share_ = 0;
+    }
     if (is_live_) {
         const int done = static_cast<int>(share * width);
         show_live(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));

@@ -37,7 +37,8 @@ class ProgressDisplay {
     bool has_line_ = false;
     Clock::time_point next_log_ = Clock::now();
     Clock::time_point next_task_log_ = Clock::now() + task_period;
-    double logged_share_ = 0;
+    std::string task_;
+    double logged_share_ = 0;  ///< of the task
 };
 
 }  // namespace downwash::cli

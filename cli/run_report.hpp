@@ -20,8 +20,9 @@ struct ShownRun {
 
 /// Reads the run in a folder.
 /// @param map of the run's problem, where it is at hand  @param cache folder of aero maps; empty: nowhere
+/// @param is_quiet whether to keep silent while a map is built
 [[nodiscard]] ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
-                                 const std::filesystem::path& cache);
+                                 const std::filesystem::path& cache, bool is_quiet = false);
 
 /// @throws UsageError unless this build brings pages
 void require_pages();
@@ -31,6 +32,7 @@ void require_pages();
 
 /// Writes the page of the run in a folder beside its other files, if this build brings pages. A run stands without it:
 /// what goes wrong is said on standard error, and no page of an earlier run stays.
-void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache);
+void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
+                bool is_quiet = false);
 
 }  // namespace downwash::cli

@@ -52,12 +52,13 @@ ExitCode run(const SolveArguments& arguments) {
     {
         ProgressDisplay display(arguments.is_quiet);
         display.say(announcement(problem));
+        options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = solve(problem, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // building a map now would keep who interrupted waiting
-        write_page(folder, solution.map, options.map_cache);
+        write_page(folder, solution.map, options.map_cache, arguments.is_quiet);
     } else {
         std::error_code ignored;
         std::filesystem::remove(folder.path() / "report.html", ignored);  // of an earlier run
@@ -77,10 +78,9 @@ void add_solve(CLI::App& program, Action& action) {
     command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     arguments->planner.add_to(*command);
     command
-        ->add_option(
-            "--threads", arguments->threads,
-            "threads that fly and build the aero map: 1 to 256; the result does not depend on it; default: one per "
-            "processor")
+        ->add_option("--threads", arguments->threads,
+                     "threads that build the aero map and fly edges: 1 to 256; the result does not depend on it; "
+                     "default: one per processor")
         ->type_name("N")
         ->check(CLI::Range(1, most_threads));
     command->add_option("--out", arguments->out, "folder of the results; default downwash-out/NAME-VARIANT-SEED/")

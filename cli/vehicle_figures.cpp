@@ -10,6 +10,7 @@
 
 #include "downwash/base/angles.hpp"
 #include "downwash/cli/plot_request.hpp"
+#include "downwash/cli/vehicle_table.hpp"
 #include "downwash/simulation/hold_map.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -29,6 +30,15 @@ FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, con
     figure.undefined_name = undefined_name(problem);
     figure.obstacles = obstacle_outlines(model.effect(0).scene(), model.plane(), 0);
     return figure;
+}
+
+/// What follows the vehicle's name.
+std::string attitude_text(double pitch_rad) {
+    if (pitch_rad == 0) {
+        return ", level";
+    }
+    return fmt::format(", pitched {:.6g} degrees nose {}", std::abs(pitch_rad) * degrees_per_radian,
+                       pitch_rad > 0 ? "down" : "up");
 }
 
 /// The greatest value of a field in size, looked for at some points of its extent.
@@ -88,21 +98,24 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 
 }  // namespace
 
-FieldFigure force_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent) {
+FieldFigure force_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double pitch_rad) {
     FieldFigure figure = vehicle_figure(problem, model, extent, "Thrust of the whole vehicle at constant command");
-    figure.value = [&model](double x_m, double z_m) {
-        const PlanarPose pose{x_m, z_m, 0, 0};
+    figure.subtitle += attitude_text(pitch_rad);
+    figure.value = [&model, pitch_rad](double x_m, double z_m) {
+        const PlanarPose pose{x_m, z_m, pitch_rad, 0};
         return is_flyable(model, pose) ? vehicle_effect(model, pose).force_factor : undefined;
     };
     figure.scale = factor_scale("force factor", 1, reach_of(figure));
     return figure;
 }
 
-FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent) {
+FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double pitch_rad) {
     FieldFigure figure =
         vehicle_figure(problem, model, extent, "Parasitic pitch torque at hover commands, positive nose down");
-    figure.value = [&model](double x_m, double z_m) {
-        const PlanarPose pose{x_m, z_m, 0, 0};
+    figure.subtitle += attitude_text(pitch_rad) +
+                       fmt::format("; its factor is that over m g R = {:.4g} Nm", weight_times_radius_nm(model));
+    figure.value = [&model, pitch_rad](double x_m, double z_m) {
+        const PlanarPose pose{x_m, z_m, pitch_rad, 0};
         return is_flyable(model, pose) ? vehicle_effect(model, pose).pitch_torque_nm : undefined;
     };
     figure.scale = signed_scale("pitch torque [Nm]", std::max(reach_of(figure), 1e-3));

@@ -168,12 +168,6 @@ struct PlanePoint {
     T x, z;
 };
 
-/// The arm's joint in the plane [m].
-template <class T>
-PlanePoint<T> joint_position(const Attitude<T>& a, T x_m, T z_m) {
-    return {x_m + a.joint_x, z_m + a.joint_z};
-}
-
 /// The end effector in the plane [m].
 template <class T>
 PlanePoint<T> end_effector_position(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m) {

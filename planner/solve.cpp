@@ -272,7 +272,9 @@ Solution solve(const Problem& problem, const SolveOptions& options) {
     std::shared_ptr<const AeroMap> map;
     if (problem.planner.variant == Variant::mp_arm_ada && problem.aero.enabled) {
         const Stopwatch clock;
-        map = options.map ? options.map : model->make_map(problem.bounds, options.threads, {}, options.map_cache);
+        map = options.map
+                  ? options.map
+                  : model->make_map(problem.bounds, options.threads, options.on_map_progress, options.map_cache);
         solution.planning.map_wall_s = clock.seconds();
         solution.map = map;
     }

@@ -29,6 +29,9 @@ struct SolveOptions {
     int threads = 1;       ///< for flights and the aero map; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
+    /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
+    /// is reused.
+    std::function<void(double)> on_map_progress;
     bool stop_at_first_solution = false;
     bool keep_tree = false;              ///< also gives the search tree
     std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty

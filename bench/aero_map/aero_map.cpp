@@ -1,5 +1,5 @@
 // What the aero map costs: building, memory, look-ups, against direct evaluation; for scenes of primitives, the shipped
-// problems and triangle meshes. Prints Markdown, with the bounds that the map is to keep and whether it does.
+// problems, triangle meshes and a volume. Prints Markdown, with the bounds that the map is to keep and whether it does.
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -10,11 +10,13 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "measuring.hpp"
@@ -314,11 +316,143 @@ void print_meshes(const Options& options) {
     }
 }
 
+/// A block of space as a VolumeMap holds it: 30 m3 under the deck of the bridge, its underside, the walkway's top and
+/// edges, the cross girder.
+struct UnderDeck {
+    MapExtent extent{-8, -2, 8, 10};
+    double lateral_m = 1.25;  ///< to either side
+};
+
+/// Flyable hubs of a block, in the world.
+class RandomHubs {
+ public:
+    RandomHubs(const FlightModel& model, const UnderDeck& block) : model_(model), block_(block) {}
+
+    Vector3 one() {
+        const MapExtent& all = block_.extent;
+        while (true) {
+            const Vector3 at{uniform(all.x_low_m, all.x_high_m), uniform(-block_.lateral_m, block_.lateral_m),
+                             uniform(all.z_low_m, all.z_high_m)};
+            if (is_flyable(at)) {
+                return at;
+            }
+        }
+    }
+    std::vector<Vector3> scattered(std::size_t count) {
+        std::vector<Vector3> hubs(count);
+        std::generate(hubs.begin(), hubs.end(), [this] { return in_world(one()); });
+        return hubs;
+    }
+    /// Along straight flights of 1 m/s in any direction, looked up at 500 Hz.
+    std::vector<Vector3> in_flight_order(std::size_t count) {
+        constexpr double step_m = 0.002;
+        std::vector<Vector3> hubs;
+        while (hubs.size() < count) {
+            Vector3 at = one();
+            const double angle = uniform(-3.14, 3.14);
+            const double climb = uniform(-0.5, 0.5);
+            while (hubs.size() < count && is_flyable(at)) {
+                hubs.push_back(in_world(at));
+                at = {at[0] + step_m * std::cos(angle) * std::cos(climb),
+                      at[1] + step_m * std::sin(angle) * std::cos(climb), at[2] + step_m * std::sin(climb)};
+            }
+        }
+        return hubs;
+    }
+
+ private:
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
+    }
+    [[nodiscard]] Vector3 in_world(const Vector3& at) const { return model_.plane().to_world(at[0], at[1], at[2]); }
+    [[nodiscard]] bool is_flyable(const Vector3& at) const {
+        const MapExtent& all = block_.extent;
+        return at[0] >= all.x_low_m && at[0] <= all.x_high_m && std::abs(at[1]) <= block_.lateral_m &&
+               at[2] >= all.z_low_m && at[2] <= all.z_high_m && model_.effect(0).is_flyable(in_world(at));
+    }
+
+    const FlightModel& model_;
+    const UnderDeck& block_;
+    std::mt19937_64 engine_{1};
+};
+
+struct VolumeFigures {
+    double build_s = 0, bytes = 0, growth_bytes = 0;
+    double cold_s = 0, scattered_s = 0, in_flight_order_s = 0, direct_s = 0;
+};
+
+VolumeFigures measured_volume(const Problem& problem, int repetitions) {
+    const UnderDeck block;
+    const auto model = make_flight_model(problem);
+    const auto effect = std::make_shared<const DirectEffect>(model->effect(0));
+    std::unique_ptr<const VolumeMap> map;
+    const auto build = [&] {
+        map =
+            std::make_unique<const VolumeMap>(effect, model->plane(), block.extent, -block.lateral_m, block.lateral_m);
+    };
+    VolumeFigures f;
+    f.growth_bytes = peak_growth_bytes(build);
+    f.build_s = best_of(std::min(2, repetitions), build);
+    f.bytes = static_cast<double>(map->memory_bytes());
+    RandomHubs random(*model, block);
+    const auto mean_of = [](int times, const std::vector<Vector3>& hubs, const auto& factor) {
+        return best_of(times,
+                       [&] {
+                           double sum = 0;
+                           for (const Vector3& hub_m : hubs) {
+                               sum += factor(hub_m);
+                           }
+                           sink = sum;
+                       }) /
+               static_cast<double>(hubs.size());
+    };
+    const auto look_up_hub = [&map](const Vector3& hub_m) { return map->factor(hub_m); };
+    constexpr int cold_batches = 20;
+    for (int i = 0; i < cold_batches; ++i) {
+        const std::vector<Vector3> hubs = random.scattered(1024);
+        empty_caches();
+        double touched = 0;
+        for (const Vector3& hub_m : hubs) {
+            touched += hub_m[0];
+        }
+        sink = touched;
+        f.cold_s += mean_of(1, hubs, look_up_hub) / cold_batches;
+    }
+    constexpr std::size_t many = std::size_t{1} << 16U;
+    constexpr int times = 30;
+    f.scattered_s = mean_of(times, random.scattered(many), look_up_hub);
+    f.in_flight_order_s = mean_of(times, random.in_flight_order(many), look_up_hub);
+    f.direct_s =
+        mean_of(repetitions, random.scattered(8192), [&effect](const Vector3& hub_m) { return effect->factor(hub_m); });
+    return f;
+}
+
+/// Of the bridge, where it is among the problems.
+std::optional<VolumeFigures> print_volume(const Options& options) {
+    const auto bridge = std::find_if(options.problems.begin(), options.problems.end(), [](const std::string& file) {
+        return std::filesystem::path(file).stem() == "bridge_inspection";
+    });
+    if (bridge == options.problems.end()) {
+        return std::nullopt;
+    }
+    const VolumeFigures f = measured_volume(read_problem(*bridge), options.repetitions);
+    fmt::print(
+        "\n## A volume\n\n`VolumeMap` of 6 m x 2.5 m x 2 m under the deck of `bridge_inspection`, its underside, the "
+        "walkway and a girder included; look-ups as above, at 65,536 flyable hubs.\n\n"
+        "| build | map | peak | look-up, cold | random | in flight order | direct |\n|---|---|---|---|---|---|---|\n"
+        "| {:.2f} s | {} | {} | {:.0f} ns | {:.1f} ns | {:.1f} ns | {:.0f} ns |\n",
+        f.build_s, megabytes(f.bytes), megabytes(f.growth_bytes), 1e9 * f.cold_s, 1e9 * f.scattered_s,
+        1e9 * f.in_flight_order_s, 1e9 * f.direct_s);
+    std::fflush(stdout);
+    return f;
+}
+
 void print_bound(const std::string& bound, const std::string& found, bool is_kept) {
     fmt::print("| {} | {} | {} |\n", bound, found, is_kept ? "kept" : "**not kept**");
 }
 
-void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFigures>& random_scenes) {
+void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFigures>& random_scenes,
+                  const std::optional<VolumeFigures>& volume) {
     const MapFigures& ten = maps.front();
     fmt::print("\n## Bounds\n\n| bound | found | |\n|---|---|---|\n");
     print_bound("map of 20 m x 12 m with ten primitives built within 1 s on one core",
@@ -341,12 +475,22 @@ void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFi
     print_look_up("in flight order", &MapFigures::in_flight_order_s);
     print_look_up("at random points", &MapFigures::scattered_s);
     print_look_up("at random points with emptied caches", &MapFigures::cold_s);
+    if (volume) {
+        const auto print_volume_look_up = [](const std::string& kind, double time_s) {
+            print_bound("the same of the volume, " + kind, fmt::format("{:.1f} ns", 1e9 * time_s),
+                        time_s <= most_look_up_s);
+        };
+        print_volume_look_up("in flight order", volume->in_flight_order_s);
+        print_volume_look_up("at random points", volume->scattered_s);
+        print_volume_look_up("at random points with emptied caches", volume->cold_s);
+    }
 }
 
 void run(const Options& options) {
     fmt::print(
         "# What the aero map costs\n\nCommit {}, {}, {} core(s), g++ {}, {}. One thread; the least processor time of "
-        "{} repetitions\n(look-ups: of 100; meshes: of 3, their maps built once; random scenes: of 2), as other "
+        "{} repetitions\n(look-ups: of 100; meshes: of 3, their maps built once; random scenes and volume: of 2), as "
+        "other "
         "programs may have run at "
         "the same time. `bench/aero_map.sh` writes this page.\n\n",
         options.commit, processor(), sysconf(_SC_NPROCESSORS_ONLN), __VERSION__, DOWNWASH_BUILD_TYPE,
@@ -356,7 +500,8 @@ void run(const Options& options) {
     if (options.with_meshes) {
         print_meshes(options);
     }
-    print_bounds(maps, random_scenes);
+    const std::optional<VolumeFigures> volume = print_volume(options);
+    print_bounds(maps, random_scenes, volume);
 }
 
 }  // namespace

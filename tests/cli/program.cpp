@@ -23,7 +23,7 @@ void redirect(const fs::path& file, int descriptor) {
     }
 }
 
-[[noreturn]] void become_program(const fs::path& folder, const fs::path& out, const fs::path& err,
+[[noreturn]] void become_program(const fs::path& folder, const fs::path& in, const fs::path& out, const fs::path& err,
                                  const std::vector<std::string>& arguments, const Environment& environment) {
     for (const auto& [name, value] : environment) {
         value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
@@ -33,6 +33,10 @@ void redirect(const fs::path& file, int descriptor) {
         argv.push_back(const_cast<char*>(argument.c_str()));  // NOLINT(cppcoreguidelines-pro-type-const-cast): C
     }
     argv.push_back(nullptr);
+    const int input = open(in.c_str(), O_RDONLY);
+    if (input < 0 || dup2(input, STDIN_FILENO) < 0) {
+        _exit(127);
+    }
     redirect(out, STDOUT_FILENO);
     redirect(err, STDERR_FILENO);
     if (chdir(folder.c_str()) == 0) {
@@ -77,12 +81,16 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
     return files;
 }
 
-Program::Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment)
-    : out_(folder / "standard-output"), err_(folder / "standard-error"), process_(fork()) {
+Program::Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment,
+                 const std::string& input)
+    : out_(folder / "standard-output"), err_(folder / "standard-error") {
+    const fs::path in = folder / "standard-input";
+    write_file(in, input);
+    process_ = fork();
     if (process_ == 0) {
         Environment whole = environment;
         whole.emplace("XDG_CACHE_HOME", folder / "cache");
-        become_program(folder.path() / "run", out_, err_, arguments, whole);
+        become_program(folder.path() / "run", in, out_, err_, arguments, whole);
     }
 }
 
@@ -106,8 +114,9 @@ Result Program::wait() const {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out_), read_file(err_)};
 }
 
-Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment) {
-    return Program(folder, arguments, environment).wait();
+Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment,
+           const std::string& input) {
+    return Program(folder, arguments, environment, input).wait();
 }
 
 }  // namespace downwash::test

@@ -53,8 +53,9 @@ using Environment = std::map<std::string, std::string>;
 /// The program, running in a folder. Its cache is `cache` beside that, unless the environment says otherwise.
 class Program {
  public:
-    Program(const ScratchFolder& folder, const std::vector<std::string>& arguments,
-            const Environment& environment = {});
+    /// @param input what it reads from standard input; empty: nothing
+    Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment = {},
+            const std::string& input = {});
 
     void send(int signal) const;
     /// Waits until standard error holds a text, a few seconds at most.
@@ -68,6 +69,6 @@ class Program {
 
 /// Runs the program in a folder to its end.
 [[nodiscard]] Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments,
-                         const Environment& environment = {});
+                         const Environment& environment = {}, const std::string& input = {});
 
 }  // namespace downwash::test

@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "program.hpp"
 
@@ -40,6 +44,77 @@ TEST_CASE("A grid built where a fountain pushes the body says that it lacks it")
     CHECK_THAT(read_file(folder / "grid.csv"), Contains(line));
     CHECK_THAT(build("multirotor-images").err, !Contains("fountain"));
     CHECK_THAT(read_file(folder / "grid.csv"), !Contains("fountain"));
+}
+
+TEST_CASE("The whole vehicle is written over place and pitch as its formulas say over wide ground") {
+    const ScratchFolder folder;
+    const std::string problem = problem_with(folder, "cheeseman-bennett");
+    std::string text = read_file(problem);
+    const std::string bounds = "z_m: [1, 10]";
+    text.replace(text.find(bounds), bounds.size(), "z_m: [0.1, 10]");
+    write_file(problem, text);
+    const Result result = run(folder, {"aeromap", "build", problem, "-o", folder / "vehicle.csv", "--step", "9.9",
+                                       "--pitch-deg", "-10", "0", "30", "--quiet"});
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    CHECK(result.err.empty());
+    const std::string table = read_file(folder / "vehicle.csv");
+    CHECK_THAT(table, Contains("# problem: open_air\n"));
+    std::istringstream lines(table.substr(table.find("\nx_m,z_m,pitch_deg,") + 1));
+    std::string line;
+    std::getline(lines, line);
+    CHECK(line == "x_m,z_m,pitch_deg,force_factor,pitch_torque_nm,pitch_torque_factor,flyable");
+    int rows = 0;
+    int not_flyable = 0;
+    while (std::getline(lines, line)) {
+        CAPTURE(line);
+        std::istringstream cells(line);
+        std::vector<std::string> row(7);
+        for (std::string& cell : row) {
+            std::getline(cells, cell, ',');
+        }
+        const double z = std::stod(row[1]);
+        const double pitch = std::stod(row[2]) * 3.14159265358979323846 / 180;
+        // Hubs 0.32 m in front and behind, 0.06 m above; radius 0.1905 m; the nose goes down with the pitch.
+        const double front = z + 0.06 * std::cos(pitch) - 0.32 * std::sin(pitch);
+        const double rear = z + 0.06 * std::cos(pitch) + 0.32 * std::sin(pitch);
+        CHECK(row[6] == (std::min(front, rear) >= 0.3 * 0.1905 ? "1" : "0"));
+        ++rows;
+        if (row[6] == "0") {
+            ++not_flyable;
+            CHECK((row[3].empty() && row[4].empty() && row[5].empty()));
+            continue;
+        }
+        const auto k = [](double height) {
+            const double r = 0.1905 / (4 * height);
+            return r * r < 0.5 ? 1 / (1 - r * r) : 2;
+        };
+        const double weight = 4.95 * 9.80665;
+        const double torque = -0.5 * weight * 0.32 * (k(front) - k(rear));
+        CHECK(std::stod(row[3]) == Approx(0.5 * (k(front) + k(rear))).epsilon(1e-9));
+        CHECK(std::stod(row[4]) == Approx(torque).epsilon(1e-8).margin(1e-12));
+        CHECK(std::stod(row[5]) == Approx(torque / (weight * 0.1905)).epsilon(1e-8).margin(1e-12));
+    }
+    CHECK(rows == 4 * 2 * 3);
+    CHECK(not_flyable == 4);  // low, 30 degrees nose down
+}
+
+TEST_CASE("A table of the vehicle that cannot be is refused before it is built") {
+    const ScratchFolder folder;
+    const auto fault = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"aeromap", "build", problem_file("open_air")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = run(folder, arguments);
+        CHECK(result.code == 2);
+        return result.err;
+    };
+    CHECK_THAT(fault({"-o", "v.vti", "--pitch-deg", "0"}), Contains("expected a name that ends in .csv"));
+    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "90"}),
+               Contains("--pitch-deg 90: expected degrees, at most 80"));
+    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "--step", "0.0001"}), Contains("choose it coarser"));
+    CHECK_THAT(fault({"-o", "no/such/v.csv", "--pitch-deg", "0"}), Contains("no/such/v.csv"));
+    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "--rotor", "1"}), Contains("--rotor"));
+    CHECK(files_in(folder.path() / "run").empty());
 }
 
 TEST_CASE("A grid that cannot be written is refused before it is built") {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <string>
@@ -75,6 +76,26 @@ TEST_CASE("Where a vehicle can hover is drawn with the bounds of its problem") {
     }
 }
 
+TEST_CASE("Force and torque on the whole vehicle are drawn at a pitch, with what a torque is divided by") {
+    const ScratchFolder folder;
+    const auto picture_of = [&](const std::string& what, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{problem_file("bridge_inspection"), "--what", what, "--width", "600"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        CHECK(run(folder, plot(what + ".svg", arguments)).code == 0);
+        return picture_in(folder, what + ".svg");
+    };
+    const std::string level = picture_of("force", {});
+    CHECK_THAT(level, Contains("bridge_inspection, ars_lrm, level"));
+    const std::string tilted = picture_of("force", {"--pitch-deg", "-20"});
+    CHECK_THAT(tilted, Contains("pitched 20 degrees nose up"));
+    // What is drawn differs, not only what is written over it.
+    CHECK(std::count(level.begin(), level.end(), '\n') != std::count(tilted.begin(), tilted.end(), '\n'));
+    // 4.95 kg times 9.80665 m/s2 times 0.1905 m.
+    const std::string torque = picture_of("torque", {"--pitch-deg", "12.5"});
+    CHECK_THAT(torque, Contains("pitched 12.5 degrees nose down; its factor is that over m g R = 9.247 Nm"));
+    CHECK_THAT(torque, Contains("pitch torque [Nm]"));
+}
+
 TEST_CASE("Curves of models are drawn with measurements, repeated ones as mean and deviation") {
     const ScratchFolder folder;
     write_file(folder.path() / "run" / "data.csv", measurements);
@@ -130,6 +151,9 @@ TEST_CASE("What cannot be plotted is refused with a remedy, and leaves no file")
          "--arm-deg changes nothing in this picture: it goes with PROBLEM"},
         {plot("a.svg", {problem, "--what", "hold", "--rotor", "2"}), "--rotor changes nothing"},
         {plot("a.svg", {problem, "--what", "force", "--lateral", "0"}), "--lateral changes nothing"},
+        {plot("a.svg", {problem, "--what", "hold", "--pitch-deg", "5"}),
+         "--pitch-deg changes nothing in this picture: it goes with PROBLEM and --what force or torque"},
+        {plot("a.svg", {problem, "--what", "force", "--pitch-deg", "81"}), "--pitch-deg 81: expected degrees"},
         {plot("a.svg", {problem, "--max-factor", "3"}), "it goes with --model"},
         {plot("a.svg", {problem, "--z-over-r", "1", "2"}), "--model, --data or --flow"},
         {plot("a.svg", {"--model", "he", "--what", "factor"}), "--what changes nothing"},

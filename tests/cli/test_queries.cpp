@@ -63,6 +63,26 @@ TEST_CASE("Many points are read from a file, and a point has three coordinates")
     CHECK(run(folder, {"aeromap", "hold", bridge, "--arm-deg", "90", "--at", "1", "2", "3"}).code == 2);
 }
 
+TEST_CASE("Many points are read from standard input, after those of the command line") {
+    const ScratchFolder folder;
+    const std::string bridge = problem_file("bridge_inspection");
+    const auto query = [&](std::vector<std::string> arguments, const std::string& input) {
+        arguments.insert(arguments.begin(), {"aeromap", "query", bridge});
+        return run(folder, arguments, {}, input);
+    };
+    const auto piped =
+        query({"--points", "-", "--at", "1", "0", "3", "--json"}, "x_m,y_m,z_m\n0 0.32 9.8\n\n1,0,4 # free air").json();
+    REQUIRE(piped.at("points").size() == 3);
+    CHECK(piped ==
+          query({"--at", "1", "0", "3", "--at", "0", "0.32", "9.8", "--at", "1", "0", "4", "--json"}, "").json());
+    const Result broken = query({"--points", "-"}, "0 0 1\n0 zero 1\n");
+    CHECK(broken.code == 2);
+    CHECK(broken.err.find("standard input:2: '0 zero 1': expected three numbers") != std::string::npos);
+    const Result nothing = query({"--points", "-"}, "");
+    CHECK(nothing.code == 2);
+    CHECK(nothing.err.find("--points -: holds no point") != std::string::npos);
+}
+
 TEST_CASE("A grid that was built flies like its problem and tells what made it") {
     const ScratchFolder folder;
     const std::string file = folder / "map.vti";

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <stop_token>
+#include <vector>
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
@@ -98,6 +99,25 @@ TEST_CASE("the same seed and iteration budget give the same bytes, whatever the 
         problem.planner.seed = 2;
         CHECK_FALSE(same_bytes(*a.plan, *solve(problem).plan));
     }
+}
+
+TEST_CASE("a search tells how far its aero map is, and nothing of a map that it is given or needs not") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 1;
+    std::vector<double> shares;
+    SolveOptions options;
+    options.on_map_progress = [&](double share) { shares.push_back(share); };
+    const Solution solution = solve(problem, options);
+    REQUIRE(shares.size() > 1);
+    CHECK(std::is_sorted(shares.begin(), shares.end()));
+    CHECK(shares.front() > 0);
+    CHECK(shares.back() == 1);
+    shares.clear();
+    options.map = solution.map;
+    static_cast<void>(solve(problem, options));
+    options.map.reset();
+    static_cast<void>(solve(with(Variant::mp_arm_da, problem), options));
+    CHECK(shares.empty());
 }
 
 TEST_CASE("improvements only ever get cheaper and the last one is the plan's cost") {
