@@ -53,7 +53,9 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     for (const KeyReference& other : all) {
         const std::string_view parent = parent_path(other.info.path);
         if (parent == info.path || parent == info.path + "[]") {
-            below += fmt::format("    {:<28} {}\n", last_name(other.info.path), other.info.description);
+            // One goal and each of a list have the same keys.
+            const std::string line = fmt::format("    {:<28} {}\n", last_name(other.info.path), other.info.description);
+            below += below.find(line) == std::string::npos ? line : "";
         }
     }
     return text + (below.empty() ? "" : "  keys:\n" + below);

@@ -1,6 +1,11 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "downwash/base/embedded_file.hpp"
 #include "downwash/cli/commands.hpp"
@@ -19,6 +24,30 @@ struct InitArguments {
     std::string file = "my_problem.yaml";
 };
 
+/// The text with what stands for a word in it replaced everywhere.
+std::string replaced(std::string text, std::string_view word, std::string_view by) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
+        text.replace(at, word.size(), by);
+    }
+    return text;
+}
+
+/// The first problem for a file of that name, which names the problem too where it may.
+std::string first_problem_for(const fs::path& file) {
+    std::string text = replaced(std::string(DOWNWASH_EMBEDDED_FILE(downwash_first_problem)), "my_problem.yaml",
+                                file.filename().string());
+    const std::string name = file.stem().string();
+    const auto is_sound = [](char c) {
+        return (std::isalnum(static_cast<unsigned char>(c)) != 0) || c == '_' || c == '-';
+    };
+    constexpr std::size_t longest = 64;
+    if (name.size() <= longest && std::all_of(name.begin(), name.end(), is_sound)) {
+        constexpr std::string_view field = "my_problem                        ";  // up to its comment
+        text = replaced(std::move(text), field, fmt::format("{:<{}}", name, field.size()));
+    }
+    return text;
+}
+
 /// Never replaces what somebody wrote.
 void write_new(const fs::path& file, std::string_view content) {
     if (fs::exists(fs::symlink_status(file))) {
@@ -30,7 +59,7 @@ void write_new(const fs::path& file, std::string_view content) {
 ExitCode run(const InitArguments& arguments) {
     const fs::path problem(arguments.file);
     const fs::path robot = problem.parent_path() / "ars_lrm.yaml";
-    write_new(problem, DOWNWASH_EMBEDDED_FILE(downwash_first_problem));
+    write_new(problem, first_problem_for(problem));
     if (!fs::exists(robot)) {
         write_new(robot, DOWNWASH_EMBEDDED_FILE(downwash_first_robot));
     }

@@ -151,6 +151,9 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         table.add("stopped by",
                   fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m before the goal region", o.cause,
                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
+        if (o.goal_distance_m <= 0) {
+            table.add("", "it was there by then; whether a hover is stable there tells downwash aeromap hold");
+        }
     }
     table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
     if (std::error_code ignored; std::filesystem::exists(folder / "report.html", ignored)) {

@@ -144,7 +144,7 @@ void add_objective(Rows& rows) {
         names.emplace_back(objective, name_of(objective));
     }
     rows.push_back(parameters::choice<Problem>(
-                       "planner.objective", "what a plan should keep small; a group: a weighted sum", names,
+                       "planner.objective", "what a plan should keep small", names,
                        [](auto& p) -> auto& { return p.planner.objective; })
                        .or_group([](const Problem& p) { return !p.planner.objective.single(); },
                                  [](Problem& p) { p.planner.objective = CostFunction::of_nothing(); }));

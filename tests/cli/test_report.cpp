@@ -95,7 +95,12 @@ TEST_CASE("A first problem is written, sound and solved, and nothing is replaced
     const Result again = run(folder, {"init"});
     CHECK(again.code == 2);
     CHECK_THAT(again.err, Catch::Contains("my_problem.yaml is there already"));
-    CHECK(run(folder, {"init", "other.yaml"}).code == 0);
+    CHECK(run(folder, {"init", "other-1.yaml"}).code == 0);
+    const std::string other = read_file(folder.path() / "run/other-1.yaml");
+    CHECK_THAT(other, Catch::Contains("\nname: other-1                           # becomes") &&
+                          Catch::Contains("#   downwash check other-1.yaml  "));
+    CHECK(run(folder, {"init", "an odd name.yaml"}).code == 0);
+    CHECK(run(folder, {"check", "an odd name.yaml", "other-1.yaml"}).code == 0);
 }
 
 TEST_CASE("Keys are explained from the table that reads them") {
