@@ -36,10 +36,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # Concepts, on the problem that `downwash init` writes.
-"$downwash" init "$work/first.yaml" >/dev/null
+"$downwash" init "$work/my_problem.yaml" >/dev/null
 plot concepts_factor.svg --model cheeseman-bennett sanchez-cuevas --z-over-r 0.2 4 --width 900
-plot concepts_map.svg "$work/first.yaml" --width 900
-plot concepts_hold.svg "$work/first.yaml" --what hold --arm-deg 0 --width 900
+plot concepts_map.svg "$work/my_problem.yaml" --width 900
+plot concepts_hold.svg "$work/my_problem.yaml" --what hold --arm-deg 0 --width 900
 
 # Runs: what geometry alone and dynamics alone plan, and what the aware planner does.
 run() { # VARIANT ITERATIONS EXIT-CODE: the picture of a flight, left in the folder work/run too
