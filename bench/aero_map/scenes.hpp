@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
 
 #include "downwash/planner/problem.hpp"
 
 namespace downwash::bench {
+
+/// Between two numbers; the same on every machine, which std::uniform_real_distribution is not.
+double uniform_between(std::mt19937_64& engine, double low, double high);
 
 /// The given problem with ten boxes, cylinders and spheres at random places and attitudes in place of its obstacles:
 /// what no engineer would build.

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
+#include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 
@@ -32,13 +32,6 @@ void for_all(const Check& check) {
     }
 }
 
-bool same_bytes(const Plan& a, const Plan& b) {
-    return std::equal(a.reference.begin(), a.reference.end(), b.reference.begin(), b.reference.end(),
-                      [](const ReferenceKnot& k, const ReferenceKnot& l) {
-                          return k.tick == l.tick && std::memcmp(&k.point, &l.point, sizeof(k.point)) == 0;
-                      });
-}
-
 }  // namespace
 
 TEST_CASE("every algorithm solves an easy problem, twice with the same bytes") {
@@ -50,7 +43,7 @@ TEST_CASE("every algorithm solves an easy problem, twice with the same bytes") {
         const Solution b = solve(problem, first);
         REQUIRE(a.status == Status::solved);
         REQUIRE(b.status == Status::solved);
-        CHECK(same_bytes(*a.plan, *b.plan));
+        CHECK(test::same_bytes(*a.plan, *b.plan));
         CHECK(a.cost == b.cost);
         CHECK(a.planning.iterations == b.planning.iterations);
         CHECK(a.planning.rejected == b.planning.rejected);

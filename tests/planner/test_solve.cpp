@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <stop_token>
 #include <vector>
 
+#include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 
@@ -15,30 +15,6 @@ namespace {
 Problem with(Variant variant, Problem problem = test::ceiling_problem()) {
     problem.planner.variant = variant;
     return problem;
-}
-
-bool same_bytes(const Plan& a, const Plan& b) {
-    if (a.reference.size() != b.reference.size()) {
-        return false;
-    }
-    for (std::size_t i = 0; i < a.reference.size(); ++i) {
-        if (a.reference[i].tick != b.reference[i].tick || !(a.reference[i].point == b.reference[i].point)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-bool same_bytes(const Execution& a, const Execution& b) {
-    if (a.rows.size() != b.rows.size() || a.energy_j != b.energy_j) {
-        return false;
-    }
-    for (std::size_t i = 0; i < a.rows.size(); ++i) {
-        if (std::memcmp(a.rows[i].q, b.rows[i].q, sizeof(a.rows[i].q)) != 0) {
-            return false;
-        }
-    }
-    return true;
 }
 
 }  // namespace
@@ -91,13 +67,13 @@ TEST_CASE("the same seed and iteration budget give the same bytes, whatever the 
         REQUIRE(a.plan);
         REQUIRE(b.plan);
         CHECK(a.cost == b.cost);
-        CHECK(same_bytes(*a.plan, *b.plan));
-        CHECK(same_bytes(*a.execution, *b.execution));
+        CHECK(test::same_bytes(*a.plan, *b.plan));
+        CHECK(test::same_bytes(*a.execution, *b.execution));
         CHECK(a.planning.edges_simulated == b.planning.edges_simulated);
         CHECK(a.planning.states_checked == b.planning.states_checked);
         CHECK(a.planning.rejected == b.planning.rejected);
         problem.planner.seed = 2;
-        CHECK_FALSE(same_bytes(*a.plan, *solve(problem).plan));
+        CHECK_FALSE(test::same_bytes(*a.plan, *solve(problem).plan));
     }
 }
 
@@ -265,7 +241,7 @@ TEST_CASE("without surface effects the aware planner is the dynamics-aware one")
     REQUIRE(dynamic.plan);
     CHECK_FALSE(aware.execution->aero);
     CHECK(aware.planning.edges_simulated == dynamic.planning.edges_simulated);
-    CHECK(same_bytes(*aware.plan, *dynamic.plan));
+    CHECK(test::same_bytes(*aware.plan, *dynamic.plan));
 }
 
 TEST_CASE("a start that already meets the goal is solved by holding there") {

@@ -1,9 +1,9 @@
 // What holds of plans for the shipped problems.
 
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <string>
 
+#include "../support/same_bytes.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
@@ -18,32 +18,6 @@ Problem shipped(const std::string& name, std::uint64_t iterations) {
     problem.planner.max_iterations = iterations;
     problem.planner.time_limit_s.reset();
     return problem;
-}
-
-bool is_same(const Plan& a, const Plan& b) {
-    if (a.reference.size() != b.reference.size()) {
-        return false;
-    }
-    for (std::size_t i = 0; i < a.reference.size(); ++i) {
-        if (a.reference[i].tick != b.reference[i].tick || !(a.reference[i].point == b.reference[i].point)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-bool is_same(const Execution& a, const Execution& b) {
-    if (a.rows.size() != b.rows.size()) {
-        return false;
-    }
-    for (std::size_t i = 0; i < a.rows.size(); ++i) {
-        if (std::memcmp(a.rows[i].q, b.rows[i].q, sizeof(a.rows[i].q)) != 0 ||
-            std::memcmp(a.rows[i].u, b.rows[i].u, sizeof(a.rows[i].u)) != 0 ||
-            a.rows[i].energy_j != b.rows[i].energy_j) {
-            return false;
-        }
-    }
-    return true;
 }
 
 }  // namespace
@@ -79,8 +53,8 @@ TEST_CASE("A thousand iterations come to the same bytes on one, three and five t
         const Solution other = solve(problem, options);
         REQUIRE(other.status == Status::solved);
         CHECK(other.cost == one.cost);
-        CHECK(is_same(*other.plan, *one.plan));
-        CHECK(is_same(*other.execution, *one.execution));
+        CHECK(test::same_bytes(*other.plan, *one.plan));
+        CHECK(test::same_bytes(*other.execution, *one.execution));
         CHECK(other.tree.size() == one.tree.size());
         CHECK(other.planning.improvements.size() == one.planning.improvements.size());
         CHECK(other.planning.edges_simulated == one.planning.edges_simulated);
