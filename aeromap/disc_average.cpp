@@ -256,6 +256,37 @@ std::optional<PlaneCover> only_plane(const DiscQuery& query, const std::pmr::vec
                : std::nullopt;
 }
 
+/// Whether all candidates are level polygons none of which hides another: then areas are enough.
+bool are_beside_each_other(const std::pmr::vector<FacingPart>& candidates) {
+    constexpr std::size_t most = 6;  // each is compared with each
+    if (candidates.size() > most) {
+        return false;
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Footprint& one = *candidates[i].footprint;
+        if (!one.is_level_polygon()) {
+            return false;
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!one.lies_beside(*candidates[j].footprint)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+double average_by_areas(const DiscQuery& query, double background_m, const std::pmr::vector<FacingPart>& candidates) {
+    const auto& [x, y, z] = query.hub_m;
+    const double background = query.factor(background_m);
+    double excess = 0;
+    for (const FacingPart& candidate : candidates) {
+        const double area_m2 = candidate.footprint->area_in_disc_m2(x, y, query.radius_m);
+        excess += (query.factor(candidate.gap_m) - background) * area_m2;
+    }
+    return background + excess / (pi * query.radius_m * query.radius_m);
+}
+
 /// Triangles and boxes of octrees over or under the disc, in the scene's order, however they were found; none that is
 /// seen from its edge only.
 void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
@@ -314,6 +345,9 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
     }
     if (candidates.empty()) {
         return query.factor(cover_m);
+    }
+    if (are_beside_each_other(candidates)) {
+        return average_by_areas(query, cover_m, candidates);
     }
     if (const auto cover = only_plane(query, candidates, cover_m)) {
         return plane_average(query, *cover);

@@ -7,6 +7,8 @@
 #include <memory_resource>
 #include <vector>
 
+#include "downwash/base/lane_math.hpp"
+
 namespace downwash {
 namespace {
 
@@ -33,6 +35,42 @@ std::vector<Footprint::Plane> planes_of(const Scene& scene, std::size_t part, bo
     return planes;
 }
 
+struct Point {
+    double x, y;
+};
+
+double cross(const Point& a, const Point& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Twice the area of the sector of the unit disc between the directions to two points.
+double sector(const Point& a, const Point& b) {
+    return lane::atan2(cross(a, b), a.x * b.x + a.y * b.y);
+}
+
+/// Twice the area that the unit disc has in common with the triangle of its centre, a and b; negative where a comes
+/// after b.
+double doubled_area(const Point& a, const Point& b) {
+    const Point step{b.x - a.x, b.y - a.y};
+    const double length2 = step.x * step.x + step.y * step.y;
+    const double along = a.x * step.x + a.y * step.y;
+    const double outside = a.x * a.x + a.y * a.y - 1;
+    const double discriminant = along * along - length2 * outside;
+    if (!(discriminant > 0)) {
+        return sector(a, b);
+    }
+    const double root = std::sqrt(discriminant);
+    const double enters = (-along - root) / length2;
+    const double leaves = (-along + root) / length2;
+    if (leaves <= 0 || enters >= 1) {
+        return sector(a, b);
+    }
+    const auto at = [&](double t) { return Point{a.x + t * step.x, a.y + t * step.y}; };
+    const Point first = enters > 0 ? at(enters) : a;
+    const Point last = leaves < 1 ? at(leaves) : b;
+    return (enters > 0 ? sector(a, first) : 0) + cross(first, last) + (leaves < 1 ? sector(last, b) : 0);
+}
+
 }  // namespace
 
 Footprint::Footprint(const Scene& scene, std::size_t which)
@@ -56,10 +94,10 @@ Footprint::Footprint(const Scene& scene, std::size_t which)
         const double dx = edge.bx - edge.ax;
         const double dy = edge.by - edge.ay;
         const double length = std::sqrt(dx * dx + dy * dy);
-        HalfPlane side{dy / length, -dx / length, 0};
+        Edge side{edge.ax, edge.ay, edge.bx, edge.by, dy / length, -dx / length, 0};
         side.reach = side.nx * edge.ax + side.ny * edge.ay;
         if (side.nx * center_x + side.ny * center_y > side.reach) {
-            side = {-side.nx, -side.ny, -side.reach};
+            side = {edge.bx, edge.by, edge.ax, edge.ay, -side.nx, -side.ny, -side.reach};
         }
         sides_.push_back(side);
     }
@@ -77,7 +115,7 @@ bool Footprint::meets_column(double x, double y, double radius) const noexcept {
 bool Footprint::covers_disc(double x, double y, double radius) const noexcept {
     if (!sides_.empty()) {
         return std::all_of(sides_.begin(), sides_.end(),
-                           [&](const HalfPlane& side) { return side.nx * x + side.ny * y + radius <= side.reach; });
+                           [&](const Edge& side) { return side.nx * x + side.ny * y + radius <= side.reach; });
     }
     const double room = disc_radius_ - radius;
     if (!(room >= 0)) {
@@ -86,6 +124,28 @@ bool Footprint::covers_disc(double x, double y, double radius) const noexcept {
     const double dx = x - outline.ellipses.front().x;
     const double dy = y - outline.ellipses.front().y;
     return dx * dx + dy * dy <= room * room;
+}
+
+double Footprint::area_in_disc_m2(double x, double y, double radius) const noexcept {
+    double doubled = 0;
+    for (const Edge& side : sides_) {
+        doubled += doubled_area({(side.ax - x) / radius, (side.ay - y) / radius},
+                                {(side.bx - x) / radius, (side.by - y) / radius});
+    }
+    return 0.5 * radius * radius * std::max(doubled, 0.0);
+}
+
+bool Footprint::has_side_before(const Footprint& other) const noexcept {
+    constexpr double shared_m = 1e-9;
+    return std::any_of(sides_.begin(), sides_.end(), [&](const Edge& side) {
+        return std::all_of(other.sides_.begin(), other.sides_.end(), [&](const Edge& its) {
+            return side.nx * its.ax + side.ny * its.ay >= side.reach - shared_m;
+        });
+    });
+}
+
+bool Footprint::lies_beside(const Footprint& other) const noexcept {
+    return has_side_before(other) || other.has_side_before(*this);
 }
 
 }  // namespace downwash

@@ -20,6 +20,16 @@ struct Footprint {
     /// Whether the shadow holds the whole disc. Only asked of level parts, false for others.
     [[nodiscard]] bool covers_disc(double x, double y, double radius) const noexcept;
 
+    /// Whether the shadow is a polygon under a level face.
+    [[nodiscard]] bool is_level_polygon() const noexcept { return !sides_.empty(); }
+
+    /// The area of the shadow inside the disc [m^2], in closed form. @pre is_level_polygon()
+    [[nodiscard]] double area_in_disc_m2(double x, double y, double radius) const noexcept;
+
+    /// Whether an edge of one of the two shadows has both on different sides; the edge itself may be shared.
+    /// @pre both are level polygons
+    [[nodiscard]] bool lies_beside(const Footprint& other) const noexcept;
+
     std::size_t part;
     Scene::Bounds bounds;
     bool is_level;                 ///< see Scene::is_level
@@ -32,12 +42,15 @@ struct Footprint {
     std::vector<Plane> upper_planes, lower_planes;  ///< seen from above and from below; of parts with plane faces
 
  private:
-    /// The points with nx x + ny y <= reach.
-    struct HalfPlane {
+    /// A side of a convex polygon, from a to b with the inside on the left: nx x + ny y <= reach.
+    struct Edge {
+        double ax, ay, bx, by;
         double nx, ny, reach;
     };
-    std::vector<HalfPlane> sides_;  ///< of a level box' or triangle's shadow
-    double disc_radius_ = 0;        ///< of an upright cylinder's shadow; 0 for others
+    [[nodiscard]] bool has_side_before(const Footprint& other) const noexcept;
+
+    std::vector<Edge> sides_;  ///< of a level box' or triangle's shadow
+    double disc_radius_ = 0;   ///< of an upright cylinder's shadow; 0 for others
 };
 
 }  // namespace downwash

@@ -44,6 +44,27 @@ TEST_CASE("The edge of a half plane covers a circular segment, whatever its dire
     }
 }
 
+TEST_CASE("Level slabs beside each other count by the areas that they cover, a corner's and a strip's in closed form") {
+    const AeroSettings settings;
+    const EffectCurve curve(settings.ground, 2);
+    const double near = curve(0.5) - 1;
+    const double far = curve(1.5) - 1;
+    for (const double angle : {0.0, 0.3, pi / 4, 2.9}) {
+        const double c = std::cos(angle);
+        const double s = std::sin(angle);
+        const auto turned = [&](double x, double y, double z) { return Vector3{c * x - s * y, s * x + c * y, z}; };
+        // A quarter of the plane at one height, and beside it, sharing an edge, a strip of the half plane at another.
+        const double width = 0.6 * radius;
+        const DirectEffect effect(
+            scene_of({{"corner", Box{{20, 20, 1}}, turned(10, 10, -0.5), {0, 0, angle}},
+                      {"strip", Box{{width, 40, 1}}, turned(-0.5 * width, 0, -0.5 - radius), {0, 0, angle}}}),
+            settings, radius);
+        const double strip = (std::asin(0.6) + 0.6 * std::sqrt(1 - 0.36)) / pi;  // between the chords 0 and 0.6 R
+        const Vector3 hub = turned(0, 0, 0.5 * radius);
+        REQUIRE(effect.factors(hub).ground == Approx(1 + near / 4 + far * strip).epsilon(0).margin(1e-11));
+    }
+}
+
 TEST_CASE("Over a wide slope Cheeseman and Bennett's formula has a closed average") {
     test::Random random(8);
     // The average of 1 / (a + s u) over the unit disc.
