@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -44,6 +46,46 @@ void run_parallel(std::size_t count, int threads, const Task& task,
     if (failure) {
         std::rethrow_exception(failure);
     }
+}
+
+/// Work that is done piece by piece: does the next piece, or says that there is none left. Works on nothing that
+/// another strand works on.
+using Strand = std::function<bool()>;
+
+/// Works on some strands side by side until none has a piece left: the pieces of one strand one after the other, those
+/// of different strands on any threads; on a single one the strands take turns, the first strand first. Rethrows what
+/// a piece threw.
+/// @param threads at least 1, the calling one included
+inline void run_side_by_side(std::span<const Strand> strands, int threads) {
+    struct Turn {
+        std::size_t pieces = 0;
+        bool is_taken = false;  ///< by a thread, or for good: it is at its end
+    };
+    std::vector<Turn> turns(strands.size());
+    std::mutex mutex;
+    const auto work = [&](std::size_t) {
+        for (;;) {
+            std::size_t mine = strands.size();
+            {
+                const std::scoped_lock lock(mutex);
+                for (std::size_t i = 0; i < turns.size(); ++i) {
+                    if (!turns[i].is_taken && (mine == strands.size() || turns[i].pieces < turns[mine].pieces)) {
+                        mine = i;
+                    }
+                }
+                if (mine == strands.size()) {
+                    return;  // whoever has one of the others goes on with it to its end
+                }
+                turns[mine].is_taken = true;
+            }
+            const bool goes_on = strands[mine]();
+            const std::scoped_lock lock(mutex);
+            ++turns[mine].pieces;
+            turns[mine].is_taken = !goes_on;
+        }
+    };
+    const int workers = std::min(threads, static_cast<int>(strands.size()));
+    run_parallel(static_cast<std::size_t>(workers), workers, work);
 }
 
 }  // namespace downwash

@@ -8,7 +8,9 @@
 #include <map>
 #include <numbers>
 #include <unordered_set>
+#include <utility>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/planner/ompl_space.hpp"
 
 namespace downwash::planning {
@@ -41,8 +43,18 @@ constexpr double other_way_m = 0.5;
 constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
 
-/// A direct flight costs as much as dozens of waves; while plans get better quickly not every step is worth one.
-constexpr int waves_between_reviews = 12;
+/// Work in rounds is counted in ticks of flights side by side: what a round is for the tree, and as much for the
+/// refiner, ...
+constexpr double round_work = 60'000;
+/// ... what a sample costs before anything is flown, ...
+constexpr double sample_work = 200;
+/// ... a wave of the refiner, ...
+constexpr double refine_work = 400;
+/// ... and a tick with direct aerodynamics.
+constexpr double direct_tick_work = 75;
+
+/// How often in a round the refiner, when it has room, gets another way of the tree.
+constexpr double other_way_share = 0.4;
 
 /// Samples whose flights are flown side by side. Fixed, so that the result does not depend on lanes and threads.
 constexpr std::uint64_t wave_size = 8;
@@ -84,14 +96,17 @@ double distance_from_way_m(const Configuration& place, const std::vector<Referen
 
 FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const Problem& problem,
                                      FlightTree& tree, const SearchSpace& space, PlannedFlights& flights,
-                                     Random& random, std::function<bool(const Candidate&)> accept)
+                                     Random& random, CandidateHooks hooks, int threads)
     : ompl::base::Planner(information, "FlightTree"),
       tree_(tree),
       space_(space),
       flights_(flights),
+      refined_flights_(flights, std::max(1, threads / 2)),
       random_(random),
-      refiner_(problem, space, flights, random),
-      accept_(std::move(accept)),
+      refiner_random_(random.branch()),
+      refiner_(problem, space, refined_flights_, refiner_random_),
+      hooks_(std::move(hooks)),
+      threads_(threads),
       nearest_to_goal_(&tree.root()),
       nearest_distance_m_(space.goal_distance_m(tree.root().configuration)),
       range_m_(range_share * space.extent_m()) {
@@ -99,29 +114,76 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
     specs_.optimizingPaths = true;
 }
 
+FlightStatistics FlightTreePlanner::statistics() const {
+    FlightStatistics all = flights_.statistics();
+    all += refined_flights_.statistics();
+    return all;
+}
+
 ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
     if (iterations_ == 0 && space_.is_near_goal(tree_.root().configuration)) {
         const std::vector<FlightNode*> root{&tree_.root()};
         tree_.add_holds(root);
-        review(worthwhile_gain);
     }
-    while (!terminated && !(max_iterations_ && iterations_ >= *max_iterations_)) {
-        if (refiner_.champion() != nullptr && 2 * refine_ticks_ < flights_.statistics().ticks) {
-            refine();
+    const auto is_done = [this] { return incumbent_ && stops_at_first_plan_; };
+    while (!terminated && !is_used_up() && !is_done()) {
+        if (has_plan()) {
+            go_on_side_by_side(terminated);
         } else {
-            const std::uint64_t wanted = has_plan() ? wave_size : first_wave_size;
-            const std::uint64_t left = max_iterations_ ? *max_iterations_ - iterations_ : wanted;
-            grow(std::min(left, wanted));
+            grow();
         }
-        if (!incumbent_ || ++waves_since_review_ >= waves_between_reviews) {
-            review(worthwhile_gain);
+        hand_to_refiner();
+        if (stops_at_first_plan_) {
+            settle_best();  // at once, and whatever else may have been found beside it
+        } else {
+            proposal_ = proposal(worthwhile_gain);
         }
         if (observer_) {
             observer_();
         }
     }
-    review(any_gain);
+    if (!is_done()) {
+        settle_best();
+    }
     return incumbent_ ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::TIMEOUT;
+}
+
+void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
+    double share = round_work;
+    if (proposal_ && hooks_.flies) {
+        share =
+            std::max(share, direct_tick_work * static_cast<double>(proposal_->candidate.plan.reference.back().tick));
+    }
+    tree_due_ += share;
+    refiner_due_ += share;
+    flights_.use_threads(std::max(1, threads_ - threads_ / 2));
+    const Strand strands[] = {
+        [this] {
+            if (proposal_) {
+                fly(*proposal_);
+            }
+            return false;
+        },
+        [&] {
+            if (terminated || is_used_up() || tree_work_ >= tree_due_) {
+                return false;
+            }
+            grow();
+            return true;
+        },
+        [&] {
+            if (terminated || (refiner_.champion() == nullptr && handed_over_.empty()) ||
+                refiner_work_ >= refiner_due_) {
+                return false;
+            }
+            refine();
+            return true;
+        },
+    };
+    run_side_by_side(strands, std::min(threads_, 2));
+    if (proposal_) {
+        settle(*std::exchange(proposal_, std::nullopt));
+    }
 }
 
 std::optional<Configuration> FlightTreePlanner::target() {
@@ -148,7 +210,10 @@ std::size_t FlightTreePlanner::neighbour_count() const {
     return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
 }
 
-void FlightTreePlanner::grow(std::uint64_t samples) {
+void FlightTreePlanner::grow() {
+    const std::uint64_t ticks_before = flights_.statistics().ticks;
+    const std::uint64_t wanted = has_plan() ? wave_size : first_wave_size;
+    const std::uint64_t samples = max_iterations_ ? std::min(wanted, *max_iterations_ - iterations_) : wanted;
     std::vector<Growth> wave;
     for (std::uint64_t i = 0; i < samples; ++i) {
         ++iterations_;
@@ -178,7 +243,8 @@ void FlightTreePlanner::grow(std::uint64_t samples) {
     }
     const FlightNode* const hold = best_hold();
     best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
-    hand_to_refiner();
+    tree_work_ +=
+        static_cast<double>(flights_.statistics().ticks - ticks_before) + sample_work * static_cast<double>(samples);
 }
 
 std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
@@ -277,10 +343,14 @@ void FlightTreePlanner::rewire_through(const std::vector<Growth>& wave, const st
 }
 
 void FlightTreePlanner::refine() {
-    const std::uint64_t before = flights_.statistics().ticks;
-    refiner_.improve();
-    // A wave of nothing but refused changes flies nothing, and still has had its turn.
-    refine_ticks_ += std::max<std::uint64_t>(1, flights_.statistics().ticks - before);
+    const std::uint64_t ticks_before = refined_flights_.statistics().ticks;
+    if (handed_over_.empty()) {
+        refiner_.improve();
+    }
+    for (const Plan& plan : std::exchange(handed_over_, {})) {
+        refiner_.take(plan);
+    }
+    refiner_work_ += static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + refine_work;
 }
 
 /// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
@@ -289,17 +359,15 @@ void FlightTreePlanner::hand_to_refiner() {
     if (best == nullptr) {
         return;
     }
-    const std::uint64_t before = flights_.statistics().ticks;
-    const bool is_idle = refiner_.champion() == nullptr;
+    const bool is_idle = refiner_.champion() == nullptr && handed_over_.empty();
     if (is_idle || best->cost < (1 - worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
-        refiner_.take(tree_.plan_to(*best));
-    } else if (refiner_.wants_plan() && random_.chance(0.05)) {
+        handed_over_.push_back(tree_.plan_to(*best));
+    } else if (refiner_.champion() != nullptr && refiner_.wants_plan() && random_.chance(other_way_share)) {
         if (const FlightNode* hold = other_way()) {
-            refiner_.take(tree_.plan_to(*hold));
+            handed_over_.push_back(tree_.plan_to(*hold));
         }
     }
-    refine_ticks_ += flights_.statistics().ticks - before;
 }
 
 /// Of some holds, drawn by lot, the one whose way leads farthest from the champion's; nullptr when all follow it.
@@ -333,30 +401,51 @@ FlightNode* FlightTreePlanner::best_hold() const {
     return best;
 }
 
-void FlightTreePlanner::review(double least_gain) {
-    waves_since_review_ = 0;
-    const auto to_beat = [&] { return incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL; };
-    while (refiner_.champion() != nullptr && refiner_.champion()->cost < to_beat()) {
-        Candidate candidate{refiner_.plan_of(*refiner_.champion()), refiner_.champion()->cost, iterations_};
-        if (accept_(candidate)) {
-            incumbent_ = std::move(candidate);
-            return;
-        }
-        flights_.count_rejection("direct_flight");
-        refiner_.drop_champion();
-        if (incumbent_) {
-            refiner_.take(incumbent_->plan);
-        }
+/// The cheapest plan, if it is by this share cheaper than the incumbent.
+std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double least_gain) const {
+    const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
+    if (const FlownPlan* champion = refiner_.champion(); champion != nullptr && champion->cost < to_beat) {
+        return Proposal{{refiner_.plan_of(*champion), champion->cost, iterations_}, refiner_.champion_number()};
     }
-    for (FlightNode* hold = best_hold(); hold != nullptr && hold->cost < to_beat(); hold = best_hold()) {
-        Candidate candidate{tree_.plan_to(*hold), hold->cost, iterations_};
-        if (accept_(candidate)) {
-            tree_.verify(*hold);
-            incumbent_ = std::move(candidate);
+    if (FlightNode* hold = best_hold(); hold != nullptr && hold->cost < to_beat) {
+        tree_.verify(*hold);
+        return Proposal{{tree_.plan_to(*hold), hold->cost, iterations_}, 0, hold};
+    }
+    return std::nullopt;
+}
+
+void FlightTreePlanner::fly(Proposal& proposal) const {
+    proposal.is_good = !hooks_.flies || hooks_.flies(proposal.candidate);
+}
+
+/// What becomes of a plan that was flown.
+void FlightTreePlanner::settle(Proposal proposal) {
+    if (proposal.is_good) {
+        hooks_.accept(proposal.candidate);
+        incumbent_ = std::move(proposal.candidate);
+        return;
+    }
+    flights_.count_rejection("direct_flight");
+    if (proposal.hold == nullptr) {
+        refiner_.drop(proposal.refined);
+        if (incumbent_) {
+            handed_over_.push_back(incumbent_->plan);
+        }
+    } else if (proposal.hold->cost == proposal.candidate.cost) {
+        proposal.hold->is_discarded = true;  // unless it was rewired meanwhile: a new flight, a new chance
+    }
+}
+
+/// Flies the cheapest plans one after the other until one is good.
+void FlightTreePlanner::settle_best() {
+    for (bool is_good = false; !is_good;) {
+        auto best = proposal(any_gain);
+        if (!best) {
             return;
         }
-        hold->is_discarded = true;
-        flights_.count_rejection("direct_flight");
+        fly(*best);
+        is_good = best->is_good;
+        settle(std::move(*best));
     }
 }
 

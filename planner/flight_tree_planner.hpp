@@ -20,23 +20,36 @@ struct Candidate {
     std::uint64_t iteration;
 };
 
+/// What a search asks about its plans.
+struct CandidateHooks {
+    /// Flies a plan as it will be flown; false discards it and the search goes on. Called once at a time, but beside
+    /// the search. Empty: the planner's own model is enough.
+    std::function<bool(const Candidate&)> flies;
+    /// Told of every plan that counts, each cheaper than the one before.
+    std::function<void(const Candidate&)> accept;
+};
+
 /// RRT* whose edges are closed-loop flights (variants MP-ARM-DA and MP-ARM-ADA): parents are chosen and nodes rewired
 /// by flown cost. Samples come in waves, whose flights are flown side by side. What the tree finds is refined to plans
-/// that do not stop at their corners; tree and refinement share the flight time equally. Anytime: the incumbent only
+/// that do not stop at their corners. Once there is a plan the search goes on in rounds, in which the tree grows, plans
+/// are refined and the best one is flown directly, side by side; what each of them has found the others see after the
+/// round. A round ends by what was flown in it, so threads change nothing but the time. Anytime: the incumbent only
 /// gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
 class FlightTreePlanner : public ompl::base::Planner {
  public:
-    /// @param accept asked about every better plan; false discards it and the search goes on
+    /// @param flights of the tree and of all plans, as many threads as the search may use
     FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const Problem& problem, FlightTree& tree,
-                      const SearchSpace& space, PlannedFlights& flights, Random& random,
-                      std::function<bool(const Candidate&)> accept);
+                      const SearchSpace& space, PlannedFlights& flights, Random& random, CandidateHooks hooks,
+                      int threads = 1);
 
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& terminated) override;
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
     /// The search ends after so many iterations, whatever the termination condition says.
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
-    /// Called after every iteration.
+    /// The search ends with the first plan that counts.
+    void set_stops_at_first_plan(bool stops) { stops_at_first_plan_ = stops; }
+    /// Called after every wave, or round.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
     [[nodiscard]] std::uint64_t iterations() const noexcept { return iterations_; }
@@ -45,6 +58,8 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] const FlightNode& nearest_to_goal() const noexcept { return *nearest_to_goal_; }
     /// How near that is [m]; 0 within the goal region.
     [[nodiscard]] double nearest_distance_m() const noexcept { return nearest_distance_m_; }
+    /// Of everything that was flown in the planner's own model.
+    [[nodiscard]] FlightStatistics statistics() const;
 
  private:
     /// A sample on its way to become a node.
@@ -61,7 +76,15 @@ class FlightTreePlanner : public ompl::base::Planner {
         FlightNode* best_parent = nullptr;
     };
 
-    void grow(std::uint64_t samples);
+    /// A plan on its way to become the incumbent: of the refiner or of the tree.
+    struct Proposal {
+        Candidate candidate;
+        int refined = 0;             ///< number of the refiner's plan, or
+        FlightNode* hold = nullptr;  ///< of the tree
+        bool is_good = false;        ///< it was flown
+    };
+
+    void grow();
     [[nodiscard]] std::optional<Growth> sampled();
     void choose_parents(std::vector<Growth>& wave);
     [[nodiscard]] std::vector<FlightNode*> add(const std::vector<Growth>& wave);
@@ -69,27 +92,38 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::optional<Configuration> target();
     [[nodiscard]] std::optional<Configuration> target_beside_incumbent();
     void refine();
+    void go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated);
     void hand_to_refiner();
     [[nodiscard]] FlightNode* best_hold() const;
     [[nodiscard]] const FlightNode* other_way();
     [[nodiscard]] bool has_plan() const noexcept { return !tree_.holds().empty(); }
-    void review(double least_gain);
+    [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
+    [[nodiscard]] std::optional<Proposal> proposal(double least_gain) const;
+    void fly(Proposal& proposal) const;
+    void settle(Proposal proposal);
+    void settle_best();
     [[nodiscard]] std::size_t neighbour_count() const;
 
     FlightTree& tree_;
     const SearchSpace& space_;
-    PlannedFlights& flights_;
-    Random& random_;
+    PlannedFlights& flights_;         ///< of the tree
+    PlannedFlights refined_flights_;  ///< of the refiner
+    Random& random_;                  ///< of the tree, and between rounds
+    Random refiner_random_;
     PlanRefiner refiner_;
-    std::function<bool(const Candidate&)> accept_;
+    CandidateHooks hooks_;
+    int threads_;
     std::function<void()> observer_;
     std::optional<std::uint64_t> max_iterations_;
+    bool stops_at_first_plan_ = false;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> incumbent_;
-    double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds
-    double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
-    std::uint64_t refine_ticks_ = 0;      ///< flown by the refiner
-    int waves_since_review_ = 0;
+    std::optional<Proposal> proposal_;           ///< flown in the next round
+    std::vector<Plan> handed_over_;              ///< the refiner takes them on in the next round
+    double best_hold_cost_ = HUGE_VAL;           ///< of the tree's holds
+    double handed_over_cost_ = HUGE_VAL;         ///< of the tree's plan that the refiner got last
+    double tree_work_ = 0, tree_due_ = 0;        ///< done in all rounds, and to be done up to the end of this one
+    double refiner_work_ = 0, refiner_due_ = 0;  ///< the same of the refiner
     const FlightNode* nearest_to_goal_;
     double nearest_distance_m_;
     double range_m_;

@@ -33,10 +33,8 @@ const FlownPlan* PlanRefiner::champion() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
 }
 
-void PlanRefiner::drop_champion() {
-    if (!tracks_.empty()) {
-        tracks_.erase(tracks_.begin());
-    }
+void PlanRefiner::drop(int number) {
+    std::erase_if(tracks_, [number](const Track& track) { return track.number == number; });
 }
 
 FlightJob PlanRefiner::job_for(const FlightState& from, const Change& change, std::size_t first,
@@ -97,7 +95,7 @@ void PlanRefiner::take(const Plan& plan) {
     if (jobs[0].fault() != FlightFault::none) {
         return;
     }
-    Track track{flown(base, change, jobs[0])};
+    Track track{flown(base, change, jobs[0]), ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
         if (!tracks_.empty()) {
             tracks_.front().waves = 0;  // it has its turns to overtake before it

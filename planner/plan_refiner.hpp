@@ -37,14 +37,17 @@ class PlanRefiner {
     void improve();
 
     [[nodiscard]] const FlownPlan* champion() const noexcept;
-    /// Forgets the champion, which flies in the planner's model only, and goes on with what is left.
-    void drop_champion();
+    /// The plan that was taken on and became the champion: 1 for the first one. @pre there is a champion
+    [[nodiscard]] int champion_number() const noexcept { return tracks_.front().number; }
+    /// Forgets what became of a plan that was taken on, which flies in the planner's model only.
+    void drop(int number);
     [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
 
  private:
     static constexpr std::size_t most_tracks = 2;
     struct Track {
         FlownPlan plan;
+        int number;        ///< of the plan that was taken on
         double step = 1;   ///< of changes, as a share of the largest
         int failures = 0;  ///< waves since the last success, or since steps became large again
         int waves = 0;     ///< that it was worked on
@@ -68,6 +71,7 @@ class PlanRefiner {
     PlannedFlights& flights_;
     PlanChanges changes_;
     std::vector<Track> tracks_;  ///< the champion first
+    int taken_ = 0;
     std::size_t turn_ = 0;
 };
 

@@ -50,6 +50,20 @@ std::map<std::string, std::uint64_t> no_rejections() {
             {"bounds", 0},    {"goal_missed", 0},  {"direct_flight", 0}, {"too_long", 0}};
 }
 
+FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
+    edges += other.edges;
+    ticks += other.ticks;
+    states_checked += other.states_checked;
+    rejections += other.rejections;
+    for (const auto& [cause, count] : other.rejected) {
+        rejected[cause] += count;
+    }
+    if (other.obstruction && (!obstruction || other.obstruction->goal_distance_m < obstruction->goal_distance_m)) {
+        obstruction = other.obstruction;
+    }
+    return *this;
+}
+
 PlannedFlights::PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space,
                                const AeroMap* map, std::function<bool()> is_over, int threads,
                                std::optional<FlightState> start)
@@ -60,6 +74,17 @@ PlannedFlights::PlannedFlights(const Problem& problem, const FlightModel& model,
       limits_(reference_limits(problem.motion)),
       start_(start ? *start : start_state(model, problem.start)),
       crew_(model, map, planning_rules(problem, std::move(is_over)), &problem.goal, threads) {
+    statistics_.rejected = no_rejections();
+}
+
+PlannedFlights::PlannedFlights(const PlannedFlights& others, int threads)
+    : problem_(others.problem_),
+      model_(others.model_),
+      space_(others.space_),
+      map_(others.map_),
+      limits_(others.limits_),
+      start_(others.start_),
+      crew_(model_, map_, others.rules(), &problem_.goal, threads) {
     statistics_.rejected = no_rejections();
 }
 

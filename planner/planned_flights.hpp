@@ -21,6 +21,8 @@ struct FlightStatistics {
     std::map<std::string, std::uint64_t> rejected;
     std::uint64_t rejections = 0;
     std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were refused, the one that came nearest
+
+    FlightStatistics& operator+=(const FlightStatistics& other);
 };
 
 /// How the flights of one search are flown, judged, paid for and counted.
@@ -32,6 +34,12 @@ class PlannedFlights {
     /// @param start the whole vehicle with which the search begins; empty: as the problem's start says
     PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
                    std::function<bool()> is_over = {}, int threads = 1, std::optional<FlightState> start = {});
+
+    /// Flights of the same search, to be flown beside the others and counted on their own.
+    PlannedFlights(const PlannedFlights& others, int threads);
+
+    /// From now on flies with so many of its threads.
+    void use_threads(int threads) { crew_.use_threads(threads); }
 
     /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
     /// its reference to a few centimetres. Counts the refusal if it is not.

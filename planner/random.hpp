@@ -16,6 +16,9 @@ class Random {
         return low + (high - low) * (static_cast<double>(engine_() >> 11U) * scale);
     }
 
+    /// Another source of numbers, which depends on this one's seed and on nothing that is drawn from here later.
+    [[nodiscard]] Random branch() { return Random(engine_()); }
+
     /// True with this probability.
     bool chance(double probability) { return uniform(0, 1) < probability; }
 

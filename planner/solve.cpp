@@ -1,7 +1,9 @@
 #include "downwash/planner/solve.hpp"
 
 #include <chrono>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "downwash/planner/control_planners.hpp"
 #include "downwash/planner/flight_tree_planner.hpp"
@@ -47,8 +49,8 @@ class Search {
         }
     }
 
-    void improved(double cost, std::uint64_t iteration, std::optional<double> flown_cost) {
-        solution_.planning.improvements.push_back({clock_.seconds(), iteration, cost, flown_cost});
+    void improved(double at_s, double cost, std::uint64_t iteration, std::optional<double> flown_cost) {
+        solution_.planning.improvements.push_back({at_s, iteration, cost, flown_cost});
     }
 
     void report(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
@@ -94,8 +96,9 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
                (problem.planner.max_iterations && progress.iteration >= *problem.planner.max_iterations);
     };
     hooks.on_improvement = [&](double cost, std::uint64_t iteration) {
-        search.found_first(search.seconds());
-        search.improved(cost, iteration, {});
+        const double now_s = search.seconds();
+        search.found_first(now_s);
+        search.improved(now_s, cost, iteration, {});
     };
     planning::GeometricResult result = planning::plan_geometrically(problem, model, space, random, hooks);
     solution.tree = std::move(result.tree);
@@ -124,7 +127,7 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
 /// aerodynamics before it counts, and everything flown is accounted for.
 struct FlightSearch {
     /// @param whole the problem of which this one is a part, if not all   @param course that lies before it
-    FlightSearch(const Problem& of, const Problem& whole, const FlightModel& with, const SolveOptions& options,
+    FlightSearch(const Problem& of, const Problem& whole, const FlightModel& with, const SolveOptions& how,
                  const AeroMap* map, const planning::Course& course, Solution& into)
         : problem(of),
           start(start_state(with, whole.start)),
@@ -132,40 +135,47 @@ struct FlightSearch {
           goals(course.goals),
           model(with),
           solution(into),
-          keep_tree(options.keep_tree),
-          search(of, options, into),
+          options(how),
+          search(of, how, into),
           space(of, with),
           random(of.planner.seed),
           flights(
-              of, with, space, map, [this] { return search.is_over(); }, options.threads, course.vehicle) {
+              of, with, space, map, [this] { return search.is_over(); }, how.threads, course.vehicle) {
         goals.push_back(of.goal);
     }
 
-    bool accept(const Plan& plan, double cost, std::uint64_t iteration) {
+    /// Whether plans of this variant count only when they fly directly.
+    [[nodiscard]] bool is_aware() const { return problem.planner.variant == Variant::mp_arm_ada; }
+
+    /// Whether a plan flies directly.
+    bool flies(const Plan& plan) {
         search.found_first(search.seconds());
-        std::optional<double> flown_cost;
-        if (problem.planner.variant == Variant::mp_arm_ada) {
-            double flight_wall_s = 0;
-            Execution flight = fly_directly(start, goals, model, before.continued_by(plan), flight_wall_s);
-            if (flight.outcome != Outcome::ok) {
-                return false;
-            }
-            flown_cost = cost_of(flight, problem.planner.objective);
-            solution.execution = std::move(flight);
-            solution.planning.flight_wall_s = flight_wall_s;
-        }
-        search.improved(cost, iteration, flown_cost);
-        return true;
+        flown = fly_directly(start, goals, model, before.continued_by(plan), flown_wall_s);
+        flown_at_s = search.seconds();
+        return flown->outcome == Outcome::ok;
     }
 
-    void account(std::uint64_t iterations) {
+    /// Takes on a plan; of an aware search the one that was flown last, which counts from the end of its flight on.
+    void accept(double cost, std::uint64_t iteration) {
+        const double at_s = flown ? flown_at_s : search.seconds();
+        search.found_first(at_s);
+        std::optional<double> flown_cost;
+        if (flown) {
+            flown_cost = cost_of(*flown, problem.planner.objective);
+            solution.execution = std::move(*std::exchange(flown, std::nullopt));
+            solution.planning.flight_wall_s = flown_wall_s;
+        }
+        search.improved(at_s, cost, iteration, flown_cost);
+    }
+
+    void account(std::uint64_t iterations, const planning::FlightStatistics& statistics) {
         SearchRecord& record = solution.planning;
         record.wall_s = search.seconds();
         record.iterations = iterations;
-        record.edges_simulated = flights.statistics().edges;
-        record.simulated_s = static_cast<double>(flights.statistics().ticks) * model.tick().tick_s;
-        record.states_checked = flights.statistics().states_checked;
-        record.rejected = flights.statistics().rejected;
+        record.edges_simulated = statistics.edges;
+        record.simulated_s = static_cast<double>(statistics.ticks) * model.tick().tick_s;
+        record.states_checked = statistics.states_checked;
+        record.rejected = statistics.rejected;
     }
 
     const Problem& problem;
@@ -174,11 +184,14 @@ struct FlightSearch {
     std::vector<Goal> goals;  ///< up to the one that is searched for
     const FlightModel& model;
     Solution& solution;
-    bool keep_tree;
+    const SolveOptions& options;
     Search search;
     planning::SearchSpace space;
     planning::Random random;
     planning::PlannedFlights flights;
+    std::optional<Execution> flown;  ///< the direct flight made last
+    double flown_wall_s = 0;
+    double flown_at_s = 0;  ///< when that was over
 };
 
 /// OMPL's planners over controls.
@@ -186,18 +199,22 @@ void search_by_controls(FlightSearch& common) {
     const PlannerSettings& settings = common.problem.planner;
     planning::SteeredFlights flights(common.problem, common.space, common.flights);
     planning::ControlHooks hooks;
-    hooks.keep_tree = common.keep_tree;
+    hooks.keep_tree = common.options.keep_tree;
     hooks.is_over = [&](std::uint64_t iteration) {
         const planning::FlightStatistics& flown = common.flights.statistics();
         common.search.report(iteration, flown.edges, flown.rejections);
         return common.search.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
     };
     hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
-        return common.accept(plan, cost, iteration);
+        if (common.is_aware() && !common.flies(plan)) {
+            return false;
+        }
+        common.accept(cost, iteration);
+        return true;
     };
     planning::ControlResult result =
         planning::plan_by_controls(settings.algorithm, settings.seed, flights, common.random, hooks);
-    common.account(result.iterations);
+    common.account(result.iterations, common.flights.statistics());
     common.solution.tree = std::move(result.tree);
     if (result.nearest_approach_m) {
         common.solution.planning.nearest_approach_m = result.nearest_approach_m;
@@ -214,18 +231,23 @@ void search_by_flights(FlightSearch& common) {
     planning::QueryCounts counts;
     const planning::QuietOmpl quiet;
     const auto information = planning::make_space_information(common.space, common.random, 0.1, counts);
+    planning::CandidateHooks hooks;
+    if (common.is_aware()) {
+        hooks.flies = [&](const planning::Candidate& candidate) { return common.flies(candidate.plan); };
+    }
+    hooks.accept = [&](const planning::Candidate& candidate) { common.accept(candidate.cost, candidate.iteration); };
     planning::FlightTreePlanner planner(information, common.problem, tree, common.space, common.flights, common.random,
-                                        [&](const planning::Candidate& candidate) {
-                                            return common.accept(candidate.plan, candidate.cost, candidate.iteration);
-                                        });
+                                        hooks, common.options.threads);
     planner.set_max_iterations(common.problem.planner.max_iterations);
+    planner.set_stops_at_first_plan(common.options.stop_at_first_solution);
     planner.set_observer(
-        [&] { common.search.report(planner.iterations(), tree.size(), common.flights.statistics().rejections); });
+        [&] { common.search.report(planner.iterations(), tree.size(), planner.statistics().rejections); });
     planner.solve(ompl::base::PlannerTerminationCondition([&] { return common.search.is_over(); }));
 
-    common.account(planner.iterations());
+    const planning::FlightStatistics statistics = planner.statistics();
+    common.account(planner.iterations(), statistics);
     Solution& solution = common.solution;
-    if (common.keep_tree) {
+    if (common.options.keep_tree) {
         solution.tree = planning::tree_of(
             planner, [&common](const ompl::base::State* state) { return planning::read(state, common.space); });
     }
@@ -236,7 +258,7 @@ void search_by_flights(FlightSearch& common) {
         return;
     }
     solution.planning.nearest_approach_m = planner.nearest_distance_m();
-    solution.planning.obstruction = common.flights.statistics().obstruction;
+    solution.planning.obstruction = statistics.obstruction;
     if (planner.nearest_to_goal().parent != nullptr) {
         solution.status = Status::approximate;
         solution.plan = tree.plan_to(planner.nearest_to_goal());

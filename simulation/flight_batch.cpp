@@ -409,7 +409,8 @@ struct FlightCrew::Impl {
     }
 
     /// Waits for batches until the crew is dismissed.
-    void stand_by() {
+    /// @param number of the thread, 1 for the first beside the calling one
+    void stand_by(std::size_t number) {
         std::uint64_t seen = 0;
         for (;;) {
             {
@@ -419,6 +420,9 @@ struct FlightCrew::Impl {
                     return;
                 }
                 seen = batch;
+                if (number > helpers) {
+                    continue;
+                }
             }
             work();
             const std::scoped_lock lock(mutex);
@@ -440,7 +444,8 @@ struct FlightCrew::Impl {
     std::mutex mutex;
     std::condition_variable called, done;
     std::uint64_t batch = 0;
-    std::size_t working = 0;  ///< threads other than the calling one
+    std::size_t helpers = 0;  ///< threads beside the calling one that fly
+    std::size_t working = 0;  ///< of them, at this batch
     bool is_dismissed = false;
     std::vector<std::jthread> others;
 };
@@ -449,8 +454,9 @@ FlightCrew::FlightCrew(const FlightModel& model, const AeroMap* map, FlightRules
                        Instructions instructions)
     : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions)) {
     for (int i = 1; i < threads; ++i) {
-        impl_->others.emplace_back([impl = impl_.get()] { impl->stand_by(); });
+        impl_->others.emplace_back([impl = impl_.get(), i] { impl->stand_by(static_cast<std::size_t>(i)); });
     }
+    use_threads(threads);
 }
 
 FlightCrew::~FlightCrew() {
@@ -462,6 +468,11 @@ FlightCrew::~FlightCrew() {
     impl_->others.clear();  // joins
 }
 
+void FlightCrew::use_threads(int threads) {
+    const std::scoped_lock lock(impl_->mutex);
+    impl_->helpers = std::min(static_cast<std::size_t>(threads - 1), impl_->others.size());
+}
+
 const FlightRules& FlightCrew::rules() const noexcept {
     return impl_->rules;
 }
@@ -471,8 +482,8 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     crew.jobs = jobs;
     crew.next_job = 0;
     // The pace of one or two lanes is the same: two flights are not worth waking others for.
-    const bool is_alone = crew.others.empty() || jobs.size() <= 2;
-    const std::size_t threads = is_alone ? 1 : crew.others.size() + 1;
+    const bool is_alone = crew.helpers == 0 || jobs.size() <= 2;
+    const std::size_t threads = is_alone ? 1 : crew.helpers + 1;
     crew.lanes_used = std::clamp<std::size_t>((jobs.size() + threads - 1) / threads, 1, lane_count);
     if (is_alone) {
         crew.work();
@@ -481,7 +492,7 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     {
         const std::scoped_lock lock(crew.mutex);
         ++crew.batch;
-        crew.working = crew.others.size();
+        crew.working = crew.helpers;
     }
     crew.called.notify_all();
     crew.work();

@@ -67,6 +67,9 @@ class DOWNWASH_EXPORT FlightCrew {
     /// Not to be called from two threads at once.
     void fly(std::span<FlightJob> jobs);
 
+    /// From now on flies with so many of its threads, at least 1, the calling one included.
+    void use_threads(int threads);
+
     /// As given to the constructor.
     [[nodiscard]] const FlightRules& rules() const noexcept;
 

@@ -9,11 +9,11 @@ using namespace downwash;
 
 namespace {
 
-/// Searches the ceiling problem, asking `accept` about every better plan.
+/// Searches the ceiling problem, asking `flies` about every better plan.
 struct Search {
-    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> accept)
+    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> flies)
         : planner(planning::make_space_information(space, random, 0.1, counts), problem, tree, space, flights, random,
-                  std::move(accept)) {
+                  {std::move(flies), [](const planning::Candidate&) {}}) {
         planner.set_max_iterations(iterations);
         static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition([] { return false; })));
     }
@@ -33,23 +33,23 @@ struct Search {
 
 TEST_CASE("a refused plan is counted and discarded, and the search goes on to another") {
     std::vector<double> refused;
-    const auto accept = [&refused](const planning::Candidate& candidate) {
+    const auto flies = [&refused](const planning::Candidate& candidate) {
         if (refused.size() < 3) {
             refused.push_back(candidate.cost);
             return false;
         }
         return true;
     };
-    const Search search(300, accept);
+    const Search search(300, flies);
     CHECK(refused.size() == 3);
-    CHECK(search.flights.statistics().rejected.at("direct_flight") == 3);
+    CHECK(search.planner.statistics().rejected.at("direct_flight") == 3);
     REQUIRE(search.planner.incumbent());
     CHECK(search.planner.iterations() == 300);
 }
 
 TEST_CASE("when every plan is refused there is none, however many were found") {
     const Search search(60, [](const planning::Candidate&) { return false; });
-    CHECK(search.flights.statistics().rejected.at("direct_flight") > 1);
+    CHECK(search.planner.statistics().rejected.at("direct_flight") > 1);
     CHECK_FALSE(search.planner.incumbent());
 }
 

@@ -83,7 +83,7 @@ TEST_CASE(
     CHECK(meets_goal(f.problem.goal, f.model->tick().plant, state));
 }
 
-TEST_CASE("a plan that cannot be flown is not taken on, and a dropped champion is gone") {
+TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped is gone") {
     Fixture f;
     Plan through_the_ground = f.stop_and_go();
     through_the_ground.reference[1].point.position[1] = -1;
@@ -95,7 +95,12 @@ TEST_CASE("a plan that cannot be flown is not taken on, and a dropped champion i
     CHECK(f.refiner.wants_plan());
     f.refiner.take(f.stop_and_go());
     CHECK_FALSE(f.refiner.wants_plan());
-    f.refiner.drop_champion();
-    f.refiner.drop_champion();
+    const int first = f.refiner.champion_number();
+    f.refiner.drop(first);
+    REQUIRE(f.refiner.champion() != nullptr);
+    CHECK(f.refiner.champion_number() != first);
+    f.refiner.drop(first);  // it is gone already
+    REQUIRE(f.refiner.champion() != nullptr);
+    f.refiner.drop(f.refiner.champion_number());
     CHECK(f.refiner.champion() == nullptr);
 }
