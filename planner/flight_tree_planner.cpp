@@ -150,7 +150,7 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
 
 void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
     double share = round_work;
-    if (proposal_ && hooks_.flies) {
+    if (proposal_) {
         share =
             std::max(share, direct_tick_work * static_cast<double>(proposal_->candidate.plan.reference.back().tick));
     }
@@ -415,7 +415,7 @@ std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double le
 }
 
 void FlightTreePlanner::fly(Proposal& proposal) const {
-    proposal.is_good = !hooks_.flies || hooks_.flies(proposal.candidate);
+    proposal.is_good = hooks_.counts(proposal.candidate);
 }
 
 /// What becomes of a plan that was flown.

@@ -22,10 +22,10 @@ struct Candidate {
 
 /// What a search asks about its plans.
 struct CandidateHooks {
-    /// Flies a plan as it will be flown; false discards it and the search goes on. Called once at a time, but beside
-    /// the search. Empty: the planner's own model is enough.
-    std::function<bool(const Candidate&)> flies;
-    /// Told of every plan that counts, each cheaper than the one before.
+    /// Whether a plan counts, if need be after a direct flight; false discards it and the search goes on. Asked of one
+    /// plan at a time, but beside the search.
+    std::function<bool(const Candidate&)> counts;
+    /// Told of every plan that counts, when the search takes it on; each is cheaper than the one before.
     std::function<void(const Candidate&)> accept;
 };
 

@@ -144,28 +144,25 @@ struct FlightSearch {
         goals.push_back(of.goal);
     }
 
-    /// Whether plans of this variant count only when they fly directly.
-    [[nodiscard]] bool is_aware() const { return problem.planner.variant == Variant::mp_arm_ada; }
-
-    /// Whether a plan flies directly.
-    bool flies(const Plan& plan) {
+    /// Whether a plan counts; one of mp-arm-ada has to fly directly.
+    bool counts(const Plan& plan) {
         search.found_first(search.seconds());
-        flown = fly_directly(start, goals, model, before.continued_by(plan), flown_wall_s);
-        flown_at_s = search.seconds();
-        return flown->outcome == Outcome::ok;
+        if (problem.planner.variant == Variant::mp_arm_ada) {
+            flown = fly_directly(start, goals, model, before.continued_by(plan), flown_wall_s);
+        }
+        known_at_s = search.seconds();
+        return !flown || flown->outcome == Outcome::ok;
     }
 
-    /// Takes on a plan; of an aware search the one that was flown last, which counts from the end of its flight on.
+    /// Takes on the plan of which counts() was asked last; it has counted since the answer was known.
     void accept(double cost, std::uint64_t iteration) {
-        const double at_s = flown ? flown_at_s : search.seconds();
-        search.found_first(at_s);
         std::optional<double> flown_cost;
         if (flown) {
             flown_cost = cost_of(*flown, problem.planner.objective);
             solution.execution = std::move(*std::exchange(flown, std::nullopt));
             solution.planning.flight_wall_s = flown_wall_s;
         }
-        search.improved(at_s, cost, iteration, flown_cost);
+        search.improved(known_at_s, cost, iteration, flown_cost);
     }
 
     void account(std::uint64_t iterations, const planning::FlightStatistics& statistics) {
@@ -191,7 +188,7 @@ struct FlightSearch {
     planning::PlannedFlights flights;
     std::optional<Execution> flown;  ///< the direct flight made last
     double flown_wall_s = 0;
-    double flown_at_s = 0;  ///< when that was over
+    double known_at_s = 0;  ///< when it was known whether the plan counts
 };
 
 /// OMPL's planners over controls.
@@ -206,7 +203,7 @@ void search_by_controls(FlightSearch& common) {
         return common.search.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
     };
     hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
-        if (common.is_aware() && !common.flies(plan)) {
+        if (!common.counts(plan)) {
             return false;
         }
         common.accept(cost, iteration);
@@ -232,9 +229,7 @@ void search_by_flights(FlightSearch& common) {
     const planning::QuietOmpl quiet;
     const auto information = planning::make_space_information(common.space, common.random, 0.1, counts);
     planning::CandidateHooks hooks;
-    if (common.is_aware()) {
-        hooks.flies = [&](const planning::Candidate& candidate) { return common.flies(candidate.plan); };
-    }
+    hooks.counts = [&](const planning::Candidate& candidate) { return common.counts(candidate.plan); };
     hooks.accept = [&](const planning::Candidate& candidate) { common.accept(candidate.cost, candidate.iteration); };
     planning::FlightTreePlanner planner(information, common.problem, tree, common.space, common.flights, common.random,
                                         hooks, common.options.threads);

@@ -9,11 +9,11 @@ using namespace downwash;
 
 namespace {
 
-/// Searches the ceiling problem, asking `flies` about every better plan.
+/// Searches the ceiling problem, asking `counts` about every better plan.
 struct Search {
-    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> flies)
-        : planner(planning::make_space_information(space, random, 0.1, counts), problem, tree, space, flights, random,
-                  {std::move(flies), [](const planning::Candidate&) {}}) {
+    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> counts)
+        : planner(planning::make_space_information(space, random, 0.1, queries), problem, tree, space, flights, random,
+                  {std::move(counts), [](const planning::Candidate&) {}}) {
         planner.set_max_iterations(iterations);
         static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition([] { return false; })));
     }
@@ -25,7 +25,7 @@ struct Search {
     planning::Random random{1};
     planning::PlannedFlights flights{problem, *model, space, map.get()};
     planning::FlightTree tree{problem, *model, space, flights};
-    planning::QueryCounts counts;
+    planning::QueryCounts queries;
     planning::FlightTreePlanner planner;
 };
 
@@ -33,14 +33,14 @@ struct Search {
 
 TEST_CASE("a refused plan is counted and discarded, and the search goes on to another") {
     std::vector<double> refused;
-    const auto flies = [&refused](const planning::Candidate& candidate) {
+    const auto counts = [&refused](const planning::Candidate& candidate) {
         if (refused.size() < 3) {
             refused.push_back(candidate.cost);
             return false;
         }
         return true;
     };
-    const Search search(300, flies);
+    const Search search(300, counts);
     CHECK(refused.size() == 3);
     CHECK(search.planner.statistics().rejected.at("direct_flight") == 3);
     REQUIRE(search.planner.incumbent());
