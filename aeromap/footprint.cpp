@@ -101,7 +101,14 @@ Footprint::Footprint(const Scene& scene, std::size_t which)
         }
         sides_.push_back(side);
     }
-    if (sides_.empty()) {
+    // Of a sliver nobody knows on which side its edges have it.
+    constexpr double sliver_m = 1e-9;
+    if (std::any_of(sides_.begin(), sides_.end(), [&](const Edge& side) {
+            return side.reach - (side.nx * center_x + side.ny * center_y) < sliver_m;
+        })) {
+        sides_.clear();
+    }
+    if (!outline.ellipses.empty()) {
         disc_radius_ = outline.ellipses.front().across_m;
     }
 }

@@ -17,9 +17,15 @@ struct ExplainArguments {
     std::string kind = "problem";
 };
 
-bool ends_with_key(const std::string& path, std::string_view key) {
+bool ends_with_key(std::string_view path, std::string_view key) {
     return path == key ||
            (path.size() > key.size() && path.ends_with(key) && path[path.size() - key.size() - 1] == '.');
+}
+
+/// The same where the unit was left out: "goal.hold" of "goal.hold_s".
+bool ends_with_stem(std::string_view path, std::string_view key) {
+    return ends_with_key(path.substr(0, path.size() - last_name(path).size() + without_unit(last_name(path)).size()),
+                         key);
 }
 
 /// The key as the table has it: without the indices of list elements.
@@ -65,9 +71,14 @@ ExitCode run(const ExplainArguments& arguments) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(arguments.kind));
     const std::string wanted = without_indices(arguments.key);
     std::string text;
-    for (const KeyReference& key : all) {
-        if (ends_with_key(key.info.path, wanted)) {
-            text += (text.empty() ? "" : "\n") + explanation_of(key, all);
+    for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
+        for (const KeyReference& key : all) {
+            if (is_meant(key.info.path, wanted)) {
+                text += (text.empty() ? "" : "\n") + explanation_of(key, all);
+            }
+        }
+        if (!text.empty()) {
+            break;
         }
     }
     if (text.empty()) {

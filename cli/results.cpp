@@ -65,6 +65,11 @@ std::string refusals(const SearchRecord& record) {
     return text.empty() ? "none" : text;
 }
 
+/// A length to the millimetre; a touch by less is no negative zero.
+std::string millimetres(double length_m) {
+    return fmt::format("{:.3f} m", std::round(length_m * 1000) / 1000 + 0.0);
+}
+
 void add_flight(Table& table, const Solution& solution, const Execution& flight) {
     const std::string_view unit = unit_of(solution.objective);
     table.add("flight", fmt::format("{}, {}", name_of(flight.outcome),
@@ -73,14 +78,14 @@ void add_flight(Table& table, const Solution& solution, const Execution& flight)
               fmt::format("{:.6g}{} planned, {:.6g}{} flown", solution.cost, unit, solution.execution_cost, unit));
     table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
     table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
-    table.add("goal error", fmt::format("{:.3f} m", flight.goal_error_m));
+    table.add("goal error", millimetres(flight.goal_error_m));
     if (flight.goals.size() > 1) {
         const auto met =
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
         table.add("goals", fmt::format("{} of {} met", met, flight.goals.size()));
     }
     table.add("least clearance",
-              std::isfinite(flight.min_clearance_m) ? fmt::format("{:.3f} m", flight.min_clearance_m) : "no obstacles");
+              std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
 }
 
 }  // namespace

@@ -132,8 +132,9 @@ FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const 
         make_hold_map(model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m}, width_m / cells_across,
                       arm_rad, threads));
     figure.value = [&model, map](double x_m, double z_m) { return kind_of(verdict_at(model, *map, x_m, z_m)); };
-    figure.scale = scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "beyond the model", "stable"},
-                                  {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {250, 222, 140}, {196, 226, 190}});
+    figure.scale =
+        scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "unknown: beyond the model", "stable"},
+                       {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {250, 222, 140}, {196, 226, 190}});
     figure.has_contour_lines = false;
     figure.lines.push_back(bounds_lines(problem.bounds, extent));
     FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, false, false};

@@ -274,10 +274,12 @@ void FlightTree::verify(const FlightNode& node) const {
         way.push_back(n);
     }
     std::reverse(way.begin(), way.end());
+    FlightRules rules = flights_.rules();
+    rules.is_over = {};  // to the end, even when the search is over
     FlightState state = nodes_.front().state;
     for (const FlightNode* n : way) {
         const ReferenceSegment segment = segment_to(*n->parent, n->reference, n->ticks);
-        const SegmentFlight flight = fly(model_, flights_.map(), flights_.rules(), segment, state);
+        const SegmentFlight flight = fly(model_, flights_.map(), rules, segment, state);
         if (flight.fault != FlightFault::none || !same_bytes(state, n->state)) {
             throw std::logic_error("re-flying a plan did not reproduce the search tree bit for bit");
         }

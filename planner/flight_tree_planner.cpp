@@ -43,15 +43,18 @@ constexpr double other_way_m = 0.5;
 constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
 
-/// Work in rounds is counted in ticks of flights side by side: what a round is for the tree, and as much for the
-/// refiner, ...
+/// Work in rounds is counted in ticks of flights side by side. In a round tree and refiner do so much each ...
 constexpr double round_work = 60'000;
-/// ... what a sample costs before anything is flown, ...
-constexpr double sample_work = 200;
-/// ... a wave of the refiner, ...
-constexpr double refine_work = 400;
-/// ... and a tick with direct aerodynamics.
+/// ... or, while a plan is flown directly, about as much as that takes, by the tick; but no more than this.
 constexpr double direct_tick_work = 75;
+constexpr double most_round_work = 500'000;
+/// What a sample of the tree costs beside its flights.
+constexpr double sample_work = 200;
+/// What a wave of the refiner costs beside its flights.
+constexpr double refine_work = 400;
+
+/// So many plans may be refused after the end of a search until it is given up.
+constexpr int most_refused_at_end = 4;
 
 /// How often in a round the refiner, when it has room, gets another way of the tree.
 constexpr double other_way_share = 0.4;
@@ -131,49 +134,53 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
             go_on_side_by_side(terminated);
         } else {
             grow();
+            tree_left_ = 0;  // the rounds begin with the first plan
         }
         hand_to_refiner();
         if (stops_at_first_plan_) {
-            settle_best();  // at once, and whatever else may have been found beside it
-        } else {
-            proposal_ = proposal(worthwhile_gain);
+            settle_best(terminated);  // at once, and whatever else may have been found beside it
         }
         if (observer_) {
             observer_();
         }
     }
     if (!is_done()) {
-        settle_best();
+        settle_best(terminated);
     }
     return incumbent_ ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::TIMEOUT;
 }
 
+/// The work that tree and refiner do in a round beside a plan that is flown directly.
+double FlightTreePlanner::work_beside(const Plan& plan) const {
+    const ReferenceKnot& end = plan.reference.back();
+    const std::int64_t ticks = end.tick + flights_.hold_leg(end.point).segment.ticks();
+    return std::clamp(direct_tick_work * static_cast<double>(ticks), round_work, most_round_work);
+}
+
+/// A round. Variants without direct flights have rounds of the same length, so that all search the same way.
 void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
-    double share = round_work;
-    if (proposal_) {
-        share =
-            std::max(share, direct_tick_work * static_cast<double>(proposal_->candidate.plan.reference.back().tick));
-    }
-    tree_due_ += share;
-    refiner_due_ += share;
+    std::optional<Proposal> proposed = stops_at_first_plan_ ? std::nullopt : proposal(worthwhile_gain);
+    const double work = proposed ? work_beside(proposed->candidate.plan) : round_work;
+    tree_left_ = std::min(tree_left_, 0.0) + work;
+    refiner_left_ = std::min(refiner_left_, 0.0) + work;
     flights_.use_threads(std::max(1, threads_ - threads_ / 2));
     const Strand strands[] = {
-        [this] {
-            if (proposal_) {
-                fly(*proposal_);
+        [&] {
+            if (proposed) {
+                fly(*proposed);
             }
             return false;
         },
         [&] {
-            if (terminated || is_used_up() || tree_work_ >= tree_due_) {
+            if (terminated || is_used_up() || tree_left_ <= 0) {
                 return false;
             }
             grow();
             return true;
         },
         [&] {
-            if (terminated || (refiner_.champion() == nullptr && handed_over_.empty()) ||
-                refiner_work_ >= refiner_due_) {
+            const bool has_work = refiner_.champion() != nullptr || !handed_over_.empty();
+            if (terminated || !has_work || refiner_left_ <= 0) {
                 return false;
             }
             refine();
@@ -181,8 +188,8 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
         },
     };
     run_side_by_side(strands, std::min(threads_, 2));
-    if (proposal_) {
-        settle(*std::exchange(proposal_, std::nullopt));
+    if (proposed) {
+        settle(std::move(*proposed));
     }
 }
 
@@ -243,7 +250,7 @@ void FlightTreePlanner::grow() {
     }
     const FlightNode* const hold = best_hold();
     best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
-    tree_work_ +=
+    tree_left_ -=
         static_cast<double>(flights_.statistics().ticks - ticks_before) + sample_work * static_cast<double>(samples);
 }
 
@@ -350,7 +357,7 @@ void FlightTreePlanner::refine() {
     for (const Plan& plan : std::exchange(handed_over_, {})) {
         refiner_.take(plan);
     }
-    refiner_work_ += static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + refine_work;
+    refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + refine_work;
 }
 
 /// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
@@ -401,13 +408,15 @@ FlightNode* FlightTreePlanner::best_hold() const {
     return best;
 }
 
-/// The cheapest plan, if it is by this share cheaper than the incumbent.
+/// The cheapest plan, of tree and refiner, if it is by this share cheaper than the incumbent.
 std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double least_gain) const {
     const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
-    if (const FlownPlan* champion = refiner_.champion(); champion != nullptr && champion->cost < to_beat) {
+    const FlownPlan* const champion = refiner_.champion();
+    FlightNode* const hold = best_hold();
+    if (champion != nullptr && champion->cost < to_beat && (hold == nullptr || champion->cost <= hold->cost)) {
         return Proposal{{refiner_.plan_of(*champion), champion->cost, iterations_}, refiner_.champion_number()};
     }
-    if (FlightNode* hold = best_hold(); hold != nullptr && hold->cost < to_beat) {
+    if (hold != nullptr && hold->cost < to_beat) {
         tree_.verify(*hold);
         return Proposal{{tree_.plan_to(*hold), hold->cost, iterations_}, 0, hold};
     }
@@ -436,16 +445,17 @@ void FlightTreePlanner::settle(Proposal proposal) {
     }
 }
 
-/// Flies the cheapest plans one after the other until one is good.
-void FlightTreePlanner::settle_best() {
-    for (bool is_good = false; !is_good;) {
-        auto best = proposal(any_gain);
-        if (!best) {
+/// Flies the cheapest plans one after the other until one is good; not many any more once the search is over.
+void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationCondition& terminated) {
+    int refused_at_end = 0;
+    while (auto best = proposal(any_gain)) {
+        fly(*best);
+        const bool is_good = best->is_good;
+        settle(std::move(*best));
+        refused_at_end += terminated ? 1 : 0;
+        if (is_good || refused_at_end >= most_refused_at_end) {
             return;
         }
-        fly(*best);
-        is_good = best->is_good;
-        settle(std::move(*best));
     }
 }
 

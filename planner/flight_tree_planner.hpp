@@ -23,7 +23,7 @@ struct Candidate {
 /// What a search asks about its plans.
 struct CandidateHooks {
     /// Whether a plan counts, if need be after a direct flight; false discards it and the search goes on. Asked of one
-    /// plan at a time, but beside the search.
+    /// plan at a time, but on any thread and beside the search: it may touch nothing that the search works on.
     std::function<bool(const Candidate&)> counts;
     /// Told of every plan that counts, when the search takes it on; each is cheaper than the one before.
     std::function<void(const Candidate&)> accept;
@@ -37,10 +37,11 @@ struct CandidateHooks {
 /// gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
 class FlightTreePlanner : public ompl::base::Planner {
  public:
-    /// @param flights of the tree and of all plans, as many threads as the search may use
+    /// @param flights of the tree; those of the refiner are made like them
+    /// @param threads that the search may use: those of `flights`
     FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const Problem& problem, FlightTree& tree,
                       const SearchSpace& space, PlannedFlights& flights, Random& random, CandidateHooks hooks,
-                      int threads = 1);
+                      int threads);
 
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& terminated) override;
     void getPlannerData(ompl::base::PlannerData& data) const override;
@@ -81,7 +82,7 @@ class FlightTreePlanner : public ompl::base::Planner {
         Candidate candidate;
         int refined = 0;             ///< number of the refiner's plan, or
         FlightNode* hold = nullptr;  ///< of the tree
-        bool is_good = false;        ///< it was flown
+        bool is_good = false;        ///< it counts
     };
 
     void grow();
@@ -101,7 +102,8 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::optional<Proposal> proposal(double least_gain) const;
     void fly(Proposal& proposal) const;
     void settle(Proposal proposal);
-    void settle_best();
+    void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
+    [[nodiscard]] double work_beside(const Plan& plan) const;
     [[nodiscard]] std::size_t neighbour_count() const;
 
     FlightTree& tree_;
@@ -118,12 +120,11 @@ class FlightTreePlanner : public ompl::base::Planner {
     bool stops_at_first_plan_ = false;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> incumbent_;
-    std::optional<Proposal> proposal_;           ///< flown in the next round
-    std::vector<Plan> handed_over_;              ///< the refiner takes them on in the next round
-    double best_hold_cost_ = HUGE_VAL;           ///< of the tree's holds
-    double handed_over_cost_ = HUGE_VAL;         ///< of the tree's plan that the refiner got last
-    double tree_work_ = 0, tree_due_ = 0;        ///< done in all rounds, and to be done up to the end of this one
-    double refiner_work_ = 0, refiner_due_ = 0;  ///< the same of the refiner
+    std::vector<Plan> handed_over_;       ///< the refiner takes them on in the next round
+    double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds
+    double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
+    double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
+    double refiner_left_ = 0;             ///< the same of the refiner
     const FlightNode* nearest_to_goal_;
     double nearest_distance_m_;
     double range_m_;

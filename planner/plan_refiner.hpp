@@ -37,7 +37,8 @@ class PlanRefiner {
     void improve();
 
     [[nodiscard]] const FlownPlan* champion() const noexcept;
-    /// The plan that was taken on and became the champion: 1 for the first one. @pre there is a champion
+    /// Number, in the order in which plans were taken on, of the one that became the champion; the first is 1.
+    /// @pre there is a champion
     [[nodiscard]] int champion_number() const noexcept { return tracks_.front().number; }
     /// Forgets what became of a plan that was taken on, which flies in the planner's model only.
     void drop(int number);

@@ -16,7 +16,7 @@ class Random {
         return low + (high - low) * (static_cast<double>(engine_() >> 11U) * scale);
     }
 
-    /// Another source of numbers, which depends on this one's seed and on nothing that is drawn from here later.
+    /// Another source of numbers, which depends on what was drawn here before and on nothing that is drawn later.
     [[nodiscard]] Random branch() { return Random(engine_()); }
 
     /// True with this probability.

@@ -28,7 +28,7 @@ struct Progress {
 struct SolveOptions {
     int threads = 1;       ///< for flights and the aero map; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
-    std::function<void(const Progress&)> on_progress;  ///< called from the searching thread, some ten times a second
+    std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, up to ten times a second
     /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
     /// is reused.
     std::function<void(double)> on_map_progress;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <system_error>
 
 #include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
@@ -19,13 +21,17 @@ char lower(char c) {
 }  // namespace
 
 std::string read(const std::filesystem::path& file) {
-    try {
-        std::string bytes = read_file(file, largest_file + 1);
-        if (bytes.size() <= largest_file) {
-            return bytes;
+    std::error_code unknown;  // of what is no regular file; it is read as far as allowed
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    if (unknown || size <= largest_file) {
+        try {
+            std::string bytes = read_file(file, largest_file + 1);
+            if (bytes.size() <= largest_file) {
+                return bytes;
+            }
+        } catch (const FileError& error) {
+            refuse(file.string(), error.what());
         }
-    } catch (const FileError& error) {
-        refuse(file.string(), error.what());
     }
     refuse(file.string(), "is larger than " + std::to_string(largest_file / 1024 / 1024) + " MiB: expected less");
 }

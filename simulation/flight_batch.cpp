@@ -444,8 +444,9 @@ struct FlightCrew::Impl {
     std::mutex mutex;
     std::condition_variable called, done;
     std::uint64_t batch = 0;
-    std::size_t helpers = 0;  ///< threads beside the calling one that fly
-    std::size_t working = 0;  ///< of them, at this batch
+    std::size_t allowed = 0;  ///< threads beside the calling one that may fly
+    std::size_t helpers = 0;  ///< that fly this batch
+    std::size_t working = 0;  ///< of them, still at it
     bool is_dismissed = false;
     std::vector<std::jthread> others;
 };
@@ -469,8 +470,7 @@ FlightCrew::~FlightCrew() {
 }
 
 void FlightCrew::use_threads(int threads) {
-    const std::scoped_lock lock(impl_->mutex);
-    impl_->helpers = std::min(static_cast<std::size_t>(threads - 1), impl_->others.size());
+    impl_->allowed = std::min(static_cast<std::size_t>(threads - 1), impl_->others.size());
 }
 
 const FlightRules& FlightCrew::rules() const noexcept {
@@ -482,8 +482,8 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     crew.jobs = jobs;
     crew.next_job = 0;
     // The pace of one or two lanes is the same: two flights are not worth waking others for.
-    const bool is_alone = crew.helpers == 0 || jobs.size() <= 2;
-    const std::size_t threads = is_alone ? 1 : crew.helpers + 1;
+    const bool is_alone = crew.allowed == 0 || jobs.size() <= 2;
+    const std::size_t threads = is_alone ? 1 : crew.allowed + 1;
     crew.lanes_used = std::clamp<std::size_t>((jobs.size() + threads - 1) / threads, 1, lane_count);
     if (is_alone) {
         crew.work();
@@ -492,6 +492,7 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     {
         const std::scoped_lock lock(crew.mutex);
         ++crew.batch;
+        crew.helpers = crew.allowed;
         crew.working = crew.helpers;
     }
     crew.called.notify_all();

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/meshes.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/effects/effect_models.hpp"
@@ -62,6 +63,16 @@ TEST_CASE("Level slabs beside each other count by the areas that they cover, a c
         const double strip = (std::asin(0.6) + 0.6 * std::sqrt(1 - 0.36)) / pi;  // between the chords 0 and 0.6 R
         const Vector3 hub = turned(0, 0, 0.5 * radius);
         REQUIRE(effect.factors(hub).ground == Approx(1 + near / 4 + far * strip).epsilon(0).margin(1e-11));
+    }
+}
+
+TEST_CASE("A level triangle without width covers nothing, in whatever direction it lies") {
+    for (const Vector3& last : {Vector3{0.3, 0.9, 0}, Vector3{0.7, 2.1, 0}, Vector3{-0.3, -0.9, 0}}) {
+        const Mesh mesh =
+            test::mesh_of({{0, 0, 0}, {0.1, 0.3, 0}, last, {5, 5, 0}, {6, 5, 0}, {5, 6, 0}}, {{0, 1, 2}, {3, 4, 5}});
+        const DirectEffect effect(scene_of({{"sheet", mesh, {0, 0, 0}}}), {}, 0.15);
+        REQUIRE(effect.factors({0.15, 0.25, 0.1}).ground == Approx(1).epsilon(0).margin(1e-9));
+        REQUIRE(effect.factors({5.3, 5.3, 0.1}).ground > 1.01);  // the other triangle is there
     }
 }
 

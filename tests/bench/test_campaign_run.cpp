@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <map>
+#include <string>
 
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
@@ -152,6 +154,18 @@ TEST_CASE("the file has the tables and columns that Planner Arena reads") {
                  "plannerConfigs ON plannerid = plannerConfigs.id WHERE time > 0 AND solved = 1") == "4");
     CHECK(answer(folder, "SELECT count(DISTINCT runid) FROM progress WHERE best_cost > 0 AND time > 0") == "4");
     CHECK(answer(folder, "PRAGMA integrity_check") == "ok");
+    // As OMPL 1.6's ompl_benchmark_statistics.py makes them; what else a table has comes behind.
+    for (const auto& [table, columns] : std::map<std::string, std::string>{
+             {"experiments",
+              "id,name,totaltime,timelimit,memorylimit,runcount,version,hostname,cpuinfo,date,seed,setup"},
+             {"plannerConfigs", "id,name,settings"},
+             {"enums", "name,value,description"},
+             {"runs", "id,experimentid,plannerid"},
+             {"progress", "runid,time"}}) {
+        CAPTURE(table);
+        CHECK_THAT(answer(folder, "SELECT group_concat(name) FROM pragma_table_info('" + table + "')"),
+                   Catch::StartsWith(columns));
+    }
 }
 
 TEST_CASE("a campaign that was stopped goes on where it was and ends as if it never had been") {

@@ -112,6 +112,7 @@ TEST_CASE("Keys are explained from the table that reads them") {
     CHECK_THAT(run(folder, {"explain", "environment.obstacles[3].name"}).out,
                Catch::Contains("environment.obstacles[].name"));
     CHECK_THAT(run(folder, {"explain", "goal"}).out, Catch::Contains("hold_s"));
+    CHECK(run(folder, {"explain", "goal.hold"}).out == run(folder, {"explain", "goal.hold_s"}).out);
     const Result unknown = run(folder, {"explain", "safety_margn_m"});
     CHECK(unknown.code == 2);
     CHECK_THAT(unknown.err, Catch::Contains("did you mean 'safety_margin_m'?"));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "../support/test_problem.hpp"
@@ -11,11 +12,13 @@ namespace {
 
 /// Searches the ceiling problem, asking `counts` about every better plan.
 struct Search {
-    Search(std::uint64_t iterations, std::function<bool(const planning::Candidate&)> counts)
+    Search(
+        std::uint64_t iterations, std::function<bool(const planning::Candidate&)> counts,
+        const std::function<bool()>& is_over = [] { return false; })
         : planner(planning::make_space_information(space, random, 0.1, queries), problem, tree, space, flights, random,
-                  {std::move(counts), [](const planning::Candidate&) {}}) {
+                  {std::move(counts), [](const planning::Candidate&) {}}, 1) {
         planner.set_max_iterations(iterations);
-        static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition([] { return false; })));
+        static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition(is_over)));
     }
 
     Problem problem = test::ceiling_problem();
@@ -67,6 +70,28 @@ TEST_CASE("a plan that was accepted stays, although cheaper ones are refused") {
     REQUIRE(asked > 1);
     REQUIRE(search.planner.incumbent());
     CHECK(search.planner.incumbent()->cost == accepted);
+}
+
+TEST_CASE("a search whose time is over flies a few plans more, not all that it found") {
+    int asked = 0;
+    int asked_in_time = 0;
+    int looks = 0;
+    const Search search(
+        1'000'000,
+        [&asked](const planning::Candidate&) {
+            ++asked;
+            return false;
+        },
+        [&] {
+            const bool is_over = ++looks > 400;
+            asked_in_time = is_over ? asked_in_time : asked;
+            return is_over;
+        });
+    CHECK_FALSE(search.planner.incumbent());
+    CHECK(asked > asked_in_time);
+    CHECK(asked - asked_in_time <= 5);  // one of them in the round that was under way
+    const auto& holds = search.tree.holds();
+    CHECK(std::count_if(holds.begin(), holds.end(), [](const auto* hold) { return !hold->is_discarded; }) > 5);
 }
 
 TEST_CASE("the tree can be read as OMPL's planner data") {

@@ -60,18 +60,20 @@ TEST_CASE("the same seed and iteration budget give the same bytes, whatever the 
         CAPTURE(name_of(variant));
         Problem problem = with(variant);
         problem.planner.max_iterations = variant == Variant::mp_arm ? 800 : 80;
-        SolveOptions two_threads;
-        two_threads.threads = 2;
         const Solution a = solve(problem);
-        const Solution b = solve(problem, two_threads);
         REQUIRE(a.plan);
-        REQUIRE(b.plan);
-        CHECK(a.cost == b.cost);
-        CHECK(test::same_bytes(*a.plan, *b.plan));
-        CHECK(test::same_bytes(*a.execution, *b.execution));
-        CHECK(a.planning.edges_simulated == b.planning.edges_simulated);
-        CHECK(a.planning.states_checked == b.planning.states_checked);
-        CHECK(a.planning.rejected == b.planning.rejected);
+        for (const int threads : {2, 5}) {
+            SolveOptions options;
+            options.threads = threads;
+            const Solution b = solve(problem, options);
+            REQUIRE(b.plan);
+            CHECK(a.cost == b.cost);
+            CHECK(test::same_bytes(*a.plan, *b.plan));
+            CHECK(test::same_bytes(*a.execution, *b.execution));
+            CHECK(a.planning.edges_simulated == b.planning.edges_simulated);
+            CHECK(a.planning.states_checked == b.planning.states_checked);
+            CHECK(a.planning.rejected == b.planning.rejected);
+        }
         problem.planner.seed = 2;
         CHECK_FALSE(test::same_bytes(*a.plan, *solve(problem).plan));
     }
@@ -366,7 +368,7 @@ TEST_CASE("where a surface saves energy the aware planner flies and holds along 
         CHECK(aware.execution->outcome == Outcome::ok);
         aware_j.push_back(aware.execution->energy_j);
         unaware_j.push_back(unaware.execution->energy_j);
-        below_the_deck += aware.plan->waypoints.back().z_m > 4.4 ? 1 : 0;
+        below_the_deck += aware.plan->waypoints.back().z_m > 4.2 ? 1 : 0;
     }
     std::sort(aware_j.begin(), aware_j.end());
     std::sort(unaware_j.begin(), unaware_j.end());
