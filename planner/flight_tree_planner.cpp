@@ -48,8 +48,9 @@ constexpr double round_work = 60'000;
 /// ... or, while a plan is flown directly, about as much as that takes, by the tick; but no more than this.
 constexpr double direct_tick_work = 75;
 constexpr double most_round_work = 500'000;
-/// What a sample of the tree costs beside its flights.
+/// What a sample of the tree costs beside its flights, and what it mostly costs with them.
 constexpr double sample_work = 200;
+constexpr double usual_sample_work = 1'500;
 /// What a wave of the refiner costs beside its flights.
 constexpr double refine_work = 400;
 
@@ -160,7 +161,10 @@ double FlightTreePlanner::work_beside(const Plan& plan) const {
 /// A round. Variants without direct flights have rounds of the same length, so that all search the same way.
 void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
     std::optional<Proposal> proposed = stops_at_first_plan_ ? std::nullopt : proposal(worthwhile_gain);
-    const double work = proposed ? work_beside(proposed->candidate.plan) : round_work;
+    double work = proposed ? work_beside(proposed->candidate.plan) : round_work;
+    if (max_iterations_) {  // the refiner does not go on for long when the tree is at its end
+        work = std::min(work, usual_sample_work * static_cast<double>(*max_iterations_ - iterations_));
+    }
     tree_left_ = std::min(tree_left_, 0.0) + work;
     refiner_left_ = std::min(refiner_left_, 0.0) + work;
     flights_.use_threads(std::max(1, threads_ - threads_ / 2));
