@@ -256,7 +256,7 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
 void search(benchmark::State& state, int threads) {
     const Bridge& bridge = Bridge::get();
     Problem problem = bridge.problem;
-    problem.planner.max_iterations = 1000;
+    problem.planner.max_iterations = 4000;
     problem.planner.time_limit_s.reset();
     SolveOptions how;
     how.threads = threads;
