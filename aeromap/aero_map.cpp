@@ -81,8 +81,8 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
         throw InputError(std::vector<Fault>{
             {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
     }
-    columns_ = static_cast<std::size_t>(cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_));
-    rows_ = static_cast<std::size_t>(cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_));
+    columns_ = static_cast<std::uint32_t>(cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_));
+    rows_ = static_cast<std::uint32_t>(cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_));
 }
 
 void AeroMap::build(int threads, const std::function<void(double)>& on_progress) {
@@ -97,7 +97,7 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress)
         parts.size(), threads,
         [&](std::size_t task) {
             const std::size_t first = (task % tasks_per_layer) * rows_per_task;
-            parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min(first + rows_per_task, rows_));
+            parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min<std::size_t>(first + rows_per_task, rows_));
         },
         on_progress);
 
@@ -160,7 +160,7 @@ double AeroMap::factor_outside(std::size_t layer, double x_m, double z_m) const 
 bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {
     const double u = (x_m - extent_.x_low_m) * cells_per_m_;
     const double w = (z_m - extent_.z_low_m) * cells_per_m_;
-    if (u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_)) {
+    if (u >= 0 && w >= 0 && u < columns_ && w < rows_) {
         const std::size_t cell = static_cast<std::size_t>(w) * columns_ + static_cast<std::size_t>(u);
         const CellFlyability flyability = rasters_[layer]->flyability[cell];
         if (flyability != CellFlyability::mixed) {

@@ -74,24 +74,23 @@ class DOWNWASH_EXPORT AeroMap {
         const double w = (z_m - extent_.z_low_m) * cells_per_m_;
         // Written so that NaN fails. Below, u - i is exact and less than 1, and so is its product with a power of two:
         // no index can leave its cell.
-        if (!(u >= 0 && w >= 0 && u < static_cast<double>(columns_) && w < static_cast<double>(rows_))) {
+        if (!(u >= 0 && w >= 0 && u < columns_ && w < rows_)) {
             return factor_outside(layer, x_m, z_m);
         }
-        const auto i = static_cast<std::size_t>(u);
-        const auto k = static_cast<std::size_t>(w);
+        const auto i = static_cast<std::uint32_t>(u);
+        const auto k = static_cast<std::uint32_t>(w);
         const Raster& raster = *rasters_[layer];
-        const MapCell& cell = raster.cells[k * columns_ + i];
-        const double a = (u - static_cast<double>(i)) * cell.steps_x;
-        const double b = (w - static_cast<double>(k)) * cell.steps_z;
+        const MapCell& cell = raster.cells[std::size_t{k} * columns_ + i];
+        const double a = (u - i) * cell.steps_x;
+        const double b = (w - k) * cell.steps_z;
         const auto ia = static_cast<std::uint32_t>(a);
         const auto ib = static_cast<std::uint32_t>(b);
         const float* node = raster.nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
         const double s = a - ia;
         const double t = b - ib;
-        const double low = node[0] + s * (static_cast<double>(node[1]) - node[0]);
         const float* upper = node + cell.steps_x + 1U;
-        const double high = upper[0] + s * (static_cast<double>(upper[1]) - upper[0]);
-        return low + t * (high - low);
+        const double corner[4] = {node[0], node[1], upper[0], upper[1]};
+        return bilinear(corner, s, t);
     }
 
     /// Whether two layers hold the same values, as those of the left and the right rotors of a vehicle that flies along
@@ -106,8 +105,8 @@ class DOWNWASH_EXPORT AeroMap {
         return {extent_.x_low_m,
                 extent_.z_low_m,
                 cells_per_m_,
-                static_cast<std::uint32_t>(columns_),
-                static_cast<std::uint32_t>(rows_),
+                columns_,
+                rows_,
                 raster.cells.data(),
                 raster.flyability.data(),
                 raster.nodes.data()};
@@ -139,8 +138,8 @@ class DOWNWASH_EXPORT AeroMap {
     MapExtent extent_;
     double cell_m_;  ///< side of a cell
     double cells_per_m_;
-    std::size_t columns_;
-    std::size_t rows_;
+    std::uint32_t columns_;
+    std::uint32_t rows_;
     std::vector<std::shared_ptr<const Raster>> rasters_;  ///< one per layer; layers of equal values share theirs
 };
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 namespace downwash {
 
@@ -13,23 +14,47 @@ inline std::array<double, 3> parabola_weights(double s) {
     return {rest * (rest - s), 4 * s * rest, s * (s - rest)};
 }
 
-/// The product of parabolas along three axes through 3 x 3 x 3 values, the first axis running fastest.
-/// @param at from 0 to 1 along each axis
-template <class Values>
-double triquadratic(const Values& values, const std::array<double, 3>& at) {
-    const auto x = parabola_weights(at[0]);
-    const auto y = parabola_weights(at[1]);
-    const auto z = parabola_weights(at[2]);
-    double sum = 0;
-    for (std::size_t layer = 0; layer < 3; ++layer) {
-        double in_layer = 0;
-        for (std::size_t row = 0; row < 3; ++row) {
-            const std::size_t n = 9 * layer + 3 * row;
-            in_layer += y[row] * (x[0] * values[n] + x[1] * values[n + 1] + x[2] * values[n + 2]);
+/// A product of parabolas along x, y and z: the coefficient of x^i y^j z^k at i + 3 j + 9 k. The last number stays 0;
+/// rows of three are read as four.
+using Triquadratic = std::array<float, 28>;
+
+/// Through 3 x 3 x 3 values at 0, 1/2 and 1 along each axis, x running fastest.
+inline Triquadratic triquadratic_through(std::array<double, 27> values) {
+    for (const std::size_t stride : {1U, 3U, 9U}) {
+        for (std::size_t n = 0; n < values.size(); ++n) {
+            if (n / stride % 3 == 0) {
+                double& low = values[n];
+                double& middle = values[n + stride];
+                double& high = values[n + 2 * stride];
+                const double slope = 4 * middle - 3 * low - high;
+                high = 2 * (low + high) - 4 * middle;
+                middle = slope;
+            }
         }
-        sum += z[layer] * in_layer;
     }
-    return sum;
+    Triquadratic coefficients{};
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        coefficients[n] = static_cast<float>(values[n]);
+    }
+    return coefficients;
+}
+
+/// @param at from 0 to 1 along each axis
+inline double value_at(const Triquadratic& coefficients, const std::array<double, 3>& at) {
+    typedef float Row __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+    const auto read_row = [&](std::size_t first) {
+        Row row;
+        std::memcpy(&row, &coefficients[first], sizeof row);
+        return row;
+    };
+    const auto x = static_cast<float>(at[0]);
+    const auto y = static_cast<float>(at[1]);
+    const auto z = static_cast<float>(at[2]);
+    const auto in_x = [&](std::size_t first) {
+        return read_row(first) + z * (read_row(first + 9) + z * read_row(first + 18));
+    };
+    const Row row = in_x(0) + y * (in_x(3) + y * in_x(6));
+    return row[0] + x * (row[1] + x * row[2]);
 }
 
 }  // namespace downwash

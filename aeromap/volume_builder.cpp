@@ -38,7 +38,7 @@ VolumeMap::Builder::Builder(const VolumeMap& volume, const Cell& first, const Ce
 
 void VolumeMap::Builder::build() {
     nodes_.resize((last_[0] - first_[0]) * (last_[1] - first_[1]) * (last_[2] - first_[2]));
-    values_.resize(1);
+    polynomials_.resize(1);
     std::size_t node = 0;
     for (std::size_t k = first_[2]; k < last_[2]; ++k) {
         for (std::size_t j = first_[1]; j < last_[1]; ++j) {
@@ -74,12 +74,11 @@ void VolumeMap::Builder::fill(std::size_t node, const Box& box, bool is_flyable)
     }
     std::size_t axis = too_long(box);
     if (axis == no_axis) {
-        const Samples k = samples(box);
+        const Coefficients k = polynomial(box);
         axis = missed_axis(box, k);
         if (axis == no_axis) {
-            nodes_[node].index = static_cast<std::uint32_t>(values_.size());
-            std::transform(k.begin(), k.end(), values_.emplace_back().begin(),
-                           [](double value) { return static_cast<float>(value); });
+            nodes_[node].index = static_cast<std::uint32_t>(polynomials_.size());
+            polynomials_.push_back(k);
             return;
         }
     }
@@ -120,14 +119,14 @@ std::size_t VolumeMap::Builder::too_long(const Box& box) const {
 }
 
 /// The axis along which the interpolation misses most, if it misses too much anywhere and may be mended.
-std::size_t VolumeMap::Builder::missed_axis(const Box& box, const Samples& samples) {
+std::size_t VolumeMap::Builder::missed_axis(const Box& box, const Coefficients& polynomial) {
     std::array<double, 3> along{};
     const auto look = [&](std::size_t axis, std::uint32_t part, std::uint32_t next, std::uint32_t after) {
         Point parts{};
         parts[axis] = part;
         parts[(axis + 1) % 3] = next;
         parts[(axis + 2) % 3] = after;
-        along[axis] = std::max(along[axis], missed(box, samples, parts));
+        along[axis] = std::max(along[axis], missed(box, polynomial, parts));
     };
     const auto is_missed = [&along] { return std::max({along[0], along[1], along[2]}) > allowed_error; };
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -148,7 +147,7 @@ std::size_t VolumeMap::Builder::missed_axis(const Box& box, const Samples& sampl
         double error = 0;
         for (std::uint32_t octant = 0; octant < 8 && error <= allowed_error; ++octant) {
             const auto part = [octant](std::uint32_t axis) { return (octant >> axis & 1U) != 0 ? 6U : 2U; };
-            error = missed(box, samples, {part(0), part(1), part(2)});
+            error = missed(box, polynomial, {part(0), part(1), part(2)});
         }
         if (error <= allowed_error) {
             return no_axis;
@@ -167,18 +166,18 @@ std::size_t VolumeMap::Builder::missed_axis(const Box& box, const Samples& sampl
 }
 
 /// @param eighths of the edges
-double VolumeMap::Builder::missed(const Box& box, const Samples& samples, const Point& eighths) {
+double VolumeMap::Builder::missed(const Box& box, const Coefficients& polynomial, const Point& eighths) {
     const auto part = [&](std::size_t axis) { return 0.125 * eighths[axis]; };
     return std::abs(factor(box.at(eighths[0], eighths[1], eighths[2], 8)) -
-                    triquadratic(samples, {part(0), part(1), part(2)}));
+                    value_at(polynomial, {part(0), part(1), part(2)}));
 }
 
-VolumeMap::Builder::Samples VolumeMap::Builder::samples(const Box& box) {
-    Samples all{};
-    for (std::uint32_t n = 0; n < all.size(); ++n) {
-        all[n] = factor(box.at(n % 3, n / 3 % 3, n / 9, 2));
+VolumeMap::Coefficients VolumeMap::Builder::polynomial(const Box& box) {
+    std::array<double, 27> samples{};
+    for (std::uint32_t n = 0; n < samples.size(); ++n) {
+        samples[n] = factor(box.at(n % 3, n / 3 % 3, n / 9, 2));
     }
-    return all;
+    return triquadratic_through(samples);
 }
 
 double VolumeMap::Builder::factor(const Point& point) {

@@ -25,7 +25,7 @@ class VolumeMap::Builder {
     /// Frees what build() made.
     void clear() noexcept {
         nodes_ = {};
-        values_ = {};
+        polynomials_ = {};
     }
 
     [[nodiscard]] const Cell& first() const noexcept { return first_; }
@@ -33,7 +33,7 @@ class VolumeMap::Builder {
     /// First those of the cells, x running fastest; indices within the brick.
     [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
     /// The first one stays unused, as in the volume.
-    [[nodiscard]] const std::vector<Values>& values() const noexcept { return values_; }
+    [[nodiscard]] const std::vector<Coefficients>& polynomials() const noexcept { return polynomials_; }
 
  private:
     using Point = std::array<std::uint32_t, 3>;  ///< of the lattice, from the brick's low corner
@@ -43,14 +43,13 @@ class VolumeMap::Builder {
             return {low[0] + i * (edges[0] / parts), low[1] + j * (edges[1] / parts), low[2] + k * (edges[2] / parts)};
         }
     };
-    using Samples = std::array<double, 27>;  ///< as in Values
 
     void fill(std::size_t node, const Box& box, bool is_flyable);
     [[nodiscard]] bool is_quiet(const Box& box) const;
     [[nodiscard]] std::size_t too_long(const Box& box) const;
-    [[nodiscard]] std::size_t missed_axis(const Box& box, const Samples& samples);
-    [[nodiscard]] double missed(const Box& box, const Samples& samples, const Point& eighths);
-    [[nodiscard]] Samples samples(const Box& box);
+    [[nodiscard]] std::size_t missed_axis(const Box& box, const Coefficients& polynomial);
+    [[nodiscard]] double missed(const Box& box, const Coefficients& polynomial, const Point& eighths);
+    [[nodiscard]] Coefficients polynomial(const Box& box);
     [[nodiscard]] double factor(const Point& point);
     [[nodiscard]] Vector3 hub_m(const Point& point) const;
     [[nodiscard]] Vector3 edges_m(const Box& box) const;
@@ -61,7 +60,7 @@ class VolumeMap::Builder {
     std::atomic<std::size_t>& boxes_;
     double longest_m_;
     std::vector<Node> nodes_;
-    std::vector<Values> values_;
+    std::vector<Coefficients> polynomials_;
     std::unordered_map<std::uint64_t, double> known_;  ///< K at points of the lattice
 };
 

@@ -15,7 +15,7 @@ namespace downwash {
 namespace {
 
 constexpr double longest_radii = 0.45;      // of a cell's edge: no obstacle is missed
-constexpr std::size_t cells_per_brick = 8;  // along each axis
+constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 
 void require_valid(const MapExtent& extent, double lateral_low_m, double lateral_high_m) {
     const auto require_range = [](double low_m, double high_m, const char* axis) {
@@ -50,7 +50,7 @@ VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMo
         throw InputError(std::vector<Fault>{{"", "the volume has more than 2^23 cells; choose it smaller"}});
     }
     std::transform(cells.begin(), cells.end(), cells_.begin(),
-                   [](double count) { return static_cast<std::size_t>(count); });
+                   [](double count) { return static_cast<std::uint32_t>(count); });
     build(threads, on_progress);
 }
 
@@ -72,30 +72,30 @@ void VolumeMap::build(int threads, const std::function<void(double)>& on_progres
     run_parallel(
         bricks.size(), threads, [&](std::size_t brick) { bricks[brick].build(); }, on_progress);
     nodes_.resize(cells_[0] * cells_[1] * cells_[2]);
-    values_.resize(1);  // index 0 stands for K = 1
+    polynomials_.resize(1);  // index 0 stands for K = 1
     for (Builder& brick : bricks) {
         append(brick);
         brick.clear();
     }
     nodes_.shrink_to_fit();
-    values_.shrink_to_fit();
+    polynomials_.shrink_to_fit();
 }
 
 void VolumeMap::append(const Builder& brick) {
     const Cell& first = brick.first();
     const Cell& last = brick.last();
-    const std::size_t columns = last[0] - first[0];
-    const std::size_t rows = last[1] - first[1];
-    const std::size_t cells = columns * rows * (last[2] - first[2]);
+    const std::uint32_t columns = last[0] - first[0];
+    const std::uint32_t rows = last[1] - first[1];
+    const std::uint32_t cells = columns * rows * (last[2] - first[2]);
     // The nodes of cells go to their places, the others and the values to the ends.
     const std::size_t nodes_before = nodes_.size() - cells;
-    const std::size_t values_before = values_.size() - 1;
-    for (std::size_t n = 0; n < brick.nodes().size(); ++n) {
+    const std::size_t boxes_before = polynomials_.size() - 1;
+    for (std::uint32_t n = 0; n < brick.nodes().size(); ++n) {
         Node node = brick.nodes()[n];
         if (node.axis != no_axis) {
             node.index = static_cast<std::uint32_t>(node.index + nodes_before);
         } else if (node.index > 0) {
-            node.index = static_cast<std::uint32_t>(node.index + values_before);
+            node.index = static_cast<std::uint32_t>(node.index + boxes_before);
         }
         if (n < cells) {
             const Cell cell{first[0] + n % columns, first[1] + n / columns % rows, first[2] + n / (columns * rows)};
@@ -104,7 +104,7 @@ void VolumeMap::append(const Builder& brick) {
             nodes_.push_back(node);
         }
     }
-    values_.insert(values_.end(), brick.values().begin() + 1, brick.values().end());
+    polynomials_.insert(polynomials_.end(), brick.polynomials().begin() + 1, brick.polynomials().end());
 }
 
 double VolumeMap::factor(const Vector3& hub_m) const {
@@ -116,8 +116,8 @@ double VolumeMap::factor(const Vector3& hub_m) const {
         if (!(cells >= 0 && local_m[axis] <= high_m_[axis])) {  // NaN too
             return effect_->factor(hub_m);
         }
-        cell[axis] = std::min(static_cast<std::size_t>(cells), cells_[axis] - 1);
-        part[axis] = cells - static_cast<double>(cell[axis]);
+        cell[axis] = std::min(static_cast<std::uint32_t>(cells), cells_[axis] - 1);
+        part[axis] = cells - cell[axis];
     }
     Node node = nodes_[node_of(cell)];
     while (node.axis != no_axis) {
@@ -126,11 +126,11 @@ double VolumeMap::factor(const Vector3& hub_m) const {
         part[node.axis] = is_upper ? halves - 1 : halves;
         node = nodes_[node.index + (is_upper ? 1 : 0)];
     }
-    return node.index == 0 ? 1 : triquadratic(values_[node.index], part);
+    return node.index == 0 ? 1 : value_at(polynomials_[node.index], part);
 }
 
 std::size_t VolumeMap::memory_bytes() const noexcept {
-    return sizeof(*this) + nodes_.capacity() * sizeof(Node) + values_.capacity() * sizeof(Values);
+    return sizeof(*this) + nodes_.capacity() * sizeof(Node) + polynomials_.capacity() * sizeof(Coefficients);
 }
 
 }  // namespace downwash

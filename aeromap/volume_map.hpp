@@ -22,7 +22,7 @@ inline constexpr std::size_t most_volume_boxes = 8388608;
 /// The block is a regular grid of cells at most 0.45 R wide. A cell is halved across x, lateral or z, and its halves
 /// again, until in every box the triquadratic interpolation between 27 values stays within 0.01 of the direct
 /// evaluation everywhere in the flyable area (model 4.5). Boxes that are forbidden throughout, or where K cannot differ
-/// by more than 0.006 from 1, count as 1. Values are kept as float. Immutable after construction.
+/// by more than 0.006 from 1, count as 1. Coefficients are kept as float. Immutable after construction.
 ///
 /// Limits: an edge is halved at most 7 times, to R / 284. Where K jumps or rises more than 0.01 within that, inside the
 /// flyable area, the bound does not hold: right beside obstacles under a min_distance_radii of 0, or as said of
@@ -42,24 +42,24 @@ class DOWNWASH_EXPORT VolumeMap {
 
     [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
     /// Boxes that hold values of their own.
-    [[nodiscard]] std::size_t boxes() const noexcept { return values_.size() - 1; }
+    [[nodiscard]] std::size_t boxes() const noexcept { return polynomials_.size() - 1; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
  private:
     class Builder;
-    using Cell = std::array<std::size_t, 3>;  ///< counted along x, lateral and z
+    using Cell = std::array<std::uint32_t, 3>;  ///< counted along x, lateral and z
 
     /// A halving, or a box.
     struct Node {
         std::uint32_t axis;   ///< that is halved: 0 x, 1 lateral, 2 z; no_axis: a box
-        std::uint32_t index;  ///< of the lower half's node, the upper half's stands behind it; or of a box's values
+        std::uint32_t index;  ///< of the lower half's node, the upper half's stands behind it; or of a box's polynomial
     };
     static constexpr std::uint32_t no_axis = 3;
-    /// K at the corners and in the middles of edges, faces and box; x runs fastest, z slowest.
-    using Values = std::array<float, 27>;
+    /// Of K's polynomial in the box.
+    using Coefficients = std::array<float, 28>;
 
     [[nodiscard]] std::size_t node_of(const Cell& cell) const noexcept {
-        return (cell[2] * cells_[1] + cell[1]) * cells_[0] + cell[0];
+        return (std::size_t{cell[2]} * cells_[1] + cell[1]) * cells_[0] + cell[0];
     }
     void build(int threads, const std::function<void(double)>& on_progress);
     void append(const Builder& brick);
@@ -71,7 +71,7 @@ class DOWNWASH_EXPORT VolumeMap {
     Vector3 cells_per_m_{};
     Cell cells_{};
     std::vector<Node> nodes_;     ///< first those of the cells, x running fastest
-    std::vector<Values> values_;  ///< the first one stays unused: index 0 stands for K = 1
+    std::vector<Coefficients> polynomials_;  ///< the first one stays unused: index 0 stands for K = 1
 };
 
 }  // namespace downwash
