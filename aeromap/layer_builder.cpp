@@ -69,6 +69,11 @@ class RowsBuilder {
     [[nodiscard]] double clearance_m(double x, double z) const {
         return disc_clearance_m(grid_.effect.scene(), hub(x, z), radius_m_);
     }
+    /// Whether the disc's clearance is at least the distance, as it always is when that is not above 0. Sooner known
+    /// than the clearance itself.
+    [[nodiscard]] bool is_clear(double x, double z, double distance_m) const {
+        return distance_m <= 0 || disc_is_clear(grid_.effect.scene(), hub(x, z), radius_m_, distance_m);
+    }
     CellFlyability& flyability(std::size_t i, std::size_t k) {
         return rows_.flyability[(k - first_) * grid_.columns + i];
     }
@@ -96,21 +101,22 @@ class RowsBuilder {
         if (middle_.clearance_m + away + reach < least_clearance_m_) {
             return true;
         }
-        return middle_.clearance_m - away + reach < least_clearance_m_ &&
-               clearance_m(x, z) + reach < least_clearance_m_;
+        return middle_.clearance_m - away + reach < least_clearance_m_ && !is_clear(x, z, least_clearance_m_ - reach);
     }
 
-    /// Moving the disc by d changes its clearance by at most d: one clearance decides a whole block of cells when it
-    /// differs from the least one by more than the block's half diagonal. Otherwise the block is halved.
+    /// Moving the disc by d changes its clearance by at most d: one place decides a whole block of cells when its
+    /// clearance differs from the least one by more than the block's half diagonal. Otherwise the block is halved.
     void classify(std::size_t i0, std::size_t i1, std::size_t k0, std::size_t k1) {
         const double half_x = 0.5 * (x_at(i1) - x_at(i0));
         const double half_z = 0.5 * (z_at(k1) - z_at(k0));
         const double reach = std::sqrt(half_x * half_x + half_z * half_z) + clearance_slack_m;
-        const double clearance = clearance_m(x_at(i0) + half_x, z_at(k0) + half_z);
+        const auto is_clear_in_middle = [&](double distance_m) {
+            return is_clear(x_at(i0) + half_x, z_at(k0) + half_z, distance_m);
+        };
         CellFlyability verdict = CellFlyability::mixed;
-        if (clearance - reach >= least_clearance_m_) {
+        if (is_clear_in_middle(least_clearance_m_ + reach)) {
             verdict = CellFlyability::flyable;
-        } else if (clearance + reach < least_clearance_m_) {
+        } else if (!is_clear_in_middle(least_clearance_m_ - reach)) {
             verdict = CellFlyability::forbidden;
         } else if (i1 - i0 > 1 || k1 - k0 > 1) {
             if (i1 - i0 >= k1 - k0) {
