@@ -25,6 +25,15 @@ double ChordEnvelope::excess() {
     }
     std::sort(stretches_.begin(), stretches_.end(),
               [](const SurfaceStretch& a, const SurfaceStretch& b) { return a.low < b.low; });
+    const auto meets_next = [](const SurfaceStretch& a, const SurfaceStretch& b) { return b.low < a.high; };
+    if (std::adjacent_find(stretches_.begin(), stretches_.end(), meets_next) == stretches_.end()) {
+        double sum = 0;
+        for (const SurfaceStretch& stretch : stretches_) {
+            open_.assign(1, stretch);
+            sum += between(stretch.low, stretch.high, first_at(stretch.low), first_at(stretch.high), most_splits);
+        }
+        return sum;
+    }
     cuts_.clear();
     for (const SurfaceStretch& stretch : stretches_) {
         cuts_.push_back(stretch.low);

@@ -25,8 +25,12 @@ class ChordEnvelope {
     ChordEnvelope(const DiscQuery& query, double background_m, std::pmr::memory_resource* memory);
 
     void clear() noexcept { stretches_.clear(); }
-    /// @pre stretch.low < stretch.high, its gaps are finite and at least 0
-    void add(const SurfaceStretch& stretch) { stretches_.push_back(stretch); }
+    /// One without width counts for nothing. @pre its gaps are finite and at least 0
+    void add(const SurfaceStretch& stretch) {
+        if (stretch.low < stretch.high) {
+            stretches_.push_back(stretch);
+        }
+    }
 
     /// Integral along the chord of k beyond the background's.
     [[nodiscard]] double excess();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
+#include <cstdint>
 
 #include "downwash/aeromap/gauss_rule.hpp"
 
@@ -11,11 +11,11 @@ namespace downwash {
 namespace {
 
 constexpr double reach = 16;  ///< of the table, in radii; farther out k falls like one over the square
-constexpr std::size_t intervals = 1024;
+constexpr std::uint32_t intervals = 1024;
 /// Over a shorter range the middle says as much as the integral, and more exactly.
 constexpr double short_range = 1e-3;
 
-/// Distance of node i from the start: close to the cap k is steepest.
+/// Distance of a piece's beginning from the start: close to the cap k is steepest.
 double node_distance(double i) {
     return reach * (i / intervals) * (i / intervals);
 }
@@ -25,12 +25,20 @@ double node_distance(double i) {
 CurveMean::CurveMean(const EffectCurve& curve)
     : curve_(curve), start_(std::max(0.0, curve.cap_distance())), start_factor_(curve(0)) {
     assert(curve.falls_with_distance() && !curve.depends_on_wall());
-    nodes_.reserve(intervals + 1);
-    nodes_.push_back({0, curve(start_)});
-    for (std::size_t i = 1; i <= intervals; ++i) {
-        const double low = start_ + node_distance(static_cast<double>(i - 1));
-        const double high = start_ + node_distance(static_cast<double>(i));
-        nodes_.push_back({nodes_.back().integral + integrate(plain_6, low, high, curve), curve(high)});
+    pieces_.reserve(intervals);
+    last_factor_ = curve(start_);
+    for (std::uint32_t i = 0; i < intervals; ++i) {
+        const double low = node_distance(i);
+        const double high = node_distance(i + 1);
+        const double width = high - low;
+        const double rise = integrate(plain_6, start_ + low, start_ + high, curve);
+        // Hermite's cubic through both integrals and both factors, their slopes.
+        const double slope = width * last_factor_;
+        last_factor_ = curve(start_ + high);
+        const double last_slope = width * last_factor_;
+        pieces_.push_back(
+            {low, width, last_integral_, slope, 3 * rise - 2 * slope - last_slope, slope + last_slope - 2 * rise});
+        last_integral_ += rise;
     }
 }
 
@@ -49,22 +57,14 @@ double CurveMean::integral_to(double distance) const noexcept {
         return start_factor_ * beyond;
     }
     if (beyond >= reach) {
-        const double change = nodes_.back().factor - 1;
+        const double change = last_factor_ - 1;
         const double last = start_ + reach;
-        return nodes_.back().integral + (beyond - reach) + change * last * (1 - last / distance);
+        return last_integral_ + (beyond - reach) + change * last * (1 - last / distance);
     }
     const double place = std::sqrt(beyond / reach) * intervals;
-    const std::size_t i = std::min(static_cast<std::size_t>(place), intervals - 1);
-    const double low = node_distance(static_cast<double>(i));
-    const double width = node_distance(static_cast<double>(i + 1)) - low;
-    const double s = (beyond - low) / width;
-    const Node& a = nodes_[i];
-    const Node& b = nodes_[i + 1];
-    // Hermite's cubic through both integrals and both factors, their slopes.
-    const double rise = b.integral - a.integral;
-    const double slope = width * a.factor;
-    return a.integral +
-           s * (slope + s * (3 * rise - 2 * slope - width * b.factor + s * (slope + width * b.factor - 2 * rise)));
+    const Piece& piece = pieces_[std::min(static_cast<std::uint32_t>(place), intervals - 1)];
+    const double s = (beyond - piece.low) / piece.width;
+    return piece.integral + s * (piece.slope + s * (piece.bend + s * piece.twist));
 }
 
 }  // namespace downwash

@@ -21,15 +21,19 @@ class CurveMean {
     [[nodiscard]] double operator()(double one, double other) const;
 
  private:
-    struct Node {
-        double integral, factor;
+    /// A stretch of the table: the integral is integral + s (slope + s (bend + s twist)) at the share s of its width.
+    struct Piece {
+        double low, width;  ///< distances beyond the start
+        double integral, slope, bend, twist;
     };
     [[nodiscard]] double integral_to(double distance) const noexcept;
 
     EffectCurve curve_;
-    double start_;             ///< before it k is constant
-    double start_factor_;      ///< that constant
-    std::vector<Node> nodes_;  ///< of the integral from `start_` on, denser towards it
+    double start_;               ///< before it k is constant
+    double start_factor_;        ///< that constant
+    std::vector<Piece> pieces_;  ///< of the integral from `start_` on, shorter towards it
+    double last_integral_ = 0;   ///< up to the end of the table
+    double last_factor_;         ///< there
 };
 
 }  // namespace downwash
