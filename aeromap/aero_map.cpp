@@ -97,7 +97,8 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress)
         parts.size(), threads,
         [&](std::size_t task) {
             const std::size_t first = (task % tasks_per_layer) * rows_per_task;
-            parts[task] = build_rows(grids[task / tasks_per_layer], first, std::min<std::size_t>(first + rows_per_task, rows_));
+            parts[task] =
+                build_rows(grids[task / tasks_per_layer], first, std::min<std::size_t>(first + rows_per_task, rows_));
         },
         on_progress);
 

@@ -102,14 +102,8 @@ class DOWNWASH_EXPORT AeroMap {
     /// Valid as long as the map.
     [[nodiscard]] MapView view(std::size_t layer) const noexcept {
         const Raster& raster = *rasters_[layer];
-        return {extent_.x_low_m,
-                extent_.z_low_m,
-                cells_per_m_,
-                columns_,
-                rows_,
-                raster.cells.data(),
-                raster.flyability.data(),
-                raster.nodes.data()};
+        return {extent_.x_low_m,     extent_.z_low_m,          cells_per_m_,       columns_, rows_,
+                raster.cells.data(), raster.flyability.data(), raster.nodes.data()};
     }
 
     /// Whether a rotor hub there is inside the flyable area; exact (decided by the cell where the whole cell agrees).

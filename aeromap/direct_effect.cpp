@@ -7,7 +7,7 @@
 
 #include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/aeromap/disc_average.hpp"
-#include "downwash/aeromap/footprint.hpp"
+#include "downwash/aeromap/footprints.hpp"
 #include "downwash/base/fault.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
@@ -70,16 +70,6 @@ std::shared_ptr<const CurveMean> mean_of(const EffectCurve& curve) {
                : nullptr;
 }
 
-/// Of the primitives; those of triangles and boxes of octrees are made when asked for.
-std::vector<Footprint> footprints_of(const Scene& scene) {
-    std::vector<Footprint> footprints;
-    footprints.reserve(scene.primitive_count());
-    for (std::size_t i = 0; i < scene.primitive_count(); ++i) {
-        footprints.emplace_back(scene, i);
-    }
-    return footprints;
-}
-
 }  // namespace
 
 DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m,
@@ -93,7 +83,7 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
       ceiling_(settings.ceiling, settings.max_factor, neighbours),
       ground_mean_(mean_of(ground_)),
       ceiling_mean_(mean_of(ceiling_)),
-      footprints_(std::make_shared<const std::vector<Footprint>>(footprints_of(*scene_))) {}
+      footprints_(std::make_shared<const Footprints>(*scene_)) {}
 
 DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                     double rotor_radius_m, const RotorNeighbours& neighbours) {

@@ -11,7 +11,7 @@
 namespace downwash {
 
 class CurveMean;
-struct Footprint;
+class Footprints;
 
 /// The exact surface effect on one rotor at any point of the world: the reference that a map interpolates and that the
 /// flight of a reported plan is flown with. The disc is level and rays are vertical (model 4.1). Immutable.
@@ -72,7 +72,7 @@ class DOWNWASH_EXPORT DirectEffect {
     double least_clearance_m_;
     EffectCurve ground_, ceiling_;
     std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;  ///< null for curves that have none
-    std::shared_ptr<const std::vector<Footprint>> footprints_;
+    std::shared_ptr<const Footprints> footprints_;
 };
 
 }  // namespace downwash

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <list>
 #include <memory_resource>
 #include <optional>
 #include <vector>
@@ -145,7 +146,9 @@ class DiscQuadrature {
         envelope_.clear();
         for (const FacingPart& candidate : candidates_) {
             const Interval shadow =
-                query_.scene.shadow_on_line(candidate.footprint->part, x, y, frame_.du_x, frame_.du_y);
+                candidate.footprint->is_level_polygon()
+                    ? candidate.footprint->shadow_on_line(x, y, frame_.du_x, frame_.du_y)
+                    : query_.scene.shadow_on_line(candidate.footprint->part, x, y, frame_.du_x, frame_.du_y);
             const double low = std::max(shadow.low, -half);
             const double high = std::min(shadow.high, half);
             if (!(low < high)) {
@@ -303,14 +306,14 @@ void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
 
 }  // namespace
 
-double disc_average(const DiscQuery& query, std::span<const Footprint> primitives) {
+double disc_average(const DiscQuery& query, const Footprints& footprints) {
     // Room for about 20 parts over one disc; more of them make the pool fetch memory.
     std::array<std::byte, 6144> room;
     std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
     std::pmr::vector<std::size_t> others(&memory);
     add_others(query, others);
 
-    std::vector<Footprint> made;  // of the others, when they are few
+    std::list<Footprint> spare;
     std::pmr::vector<FacingPart> candidates(&memory);
     candidates.reserve(16);
     double cover_m = infinity;  // gap of the nearest level part that covers the disc
@@ -325,14 +328,13 @@ double disc_average(const DiscQuery& query, std::span<const Footprint> primitive
             candidates.push_back({&footprint, gap});
         }
     };
+    const std::span<const Footprint> primitives = footprints.of_primitives();
     std::for_each(primitives.begin(), primitives.end(), add_over_disc);
     const bool are_few = candidates.size() + others.size() <= most_with_crossings;
-    if (are_few && !others.empty()) {
-        made.reserve(others.size());
+    if (are_few) {
         for (const std::size_t part : others) {
-            made.emplace_back(query.scene, part);
+            add_over_disc(footprints.of_other(part, spare));
         }
-        std::for_each(made.begin(), made.end(), add_over_disc);
     }
     candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                     [&](const FacingPart& candidate) { return candidate.gap_m >= cover_m; }),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <vector>
 
@@ -140,6 +141,23 @@ double Footprint::area_in_disc_m2(double x, double y, double radius) const noexc
                                 {(side.bx - x) / radius, (side.by - y) / radius});
     }
     return 0.5 * radius * radius * std::max(doubled, 0.0);
+}
+
+Interval Footprint::shadow_on_line(double px, double py, double dx, double dy) const noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Interval inside{-infinity, infinity};
+    for (const Edge& side : sides_) {
+        const double room = side.reach - (side.nx * px + side.ny * py);
+        const double rate = side.nx * dx + side.ny * dy;
+        if (rate > 0) {
+            inside.high = std::min(inside.high, room / rate);
+        } else if (rate < 0) {
+            inside.low = std::max(inside.low, room / rate);
+        } else if (room < 0) {
+            return {};
+        }
+    }
+    return inside;
 }
 
 bool Footprint::has_side_before(const Footprint& other) const noexcept {

@@ -26,6 +26,9 @@ struct Footprint {
     /// The area of the shadow inside the disc [m^2], in closed form. @pre is_level_polygon()
     [[nodiscard]] double area_in_disc_m2(double x, double y, double radius) const noexcept;
 
+    /// Scene::shadow_on_line, sooner. @pre is_level_polygon()
+    [[nodiscard]] Interval shadow_on_line(double px, double py, double dx, double dy) const noexcept;
+
     /// Whether an edge of one of the two shadows has both on different sides; the edge itself may be shared.
     /// @pre both are level polygons
     [[nodiscard]] bool lies_beside(const Footprint& other) const noexcept;

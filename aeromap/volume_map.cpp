@@ -14,7 +14,7 @@
 namespace downwash {
 namespace {
 
-constexpr double longest_radii = 0.45;      // of a cell's edge: no obstacle is missed
+constexpr double longest_radii = 0.45;        // of a cell's edge: no obstacle is missed
 constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 
 void require_valid(const MapExtent& extent, double lateral_low_m, double lateral_high_m) {

@@ -70,7 +70,7 @@ class DOWNWASH_EXPORT VolumeMap {
     Vector3 cell_m_{};        ///< a cell's edges
     Vector3 cells_per_m_{};
     Cell cells_{};
-    std::vector<Node> nodes_;     ///< first those of the cells, x running fastest
+    std::vector<Node> nodes_;                ///< first those of the cells, x running fastest
     std::vector<Coefficients> polynomials_;  ///< the first one stays unused: index 0 stands for K = 1
 };
 

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "../support/meshes.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/base/parallel.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;
@@ -179,6 +181,33 @@ TEST_CASE("An octree of a tilted block is felt as rays count it") {
         REQUIRE(counted.ground > 1.01);
         CHECK(difference(effect.factors(hub), counted) < 5e-3);
     }
+}
+
+TEST_CASE("Of more boxes than it keeps, an effect tells several threads at once the same to the bit") {
+    // A porous plate, no two boxes of which merge: more than the 4096 whose footprints are kept.
+    const auto is_inside = [](const Vector3& p) {
+        const auto cell = [](double x) { return static_cast<int>(std::floor(x / 0.05 + 1e-6)); };
+        return (cell(p[0]) + cell(p[1])) % 2 == 0;
+    };
+    const std::vector<Obstacle> plate{{"", test::octree_of(is_inside, {-2.4, -2.4, -0.05}, {2.4, 2.4, 0}, 0.05)}};
+    REQUIRE(scene_of(plate)->part_count() > 4300);
+    constexpr double small_radius = 0.08;  // few boxes over the disc
+    const auto effect = [&] { return DirectEffect(scene_of(plate), {}, small_radius); };
+    test::Random random(66);
+    std::vector<Vector3> hubs(6000);
+    std::generate(hubs.begin(), hubs.end(), [&] {
+        return Vector3{random.uniform(-2.4, 2.4), random.uniform(-2.4, 2.4), random.uniform(0.05, 0.3)};
+    });
+    const auto factors_of = [&](const DirectEffect& asked, int threads) {
+        std::vector<double> factors(hubs.size());
+        run_parallel(hubs.size(), threads, [&](std::size_t i) { factors[i] = asked.factor(hubs[i]); });
+        return factors;
+    };
+    const DirectEffect shared = effect();
+    const std::vector<double> at_first = factors_of(shared, 4);
+    CHECK(*std::max_element(at_first.begin(), at_first.end()) > 1.05);
+    CHECK(factors_of(shared, 1) == at_first);
+    CHECK(factors_of(effect(), 1) == at_first);
 }
 
 TEST_CASE("Among many triangles at random the effect agrees with counted rays") {
