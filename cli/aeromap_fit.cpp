@@ -273,7 +273,8 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
     const auto arguments = std::make_shared<FitArguments>();
     CLI::App* fit = aeromap.add_subcommand("fit", "Fit a model's parameters to measurements by least squares");
     arguments->data.add_options(*fit);
-    fit->add_option("--model", arguments->model, "name of a model as in a problem file")->type_name("NAME")->required();
+    CLI::Option* model = fit->add_option("--model", arguments->model, "name of a model as in a problem file");
+    offer_models(*model->type_name("NAME")->required());
     fit->add_option("--fix", arguments->fixed, "keep a parameter at a value; may be given several times")
         ->type_name("NAME=VALUE")
         ->expected(1)

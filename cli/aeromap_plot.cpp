@@ -233,8 +233,9 @@ void add_options(CLI::App& plot, PlotRequest& request) {
         ->expected(2)
         ->type_name("LOW HIGH");
     plot.add_option("--z", request.z_m, "the same for z")->expected(2)->type_name("LOW HIGH");
-    plot.add_option("--model", request.models, "curves of K over z/R, by names as in a problem file")
-        ->type_name("NAME...");
+    CLI::Option* models =
+        plot.add_option("--model", request.models, "curves of K over z/R, by names as in a problem file");
+    offer_models(*models->type_name("NAME..."));
     plot.add_option("--data", request.data, "measurements to show with them: CSV as for `aeromap fit`")
         ->type_name("CSV");
     plot.add_option("--surface", request.surface, "only measurements at this surface")->type_name("S");

@@ -277,7 +277,8 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
         ->type_name("FILE");
     query->add_option("--rotor", arguments->rotor, "whose neighbours count for the multirotor models; default 1")
         ->type_name("N");
-    query->add_option("--model", arguments->model.name, "name of a model as in a problem file")->type_name("NAME");
+    CLI::Option* model = query->add_option("--model", arguments->model.name, "name of a model as in a problem file");
+    offer_models(*model->type_name("NAME"));
     query->add_option("--z-over-r", arguments->z_over_r, "distances in rotor radii")->type_name("V...");
     add_model_options(*query, arguments->model);
     query->add_flag("--no-cache", arguments->no_cache, "neither read nor write the cache of aero maps");

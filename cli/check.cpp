@@ -1,11 +1,14 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -71,11 +74,10 @@ void add_check(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<CheckArguments>();
     CLI::App* command = program.add_subcommand("check", "Say whether problem files are sound, and every fault if not");
     command->add_option("PROBLEM", arguments->problems, "problem files");
-    command
-        ->add_option("--schema", arguments->schema,
-                     "print the JSON Schema of a kind of file instead, for editors that complete and check YAML")
-        ->type_name("problem|robot|campaign")
-        ->check(CLI::IsMember({"problem", "robot", "campaign"}));
+    CLI::Option* schema = command->add_option(
+        "--schema", arguments->schema,
+        "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
+    require_one_of(*schema, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
     command->add_flag("--json", arguments->as_json, "print the faults as JSON on standard output");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

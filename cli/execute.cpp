@@ -2,11 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <chrono>
 #include <optional>
+#include <string_view>
 
 #include "downwash/cli/cache_folder.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
@@ -89,9 +92,9 @@ void add_execute(CLI::App& program, Action& action) {
         "execute", "Fly a plan again in closed loop; writes what solve writes, with the record of the search copied");
     command->add_option("PROBLEM", arguments->problem, "problem file")->required();
     command->add_option("--plan", arguments->plan, "solution.json that holds the plan")->type_name("FILE")->required();
-    command->add_option("--aero", arguments->aero, "on: surface effects evaluated directly (default); off: free air")
-        ->type_name("on|off")
-        ->check(CLI::IsMember({"on", "off"}));
+    CLI::Option* aero = command->add_option("--aero", arguments->aero,
+                                            "on: surface effects evaluated directly (default); off: free air");
+    require_one_of(*aero, std::array<std::string_view, 2>{"on", "off"});
     command
         ->add_option(
             "--out", arguments->out,

@@ -1,11 +1,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/key_reference.hpp"
 
@@ -102,9 +105,8 @@ void add_explain(CLI::App& program, Action& action) {
         "explain", "Say what a key of a file means, what is expected there and what it is when left out");
     command->add_option("KEY", arguments->key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")
         ->required();
-    command->add_option("--of", arguments->kind, "kind of file; default problem, with its robot")
-        ->type_name("problem|robot|campaign")
-        ->check(CLI::IsMember({"problem", "robot", "campaign"}));
+    CLI::Option* kind = command->add_option("--of", arguments->kind, "kind of file; default problem, with its robot");
+    require_one_of(*kind, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -2,11 +2,13 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/exports/export_format.hpp"
@@ -26,14 +28,21 @@ struct ExportArguments {
     bool anyway = false;
 };
 
-const ExportFormat& format_named(const std::string& name) {
+std::vector<std::string_view> format_names() {
     std::vector<std::string_view> names;
+    for (const ExportFormat& format : export_formats()) {
+        names.push_back(format.name);
+    }
+    return names;
+}
+
+const ExportFormat& format_named(const std::string& name) {
     for (const ExportFormat& format : export_formats()) {
         if (format.name == name) {
             return format;
         }
-        names.push_back(format.name);
     }
+    const std::vector<std::string_view> names = format_names();
     throw UsageError(fmt::format("there is no format '{}': expected {}{}", excerpt(name), joined_names(names),
                                  did_you_mean(name, names)));
 }
@@ -100,7 +109,9 @@ void add_export(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand("export", "Write a run as a file that other programs read");
     command->add_option("DIR", arguments->folder, "folder that `solve` or `execute` wrote to")->required();
-    command->add_option("--format", arguments->format, formats_help())->type_name("F")->required();
+    CLI::Option* format =
+        command->add_option("--format", arguments->format, formats_help())->type_name("F")->required();
+    offer_words(*format, format_names());
     command->add_option("-o,--out", arguments->out, "the file; default its usual name, in that folder")
         ->type_name("FILE");
     command->add_option("--rate", arguments->rate_hz, "set-points per second; default: the controller's rate")

@@ -3,28 +3,21 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
+#include "downwash/cli/command_table.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/output_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
 namespace {
-
-/// The commands right below one, in their order.
-std::vector<const CLI::App*> commands_of(const CLI::App& command) {
-    return command.get_subcommands([](const CLI::App* below) { return !below->get_name().empty(); });
-}
-
-/// "downwash aeromap plot"
-std::string full_name(const CLI::App& command) {
-    const CLI::App* parent = command.get_parent();
-    return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
-}
 
 std::string with_dashes(std::string name) {
     std::replace(name.begin(), name.end(), ' ', '-');
@@ -55,10 +48,6 @@ std::string spelled(const CLI::Option& option) {
         text += " " + option.get_type_name();
     }
     return text;
-}
-
-std::vector<const CLI::Option*> options_of(const CLI::App& command, bool is_positional) {
-    return command.get_options([=](const CLI::Option* option) { return option->get_positional() == is_positional; });
 }
 
 std::string options_section(const CLI::App& command) {
@@ -130,39 +119,6 @@ std::string markdown_options(const CLI::App& command) {
     return rows.empty() ? "" : "\n| | |\n| --- | --- |\n" + rows;
 }
 
-/// Calls visit(command) for a command and all below it.
-template <class Visit>
-void for_each_command(const CLI::App& command, const Visit& visit) {
-    visit(command);
-    for (const CLI::App* below : commands_of(command)) {
-        for_each_command(*below, visit);
-    }
-}
-
-/// What may follow a command: names of commands, and options.
-std::string words_after(const CLI::App& command) {
-    std::string words;
-    const auto add = [&words](const std::string& word) { words += (words.empty() ? "" : " ") + word; };
-    for (const CLI::App* below : commands_of(command)) {
-        add(below->get_name());
-    }
-    for (const CLI::Option* option : options_of(command, false)) {
-        for (const std::string& name : option->get_lnames()) {
-            add("--" + name);
-        }
-    }
-    return words;
-}
-
-/// As a case of a shell script: which words follow the commands given so far.
-std::string cases_of(const CLI::App& program) {
-    std::string cases;
-    for_each_command(program, [&cases](const CLI::App& command) {
-        cases += fmt::format("        '{}') next='{}' ;;\n", full_name(command), words_after(command));
-    });
-    return cases;
-}
-
 struct ManualArguments {
     std::vector<std::string> command;
     std::optional<std::string> all;
@@ -220,7 +176,8 @@ void add_manual(CLI::App& program, Action& action) {
     });
     CLI::App* completion = program.add_subcommand(
         "completion", "Print what completes command lines in a shell: source <(downwash completion bash)");
-    completion->add_option("SHELL", arguments->shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+    CLI::Option* shell = completion->add_option("SHELL", arguments->shell, "bash or zsh")->required();
+    require_one_of(*shell, std::array<std::string_view, 2>{"bash", "zsh"});
     completion->callback([arguments, &program, &action] {
         action = [arguments, &program] {
             fmt::print("{}", completion_script(program, arguments->shell));
@@ -262,35 +219,6 @@ std::string markdown_page(const CLI::App& program) {
         "completion bash` completes it.\n\n"
         "| command | |\n| --- | --- |\n{1}\n{2}\n{3}",
         program.get_name(), contents, program.get_footer(), sections);
-}
-
-std::string completion_script(const CLI::App& program, const std::string& shell) {
-    const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
-    // Found on zsh's path of functions, all this is the body of the first call.
-    const std::string tail =
-        shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
-    return head +
-           "# Completes the commands and options of downwash, and names of files.\n_downwash() {\n"
-           "    local given=downwash word next\n"
-           "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
-           "        case \"$given $word\" in\n" +
-           [&program] {
-               std::string names;
-               for_each_command(program, [&names](const CLI::App& command) {
-                   if (command.get_parent() != nullptr) {
-                       names += (names.empty() ? "" : " | ") + ("'" + full_name(command) + "'");
-                   }
-               });
-               return "            " + names + ") given=\"$given $word\" ;;\n";
-           }() +
-           "        esac\n    done\n    case \"$given\" in\n" + cases_of(program) +
-           "    esac\n"
-           "    COMPREPLY=($(compgen -W \"$next\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
-           "    [[ ${#COMPREPLY[@]} -gt 0 || ${COMP_WORDS[COMP_CWORD]} == -* ]] ||\n"
-           "        COMPREPLY=($(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
-           "}\n"
-           "complete -o filenames -F _downwash downwash\n" +
-           tail;
 }
 
 }  // namespace downwash::cli

@@ -11,7 +11,4 @@ namespace downwash::cli {
 /// Every command below the program with its options, as one Markdown page.
 [[nodiscard]] std::string markdown_page(const CLI::App& program);
 
-/// A script that completes the program's command line in a shell: "bash" or "zsh".
-[[nodiscard]] std::string completion_script(const CLI::App& program, const std::string& shell);
-
 }  // namespace downwash::cli

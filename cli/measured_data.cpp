@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <vector>
 
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
@@ -40,11 +42,10 @@ void MeasuredData::add_options(CLI::App& command) {
             "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio, perhaps surface, source "
             "and sigma, then rows")
         ->required();
-    command
-        .add_option(
-            "--surface", surface,
-            "only rows with this surface, `ground` or `ceiling`; what all are made at when there is no such column")
-        ->type_name("S");
+    CLI::Option* at = command.add_option(
+        "--surface", surface,
+        "only rows with this surface, `ground` or `ceiling`; what all are made at when there is no such column");
+    offer_words(*at->type_name("S"), std::array<std::string_view, 2>{"ground", "ceiling"});
     command.add_option("--source", source, "only rows with this source")->type_name("NAME");
     command.add_option("--from", from, "only measurements at this z/R and beyond")->type_name("Z");
     command.add_option("--to", to, "only measurements up to this z/R")->type_name("Z");

@@ -11,11 +11,20 @@
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 namespace downwash::cli {
 namespace {
+
+std::vector<std::string_view> model_names() {
+    std::vector<std::string_view> names;
+    for (const EffectModelInfo& known : effect_models()) {
+        names.push_back(known.name);
+    }
+    return names;
+}
 
 /// A number of the command line within its range.
 double checked(const char* option, const std::optional<double>& given, double otherwise, double low, double high) {
@@ -73,6 +82,10 @@ SurfaceEffect effect_of(const ModelChoice& choice) {
 
 }  // namespace
 
+void offer_models(CLI::Option& option) {
+    offer_words(option, model_names());
+}
+
 void add_model_options(CLI::App& command, ModelChoice& choice) {
     command.add_option("--set", choice.set, "a parameter of the model, named as in a problem file; may be repeated")
         ->type_name("NAME=VALUE");
@@ -106,10 +119,7 @@ const EffectModelInfo& model_named(const std::string& name) {
     if (const EffectModelInfo* model = find_effect_model(name)) {
         return *model;
     }
-    std::vector<std::string_view> names;
-    for (const EffectModelInfo& known : effect_models()) {
-        names.push_back(known.name);
-    }
+    const std::vector<std::string_view> names = model_names();
     throw UsageError("--model '" + excerpt(name) + "' is not known: expected one of " + joined_names(names) +
                      did_you_mean(name, names));
 }

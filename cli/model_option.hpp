@@ -26,6 +26,9 @@ inline constexpr double usual_rotor_spacing = 2.5;
 /// Whether a model sees the vehicle's other rotors.
 [[nodiscard]] bool is_multirotor(EffectModel model);
 
+/// Makes shells offer the names of models.
+void offer_models(CLI::Option& option);
+
 /// Adds the options that go with --model NAME: --set, --table, --d-over-r, --rotor-spacing and --max-factor.
 void add_model_options(CLI::App& command, ModelChoice& choice);
 

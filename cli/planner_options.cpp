@@ -5,6 +5,7 @@
 #include <array>
 
 #include "downwash/base/fault.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -52,10 +53,10 @@ std::string in_options(const Fault& fault, const std::map<std::string, std::stri
 void PlannerOptions::add_to(CLI::App& command) {
     for (const OptionOfKey& option : options) {
         const std::string name(option.option);
-        command
-            .add_option_function<std::string>(
-                name, [this, name](const std::string& text) { given_[name] = text; }, description(option))
-            ->type_name(std::string(option.placeholder));
+        CLI::Option* added = command.add_option_function<std::string>(
+            name, [this, name](const std::string& text) { given_[name] = text; }, description(option));
+        added->type_name(std::string(option.placeholder));
+        offer_words(*added, problem_parameters().find(option.key)->names);
     }
 }
 

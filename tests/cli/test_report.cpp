@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
+#include <string>
 
 #include "program.hpp"
 
@@ -137,9 +139,46 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(pages.at("downwash-aeromap-plot.1") == run(folder, {"manual", "aeromap", "plot"}).out);
     CHECK(pages.at("downwash.1") == run(folder, {"manual"}).out);
     CHECK(run(folder, {"manual", "solve", "--all", "man"}).code == 2);
-    CHECK_THAT(run(folder, {"completion", "bash"}).out,
-               Catch::Contains("'downwash solve') next='") && Catch::Contains("--seed"));
     CHECK(run(folder, {"completion", "fish"}).code == 2);
+}
+
+TEST_CASE("Completions offer commands, options, what options take, and files") {
+    const ScratchFolder folder;
+    struct Asked {
+        const char* words;  ///< of the command line, quoted for the shell; the last one is completed
+        const char* offered;
+    };
+    const Asked all[] = {
+        {"downwash sol", "solve"},
+        {"downwash aeromap q", "query"},
+        {"downwash solve --see", "--seed"},
+        {"downwash solve --variant ''", "mp-arm mp-arm-da mp-arm-ada"},
+        {"downwash solve one.yaml --variant mp-arm-d", "mp-arm-da"},
+        {"downwash solve one.yaml --variant = mp-arm-a", "mp-arm-ada"},
+        {"downwash solve one.yaml --algorithm =",
+         "rrt-star rrt-connect informed-rrt-star bit-star rrt sst kpiece1 est"},
+        {"downwash execute --aero o", "on off"},
+        {"downwash completion z", "zsh"},
+        {"downwash aeromap query --model hayd", "hayden"},
+        {"downwash export flown --format g", "glb"},
+        {"downwash solve o", "one.yaml"},
+        {"downwash solve --out o", "one.yaml"},
+        {"downwash solve --seed -", ""},
+    };
+    std::string script = run(folder, {"completion", "bash"}).out;
+    script +=
+        "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _downwash; echo \"${COMPREPLY[*]}\"; }\n"
+        "cd '" +
+        (folder.path() / "run").string() + "' && touch one.yaml\n";
+    std::string expected;
+    for (const Asked& asked : all) {
+        script += std::string("ask ") + asked.words + "\n";
+        expected += std::string(asked.offered) + "\n";
+    }
+    const auto path = [&folder](const char* name) { return (folder.path() / name).string(); };
+    write_file(path("script"), script);
+    REQUIRE(std::system(("bash '" + path("script") + "' >'" + path("offered") + "'").c_str()) == 0);
+    CHECK(read_file(path("offered")) == expected);
 }
 
 TEST_CASE("What cannot be reported or exported is refused with a remedy") {

@@ -1,0 +1,132 @@
+#include "downwash/cli/completion.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "downwash/cli/command_table.hpp"
+
+namespace downwash::cli {
+namespace {
+
+template <class Words>
+std::string joined(const Words& words) {
+    return fmt::format("{}", fmt::join(words, " "));
+}
+
+/// CLI11 has no place for words that are offered; they are the name of an option's only check.
+std::string offered_words(const CLI::Option& option) {
+    try {
+        return const_cast<CLI::Option&>(option).get_validator()->get_name();
+    } catch (const CLI::OptionNotFound&) {
+        return {};  // it has no check
+    }
+}
+
+std::vector<std::string> spellings(const CLI::Option& option) {
+    std::vector<std::string> all;
+    for (const std::string& name : option.get_lnames()) {
+        all.push_back("--" + name);
+    }
+    for (const std::string& name : option.get_snames()) {
+        all.push_back("-" + name);
+    }
+    return all;
+}
+
+/// What may follow a command: names of commands, words, and options.
+std::string words_after(const CLI::App& command) {
+    std::vector<std::string> words;
+    for (const CLI::App* below : commands_of(command)) {
+        words.push_back(below->get_name());
+    }
+    for (const CLI::Option* option : options_of(command, true)) {
+        const std::string offered = offered_words(*option);
+        if (!offered.empty()) {
+            words.push_back(offered);
+        }
+    }
+    for (const CLI::Option* option : options_of(command, false)) {
+        for (const std::string& name : option->get_lnames()) {
+            words.push_back("--" + name);
+        }
+    }
+    return joined(words);
+}
+
+/// As cases of a shell script: what follows an option that takes a value, its words or else a file.
+std::string cases_of_options(const CLI::App& program) {
+    std::string cases;
+    for_each_command(program, [&cases](const CLI::App& command) {
+        for (const CLI::Option* option : options_of(command, false)) {
+            if (option->get_items_expected_max() > 0) {
+                std::vector<std::string> patterns;
+                for (const std::string& spelling : spellings(*option)) {
+                    patterns.push_back(fmt::format("'{} {}'", full_name(command), spelling));
+                }
+                cases += fmt::format("        {}) next='{}' ;;\n", fmt::join(patterns, " | "), offered_words(*option));
+            }
+        }
+    });
+    return cases;
+}
+
+/// The same: what follows a command.
+std::string cases_of_commands(const CLI::App& program) {
+    std::string cases;
+    for_each_command(program, [&cases](const CLI::App& command) {
+        cases += fmt::format("            '{}') next='{}' ;;\n", full_name(command), words_after(command));
+    });
+    return cases;
+}
+
+std::string names_of_commands(const CLI::App& program) {
+    std::vector<std::string> names;
+    for_each_command(program, [&names](const CLI::App& command) {
+        if (command.get_parent() != nullptr) {
+            names.push_back("'" + full_name(command) + "'");
+        }
+    });
+    return fmt::format("{}", fmt::join(names, " | "));
+}
+
+}  // namespace
+
+void offer_words(CLI::Option& option, std::span<const std::string_view> words) {
+    option.check(CLI::Validator([](std::string& /*text*/) { return std::string(); }, "", joined(words)));
+}
+
+void require_one_of(CLI::Option& option, std::span<const std::string_view> words) {
+    option.type_name(fmt::format("{}", fmt::join(words, "|")));
+    option.check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())), joined(words));
+}
+
+std::string completion_script(const CLI::App& program, const std::string& shell) {
+    const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
+    // Found on zsh's path of functions, all this is the body of the first call.
+    const std::string tail =
+        shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
+    return head +
+           "# Completes the commands and options of downwash, what options take, and names of files.\n_downwash() {\n"
+           "    local given=downwash word next current=\"${COMP_WORDS[COMP_CWORD]}\"\n"
+           "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
+           "        case \"$given $word\" in\n            " +
+           names_of_commands(program) +
+           ") given=\"$given $word\" ;;\n"
+           "        esac\n    done\n"
+           "    # --option=value is three words.\n"
+           "    local -i before=$((COMP_CWORD - 1))\n"
+           "    if [[ $current == = ]]; then\n        current=\n"
+           "    elif [[ ${COMP_WORDS[before]} == = ]]; then\n        before=$((before - 1))\n    fi\n"
+           "    case \"$given ${COMP_WORDS[before]}\" in\n" +
+           cases_of_options(program) + "        *) case \"$given\" in\n" + cases_of_commands(program) +
+           "        esac ;;\n    esac\n"
+           "    COMPREPLY=($(compgen -W \"$next\" -- \"$current\"))\n"
+           "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -f -- \"$current\"))\n"
+           "}\n"
+           "complete -o filenames -F _downwash downwash\n" +
+           tail;
+}
+
+}  // namespace downwash::cli
