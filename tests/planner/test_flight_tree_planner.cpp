@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
+#include <vector>
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/flight_tree_planner.hpp"
@@ -10,23 +12,33 @@ using namespace downwash;
 
 namespace {
 
-/// Searches the ceiling problem, asking `counts` about every better plan.
+/// The ceiling problem with a wall under the ceiling, between start and goal: to be flown around below.
+Problem with_wall() {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 2.5}, {0, 0, 4}));
+    return problem;
+}
+
+/// Searches a problem, asking `counts` about every better plan.
 struct Search {
     Search(
         std::uint64_t iterations, std::function<bool(const planning::Candidate&)> counts,
-        const std::function<bool()>& is_over = [] { return false; })
-        : planner(planning::make_space_information(space, random, 0.1, queries), problem, tree, space, flights, random,
-                  {std::move(counts), [](const planning::Candidate&) {}}, 1) {
+        const std::function<bool()>& is_over = [] { return false; }, int threads = 1,
+        Problem searched = test::ceiling_problem())
+        : problem(std::move(searched)),
+          flights(problem, *model, space, map.get(), {}, threads),
+          planner(planning::make_space_information(space, random, 0.1, queries), problem, tree, space, flights, random,
+                  {std::move(counts), [](const planning::Candidate&) {}}, threads) {
         planner.set_max_iterations(iterations);
         static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition(is_over)));
     }
 
-    Problem problem = test::ceiling_problem();
+    Problem problem;
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
     planning::SearchSpace space{problem, *model};
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
     planning::Random random{1};
-    planning::PlannedFlights flights{problem, *model, space, map.get()};
+    planning::PlannedFlights flights;
     planning::FlightTree tree{problem, *model, space, flights};
     planning::QueryCounts queries;
     planning::FlightTreePlanner planner;
@@ -48,6 +60,44 @@ TEST_CASE("a refused plan is counted and discarded, and the search goes on to an
     CHECK(search.planner.statistics().rejected.at("direct_flight") == 3);
     REQUIRE(search.planner.incumbent());
     CHECK(search.planner.iterations() == 300);
+}
+
+TEST_CASE("what is refused does not depend on threads, nor does what comes of it") {
+    const auto asked_with = [](int threads) {
+        std::vector<double> asked;
+        const auto every_third = [&asked](const planning::Candidate& candidate) {
+            asked.push_back(candidate.cost);
+            return asked.size() % 3 == 0;
+        };
+        const Search search(
+            400, every_third, [] { return false; }, threads, with_wall());
+        REQUIRE(search.planner.incumbent());
+        asked.push_back(search.planner.incumbent()->cost);
+        asked.push_back(static_cast<double>(search.planner.statistics().ticks));
+        return asked;
+    };
+    const std::vector<double> alone = asked_with(1);
+    CHECK(alone.size() > 6);
+    CHECK(asked_with(2) == alone);
+    CHECK(asked_with(5) == alone);
+}
+
+TEST_CASE(
+    "a plan found with the last iterations counts as well, and no plan of the tree is cheaper than the incumbent") {
+    int with_plan = 0;
+    for (std::uint64_t iterations = 1; iterations <= 120; iterations += iterations < 40 ? 1 : 20) {
+        CAPTURE(iterations);
+        const Search search(
+            iterations, [](const planning::Candidate&) { return true; }, [] { return false; }, 1, with_wall());
+        const auto& holds = search.tree.holds();
+        REQUIRE(search.planner.incumbent().has_value() == !holds.empty());
+        with_plan += holds.empty() ? 0 : 1;
+        for (const auto* hold : holds) {
+            CHECK(search.planner.incumbent()->cost <= hold->cost * (1 + 1e-6));
+        }
+    }
+    CHECK(with_plan > 10);
+    CHECK(with_plan < 44);  // there were searches without
 }
 
 TEST_CASE("when every plan is refused there is none, however many were found") {
