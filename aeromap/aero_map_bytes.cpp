@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <type_traits>
 
@@ -8,8 +7,8 @@
 #include "downwash/aeromap/factor_patches.hpp"
 #include "downwash/grids/factor_grid.hpp"
 
-// A map as bytes: the counts of layers, columns and rows; then of every layer the count of its nodes, the cells, their
-// flyability, the nodes.
+// A map as bytes: the counts of layers, columns and rows; then of every layer the number of the first one that holds
+// the same values and, if that is itself, the count of its nodes, the cells, their flyability, the nodes.
 
 namespace downwash {
 namespace {
@@ -48,8 +47,9 @@ bool take_count(std::string_view& bytes, std::uint64_t& count) {
     return true;
 }
 
+/// A power of two. std::has_single_bit calls a function where it may not count on an instruction.
 bool is_step_count(unsigned steps) {
-    return std::has_single_bit(steps) && steps <= most_steps;
+    return steps > 0 && (steps & (steps - 1)) == 0 && steps <= most_steps;
 }
 
 }  // namespace
@@ -61,7 +61,14 @@ std::string AeroMap::to_bytes() const {
     append_count(bytes, rasters_.size());
     append_count(bytes, columns_);
     append_count(bytes, rows_);
-    for (const std::shared_ptr<const Raster>& raster : rasters_) {
+    for (std::size_t layer = 0; layer < rasters_.size(); ++layer) {
+        const std::shared_ptr<const Raster>& raster = rasters_[layer];
+        const auto first =
+            static_cast<std::size_t>(std::find(rasters_.begin(), rasters_.end(), raster) - rasters_.begin());
+        append_count(bytes, first);
+        if (first < layer) {
+            continue;
+        }
         append_count(bytes, raster->nodes.size());
         append(bytes, raster->cells.data(), raster->cells.size());
         append(bytes, raster->flyability.data(), raster->flyability.size());
@@ -81,14 +88,22 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
         return std::nullopt;
     }
     for (std::size_t layer = 0; layer < map.layers_.size(); ++layer) {
-        Raster raster;
-        std::uint64_t nodes = 0;
-        if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
-            !take(bytes, columns * rows, raster.flyability) || !take(bytes, nodes, raster.nodes) ||
-            !map.is_sound(raster)) {
+        std::uint64_t first = 0;
+        if (!take_count(bytes, first) || first > layer) {
             return std::nullopt;
         }
-        map.add_raster(std::move(raster));
+        if (first < layer) {
+            map.rasters_.push_back(map.rasters_[first]);
+        } else {
+            Raster raster;
+            std::uint64_t nodes = 0;
+            if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
+                !take(bytes, columns * rows, raster.flyability) || !take(bytes, nodes, raster.nodes) ||
+                !map.is_sound(raster)) {
+                return std::nullopt;
+            }
+            map.add_raster(std::move(raster));
+        }
         if (!map.agrees_with_effect(layer)) {
             return std::nullopt;
         }
@@ -112,18 +127,18 @@ bool AeroMap::is_sound(const Raster& raster) const {
            std::all_of(raster.nodes.begin(), raster.nodes.end(), is_factor);
 }
 
-/// Evaluates K anew at the lower corners of some cells where surfaces are felt and nothing was
-/// interpolated. Whoever improves the models or the
-/// integration without a new map_format_version is found out here.
+/// Evaluates K anew at the lower corners of some cells where surfaces are felt and nothing was interpolated. Whoever
+/// improves the models or the integration without a new map_format_version is found out here.
 bool AeroMap::agrees_with_effect(std::size_t layer) const {
     constexpr std::size_t samples = 64;
     const auto& [cells, flyability, nodes] = *rasters_[layer];
     std::vector<std::size_t> felt;
-    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-        const bool is_exact =
-            cell % columns_ % FactorPatches::block_cells == 0 && cell / columns_ % FactorPatches::block_cells == 0;
-        if (is_exact && flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {
-            felt.push_back(cell);
+    for (std::size_t row = 0; row < rows_; row += FactorPatches::block_cells) {
+        for (std::size_t column = 0; column < columns_; column += FactorPatches::block_cells) {
+            const std::size_t cell = row * columns_ + column;
+            if (flyability[cell] == CellFlyability::flyable && nodes[cells[cell].first_node] != 1.0F) {
+                felt.push_back(cell);
+            }
         }
     }
     const std::size_t stride = std::max<std::size_t>(1, felt.size() / samples);
