@@ -27,6 +27,9 @@ for name in "${names[@]}"; do
     [[ $code -le 1 ]] || exit "$code"
     [[ $code -eq 0 ]] || missed=1
     cat "$report"
-    [[ $name == ci ]] || cp "$report" "bench/results/$name.md"
+    if [[ $name != ci ]]; then
+        cp "$report" "bench/results/$name.md"
+        bench/bars.sh >bench/results/bars.md
+    fi
 done
 exit "$missed"
