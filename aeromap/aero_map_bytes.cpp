@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"

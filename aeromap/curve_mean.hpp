@@ -33,7 +33,7 @@ class CurveMean {
     double start_factor_;        ///< that constant
     std::vector<Piece> pieces_;  ///< of the integral from `start_` on, shorter towards it
     double last_integral_ = 0;   ///< up to the end of the table
-    double last_factor_;         ///< there
+    double last_factor_ = 1;     ///< there
 };
 
 }  // namespace downwash

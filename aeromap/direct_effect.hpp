@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"

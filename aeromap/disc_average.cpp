@@ -8,6 +8,7 @@
 #include <list>
 #include <memory_resource>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "downwash/aeromap/chord_envelope.hpp"

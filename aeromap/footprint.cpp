@@ -147,7 +147,7 @@ Interval Footprint::shadow_on_line(double px, double py, double dx, double dy) c
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Interval inside{-infinity, infinity};
     for (const Edge& side : sides_) {
-        const double room = side.reach - (side.nx * px + side.ny * py);
+        const double room = side.nx * (side.ax - px) + side.ny * (side.ay - py);
         const double rate = side.nx * dx + side.ny * dy;
         if (rate > 0) {
             inside.high = std::min(inside.high, room / rate);

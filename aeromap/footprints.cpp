@@ -5,8 +5,8 @@
 namespace downwash {
 namespace {
 
-/// Some kilobytes each.
-constexpr std::size_t most_kept = 4096;
+/// About a kilobyte each.
+constexpr std::size_t most_kept = 16384;
 
 std::vector<Footprint> footprints_of_primitives(const Scene& scene) {
     std::vector<Footprint> footprints;

@@ -87,7 +87,7 @@ void VolumeMap::append(const Builder& brick) {
     const std::uint32_t columns = last[0] - first[0];
     const std::uint32_t rows = last[1] - first[1];
     const std::uint32_t cells = columns * rows * (last[2] - first[2]);
-    // The nodes of cells go to their places, the others and the values to the ends.
+    // The nodes of cells go to their places, the others and the polynomials to the ends.
     const std::size_t nodes_before = nodes_.size() - cells;
     const std::size_t boxes_before = polynomials_.size() - 1;
     for (std::uint32_t n = 0; n < brick.nodes().size(); ++n) {

@@ -14,7 +14,7 @@
 
 namespace downwash {
 
-/// The most boxes that a volume may consist of: 2^23, at most a gigabyte.
+/// The most boxes that a volume may consist of: 2^23, about a gigabyte.
 inline constexpr std::size_t most_volume_boxes = 8388608;
 
 /// K stored over a block of rotor positions in three dimensions, for vehicles that leave one plane.
@@ -41,7 +41,7 @@ class DOWNWASH_EXPORT VolumeMap {
     [[nodiscard]] double factor(const Vector3& hub_m) const;
 
     [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
-    /// Boxes that hold values of their own.
+    /// Boxes that hold a polynomial of their own.
     [[nodiscard]] std::size_t boxes() const noexcept { return polynomials_.size() - 1; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 

@@ -9,5 +9,5 @@ mkdir -p bench/results
 build/bench/bench_aero_map bench/aero_map/girder_deck.yaml problems/*.yaml --commit "$commit" "$@" \
     >bench/results/aero_map.md.new
 mv bench/results/aero_map.md.new bench/results/aero_map.md
-bench/bars.sh >bench/results/bars.md
+bench/bars.sh --write
 cat bench/results/aero_map.md

@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
 # Prints how many bars each page of bench/results/ keeps, the commit it was made from, and every bar that is not kept.
-# The scripts that write the pages write what this prints to bench/results/bars.md; a test compares them.
+# With --write it becomes bench/results/bars.md, as the scripts that write the pages have it; a test compares them.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/results"
 shopt -s extglob
+LC_ALL=C
 pages=(!(README|bars).md)
+if [[ ${1-} == --write ]]; then
+    "../${BASH_SOURCE[0]##*/}" >bars.md.new
+    mv bars.md.new bars.md
+    exit
+fi
 
 awk '
     function page_ends() {
@@ -19,11 +25,11 @@ awk '
         sub(/[Cc]ommit:? `?/, "", commit)
     }
     / kept \|$/ { ++kept }
-    /\*\*not kept\*\* \|$/ {
+    /\*\*(not kept|missed)\*\* \|$/ {
         ++missed
         row = $0
         sub(/^\| /, "", row)
-        sub(/ \| \*\*not kept\*\* \|$/, "", row)
+        sub(/ \| \*\*(not kept|missed)\*\* \|$/, "", row)
         gsub(/ \| /, ": ", row)
         rows = rows "- " page ": " row "\n"
     }

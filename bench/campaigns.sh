@@ -29,7 +29,7 @@ for name in "${names[@]}"; do
     cat "$report"
     if [[ $name != ci ]]; then
         cp "$report" "bench/results/$name.md"
-        bench/bars.sh >bench/results/bars.md
+        bench/bars.sh --write
     fi
 done
 exit "$missed"

@@ -7,5 +7,5 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p bench/results
 build/bench/bench_large_tree problems/bridge_inspection.yaml "$@" >bench/results/large_tree.md.new
 mv bench/results/large_tree.md.new bench/results/large_tree.md
-bench/bars.sh >bench/results/bars.md
+bench/bars.sh --write
 cat bench/results/large_tree.md

@@ -115,15 +115,21 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            names_of_commands(program) +
            ") given=\"$given $word\" ;;\n"
            "        esac\n    done\n"
-           "    # --option=value is three words.\n"
-           "    local -i before=$((COMP_CWORD - 1))\n"
-           "    if [[ $current == = ]]; then\n        current=\n"
-           "    elif [[ ${COMP_WORDS[before]} == = ]]; then\n        before=$((before - 1))\n    fi\n"
-           "    case \"$given ${COMP_WORDS[before]}\" in\n" +
+           "    # Of --option=value bash makes three words, zsh one.\n"
+           "    local before=\"${COMP_WORDS[COMP_CWORD - 1]}\" glued=\n"
+           "    COMPREPLY=()\n"
+           "    if [[ $current == '=' ]]; then\n        current=\n        [[ $before == -* ]] || return 0\n"
+           "    elif [[ $before == '=' ]]; then\n        before=\"${COMP_WORDS[COMP_CWORD - 2]}\"\n"
+           "        [[ $before == -* ]] || return 0\n"
+           "    elif [[ $current == --*=* ]]; then\n"
+           "        before=\"${current%%=*}\" glued=\"${current%%=*}=\" current=\"${current#*=}\"\n"
+           "    fi\n"
+           "    case \"$given $before\" in\n" +
            cases_of_options(program) + "        *) case \"$given\" in\n" + cases_of_commands(program) +
            "        esac ;;\n    esac\n"
-           "    COMPREPLY=($(compgen -W \"$next\" -- \"$current\"))\n"
-           "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -f -- \"$current\"))\n"
+           "    COMPREPLY=($(compgen -P \"$glued\" -W \"$next\" -- \"$current\"))\n"
+           "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -P \"$glued\" -f -- "
+           "\"$current\"))\n"
            "}\n"
            "complete -o filenames -F _downwash downwash\n" +
            tail;

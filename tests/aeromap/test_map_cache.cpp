@@ -290,10 +290,11 @@ TEST_CASE("bytes that would lead a look-up astray are no map") {
     };
     REQUIRE(is_map(good));
     CHECK_FALSE(is_map(good + '\0'));
-    // The first cell stands behind four counts: its first node, then its steps.
-    constexpr std::size_t cell = 4 * sizeof(std::uint64_t);
+    // The first cell stands behind five counts: its first node, then its steps.
+    constexpr std::size_t cell = 5 * sizeof(std::uint64_t);
+    REQUIRE(good.substr(cell, 4) == std::string(4, '\0'));
     for (const std::size_t byte : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{24}, std::size_t{31},
-                                   cell + 3, cell + 4, cell + 5, cell + 6}) {
+                                   std::size_t{32}, std::size_t{39}, cell + 3, cell + 4, cell + 5, cell + 6}) {
         std::string bad = good;
         bad[byte] = '\x7f';
         INFO("byte " << byte);
@@ -302,6 +303,35 @@ TEST_CASE("bytes that would lead a look-up astray are no map") {
     std::string no_number = good;
     no_number.replace(no_number.size() - 4, 4, "\xff\xff\xff\xff");
     CHECK_FALSE(is_map(no_number));
+}
+
+TEST_CASE("layers of equal values are kept once, and only such layers") {
+    const auto count = [](std::uint64_t number) {
+        return std::string(reinterpret_cast<const char*>(&number), sizeof number);
+    };
+    Making making;
+    making.extent = {-3, -2, 0.4, 1.2};
+    making.obstacles = {{"floor", Box{{20, 20, 1}}, {0, 0, -0.5}, {}}};
+    const std::string both = making.build().to_bytes();
+    const auto is_map = [&](const std::string& bytes) {
+        return AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value();
+    };
+    REQUIRE(is_map(both));
+    CHECK(making.build().are_equal(0, 1));
+    CHECK(AeroMap::from_bytes(making.layers(), making.plane, making.extent, both)->are_equal(0, 1));
+    const std::string before_last = both.substr(0, both.size() - sizeof(std::uint64_t));
+    CHECK(both == before_last + count(0));
+    for (const std::uint64_t first : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{1} << 63U}) {
+        CHECK_FALSE(is_map(before_last + count(first)));
+    }
+
+    // A second layer, under half a ceiling, that is said to be the first one.
+    making.obstacles.push_back({"ceiling", Box{{20, 4, 1}}, {0, 2, 2}, {}});
+    making.laterals_m = {-0.2};
+    const std::string alone = making.build().to_bytes();
+    making.laterals_m = {-0.2, 0.2};
+    REQUIRE_FALSE(making.build().are_equal(0, 1));
+    CHECK_FALSE(is_map(count(2) + alone.substr(sizeof(std::uint64_t)) + count(0)));
 }
 
 TEST_CASE("values that the effects no longer give are no map") {

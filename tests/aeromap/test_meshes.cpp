@@ -184,19 +184,19 @@ TEST_CASE("An octree of a tilted block is felt as rays count it") {
 }
 
 TEST_CASE("Of more boxes than it keeps, an effect tells several threads at once the same to the bit") {
-    // A porous plate, no two boxes of which merge: more than the 4096 whose footprints are kept.
+    // A porous plate, no two boxes of which merge: more than the 16384 whose footprints are kept.
     const auto is_inside = [](const Vector3& p) {
         const auto cell = [](double x) { return static_cast<int>(std::floor(x / 0.05 + 1e-6)); };
         return (cell(p[0]) + cell(p[1])) % 2 == 0;
     };
-    const std::vector<Obstacle> plate{{"", test::octree_of(is_inside, {-2.4, -2.4, -0.05}, {2.4, 2.4, 0}, 0.05)}};
-    REQUIRE(scene_of(plate)->part_count() > 4300);
+    const std::vector<Obstacle> plate{{"", test::octree_of(is_inside, {-4.8, -4.8, -0.05}, {4.8, 4.8, 0}, 0.05)}};
+    REQUIRE(scene_of(plate)->part_count() > 18000);
     constexpr double small_radius = 0.08;  // few boxes over the disc
     const auto effect = [&] { return DirectEffect(scene_of(plate), {}, small_radius); };
     test::Random random(66);
-    std::vector<Vector3> hubs(6000);
+    std::vector<Vector3> hubs(10000);
     std::generate(hubs.begin(), hubs.end(), [&] {
-        return Vector3{random.uniform(-2.4, 2.4), random.uniform(-2.4, 2.4), random.uniform(0.05, 0.3)};
+        return Vector3{random.uniform(-4.8, 4.8), random.uniform(-4.8, 4.8), random.uniform(0.05, 0.3)};
     });
     const auto factors_of = [&](const DirectEffect& asked, int threads) {
         std::vector<double> factors(hubs.size());

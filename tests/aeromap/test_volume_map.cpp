@@ -84,7 +84,7 @@ Comparison compare(const VolumeMap& map, const Block& block, int tries, unsigned
 
 }  // namespace
 
-TEST_CASE("A product of parabolas is exact for quadratic functions") {
+TEST_CASE("A product of parabolas is a quadratic function to the precision of float") {
     const auto f = [](double x, double y, double z) {
         return 1 + x * (2 - x) + 3 * y * z * z - x * x * y * y + x * y * z - 0.5 * x * x * y * y * z * z;
     };
@@ -99,7 +99,7 @@ TEST_CASE("A product of parabolas is exact for quadratic functions") {
         const double x = random.uniform(0, 1);
         const double y = random.uniform(0, 1);
         const double z = random.uniform(0, 1);
-        CHECK(value_at(polynomial, {x, y, z}) == Approx(f(x, y, z)).margin(1e-5));
+        CHECK(std::abs(value_at(polynomial, {x, y, z}) - f(x, y, z)) < 3e-6);
     }
 }
 

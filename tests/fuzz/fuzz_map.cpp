@@ -17,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ground.shape = Box{{4, 4, 1}};
         ground.center_m = {0, 0, -0.5};
         const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{ground});
-        return std::vector<MapLayer>{{std::make_shared<const DirectEffect>(scene, settings, 0.3), 0}};
+        const auto effect = std::make_shared<const DirectEffect>(scene, settings, 0.3);
+        return std::vector<MapLayer>{{effect, 0}, {effect, 0.1}};  // of equal values
     }();
     const auto map = AeroMap::from_bytes(layers, plane, extent, {reinterpret_cast<const char*>(data), size});
     if (map) {
@@ -25,8 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (int i = 0; i < 1000; ++i) {
             const double x = random.uniform(-0.1, 0.4);
             const double z = random.uniform(0, 0.5);
-            static_cast<void>(map->factor(0, x, z));
-            static_cast<void>(map->is_flyable(0, x, z));
+            for (const std::size_t layer : {std::size_t{0}, std::size_t{1}}) {
+                static_cast<void>(map->factor(layer, x, z));
+                static_cast<void>(map->is_flyable(layer, x, z));
+            }
         }
     }
     return 0;
