@@ -14,8 +14,12 @@ Convex level_disc(const Vector3& center_m, double radius_m) {
     return {.center_m = center_m, .disc_radius_m = radius_m};
 }
 
+/// Nearer than this is a touch: asked for a distance of 0 the search for one would end at its first bound.
+constexpr double touching_m = 1e-6;
+
 /// Whether a solid is nearer than a distance to some obstacle, or touches one.
-bool is_any_nearer(const Scene::Solids& solids, const Convex& solid, double distance_m) {
+bool is_any_nearer(const Scene::Solids& solids, const Convex& solid, double wanted_m) {
+    const double distance_m = std::max(wanted_m, touching_m);
     const Scene::Bounds bounds = bounds_of(solid);
     const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
     return solids.parts.any(gap, distance_m, [&](std::size_t part) {
@@ -83,8 +87,7 @@ bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_
     Convex column = level_disc({center_m[0], center_m[1], center_m[2] + half_m}, radius_m);
     column.segment_count = 1;
     column.half_axes_m[0] = {0, 0, half_m};
-    constexpr double touching_m = 1e-6;  // with 0 the search for a distance ends at its first bound
-    return !is_any_nearer(solids, column, touching_m) && !solids.is_inside_mesh(center_m);
+    return !is_any_nearer(solids, column, 0) && !solids.is_inside_mesh(center_m);
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {

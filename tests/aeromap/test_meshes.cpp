@@ -9,6 +9,7 @@
 #include "../support/meshes.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/parallel.hpp"
+#include "downwash/scene/collision_checker.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;
@@ -294,4 +295,28 @@ TEST_CASE("A map among meshes and octrees stays within a hundredth of the direct
     CAPTURE(worst);
     CHECK(worst < 0.01);
     CHECK(felt > 200);
+}
+
+TEST_CASE("Rotors that may come as near as they like are forbidden where they would touch, and nowhere else") {
+    AeroSettings settings;
+    settings.min_distance_radii = 0;
+    settings.ground = EffectModel::none;
+    settings.ceiling = EffectModel::none;
+    const auto scene = scene_of({{"pipe", test::pipe_mesh(0.25, 4, 16, 4), {-1, 0, 0}, {0.1, 0, 0.2}},
+                                 {"box", Box{{0.4, 0.4, 0.4}}, {0.8, 0, 0.3}, {0, 0.4, 0}}});
+    const auto effect = std::make_shared<const DirectEffect>(scene, settings, radius);
+    const AeroMap map(test::layers(effect, {0}), {}, {-1.6, 1.5, -0.4, 0.8});
+    test::Random random(69);
+    int forbidden = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vector3 hub_m{random.uniform(-1.6, 1.5), 0, random.uniform(-0.4, 0.8)};
+        const double clearance_m = disc_clearance_m(*scene, hub_m, radius);
+        if (clearance_m == 0 || clearance_m > 1e-5) {
+            REQUIRE(effect->is_flyable(hub_m) == (clearance_m > 0));
+        }
+        REQUIRE(map.is_flyable(0, hub_m[0], hub_m[2]) == effect->is_flyable(hub_m));
+        forbidden += effect->is_flyable(hub_m) ? 0 : 1;
+    }
+    CHECK(forbidden > 3000);
+    CHECK(forbidden < 17000);
 }
