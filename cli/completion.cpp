@@ -18,6 +18,7 @@ std::string joined(const Words& words) {
 /// CLI11 has no place for words that are offered; they are the name of an option's only check.
 std::string offered_words(const CLI::Option& option) {
     try {
+        // Only the getter is not const. NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
         return const_cast<CLI::Option&>(option).get_validator()->get_name();
     } catch (const CLI::OptionNotFound&) {
         return {};  // it has no check
