@@ -20,7 +20,7 @@ awk '
     }
     BEGIN { print "# Bars\n\nWhat `bench/bars.sh` finds in the pages beside this one.\n\n| page | commit | kept | not kept |\n| --- | --- | --: | --: |" }
     FNR == 1 { page_ends(); page = FILENAME; commit = "?"; kept = missed = 0 }
-    commit == "?" && match($0, /[Cc]ommit:? `?[0-9a-f]+(-dirty)?/) {
+    commit == "?" && match($0, /[Cc]ommit:? `?[0-9a-f]+(-dirty)?/) && RLENGTH >= 14 {
         commit = substr($0, RSTART, RLENGTH)
         sub(/[Cc]ommit:? `?/, "", commit)
     }
