@@ -44,10 +44,10 @@ constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
 
 /// Work in rounds is counted in ticks of flights side by side. In a round tree and refiner do so much each ...
-constexpr double round_work = 60'000;
+constexpr double round_work = 120'000;
 /// ... or, while a plan is flown directly, about as much as that takes, by the tick; but no more than this.
-constexpr double direct_tick_work = 75;
-constexpr double most_round_work = 500'000;
+constexpr double direct_tick_work = 150;
+constexpr double most_round_work = 1'000'000;
 /// What a sample of the tree costs beside its flights, and what it mostly costs with them.
 constexpr double sample_work = 200;
 constexpr double usual_sample_work = 1'500;
