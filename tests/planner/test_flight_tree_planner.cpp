@@ -70,7 +70,7 @@ TEST_CASE("what is refused does not depend on threads, nor does what comes of it
             return asked.size() % 3 == 0;
         };
         const Search search(
-            400, every_third, [] { return false; }, threads, with_wall());
+            1600, every_third, [] { return false; }, threads, with_wall());
         REQUIRE(search.planner.incumbent());
         asked.push_back(search.planner.incumbent()->cost);
         asked.push_back(static_cast<double>(search.planner.statistics().ticks));
