@@ -144,14 +144,14 @@ struct FlightSearch {
         goals.push_back(of.goal);
     }
 
-    /// Whether a plan counts; one of mp-arm-ada has to fly directly.
+    /// Whether a plan counts; one of mp-arm-ada has to fly directly, and to keep the margin in doing so.
     bool counts(const Plan& plan) {
         search.found_first(search.seconds());
         if (problem.planner.variant == Variant::mp_arm_ada) {
             flown = fly_directly(start, goals, model, before.continued_by(plan), flown_wall_s);
         }
         known_at_s = search.seconds();
-        return !flown || flown->outcome == Outcome::ok;
+        return !flown || (flown->outcome == Outcome::ok && flown->min_clearance_m >= problem.planner.safety_margin_m);
     }
 
     /// Takes on the plan of which counts() was asked last; it has counted since the answer was known.

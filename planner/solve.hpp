@@ -71,7 +71,8 @@ struct AlgorithmInfo {
 [[nodiscard]] DOWNWASH_EXPORT FlightState start_state(const FlightModel& model, const Start& start);
 
 /// Plans, and flies the plan with direct aerodynamics, hold included.
-/// An aerodynamics-aware plan whose direct flight fails is discarded and the search goes on; the other variants'
+/// An aerodynamics-aware plan whose direct flight fails or comes nearer to an obstacle than the margin, at any tick, is
+/// discarded and the search goes on; the other variants'
 /// plans are reported with their failed flight. Never prints, never exits. While it runs OMPL's log, one for the whole
 /// process, is silent; OMPL's global seeds are neither needed nor set.
 /// @throws InputError with every fault when the problem cannot be planned
