@@ -14,6 +14,7 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/standard_error.hpp"
@@ -73,14 +74,21 @@ std::string kinds_text() {
     return text;
 }
 
-const FieldKind& kind_named(const std::string& name) {
+std::vector<std::string_view> kind_names() {
     std::vector<std::string_view> names;
+    for (const FieldKind& kind : field_kinds) {
+        names.emplace_back(kind.name);
+    }
+    return names;
+}
+
+const FieldKind& kind_named(const std::string& name) {
     for (const FieldKind& kind : field_kinds) {
         if (name == kind.name) {
             return kind;
         }
-        names.emplace_back(kind.name);
     }
+    const std::vector<std::string_view> names = kind_names();
     throw UsageError("--what '" + excerpt(name) + "' is not known: expected " + joined_names(names) +
                      did_you_mean(name, names));
 }
@@ -215,7 +223,8 @@ ExitCode run(const PlotRequest& request) {
 
 void add_options(CLI::App& plot, PlotRequest& request) {
     plot.add_option("PROBLEM", request.problem, "problem file: a picture over its plane of motion");
-    plot.add_option("--what", request.what, "what to show of a problem: " + kinds_text())->capture_default_str();
+    CLI::Option* what = plot.add_option("--what", request.what, "what to show of a problem: " + kinds_text());
+    offer_words(*what->capture_default_str(), kind_names());
     CLI::Option* rotor =
         plot.add_option("--rotor", request.rotor, "the rotor, counted from 1")->type_name("N")->capture_default_str();
     plot.add_option("--lateral", request.lateral_m,
@@ -238,7 +247,8 @@ void add_options(CLI::App& plot, PlotRequest& request) {
     offer_models(*models->type_name("NAME..."));
     plot.add_option("--data", request.data, "measurements to show with them: CSV as for `aeromap fit`")
         ->type_name("CSV");
-    plot.add_option("--surface", request.surface, "only measurements at this surface")->type_name("S");
+    CLI::Option* surface = plot.add_option("--surface", request.surface, "only measurements at this surface");
+    offer_words(*surface->type_name("S"), std::array<std::string_view, 2>{"ground", "ceiling"});
     plot.add_option("--source", request.source, "only measurements of this source")->type_name("NAME");
     plot.add_option("--max-factor", request.max_factor, "cap of the models; default 2")->type_name("K");
     plot.add_option("--rotor-spacing", request.rotor_spacing,

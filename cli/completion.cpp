@@ -56,17 +56,35 @@ std::string words_after(const CLI::App& command) {
     return joined(words);
 }
 
+std::string case_of(const CLI::App& command, const CLI::Option& option, const std::string& next) {
+    std::vector<std::string> patterns;
+    for (const std::string& spelling : spellings(option)) {
+        patterns.push_back(fmt::format("'{} {}'", full_name(command), spelling));
+    }
+    return fmt::format("{}) next='{}' ;;\n", fmt::join(patterns, " | "), next);
+}
+
 /// As cases of a shell script: what follows an option that takes a value, its words or else a file.
 std::string cases_of_options(const CLI::App& program) {
     std::string cases;
     for_each_command(program, [&cases](const CLI::App& command) {
         for (const CLI::Option* option : options_of(command, false)) {
             if (option->get_items_expected_max() > 0) {
-                std::vector<std::string> patterns;
-                for (const std::string& spelling : spellings(*option)) {
-                    patterns.push_back(fmt::format("'{} {}'", full_name(command), spelling));
-                }
-                cases += fmt::format("        {}) next='{}' ;;\n", fmt::join(patterns, " | "), offered_words(*option));
+                cases += "        " + case_of(command, *option, offered_words(*option));
+            }
+        }
+    });
+    return cases;
+}
+
+/// The same: what follows a value of an option that takes several.
+std::string cases_of_more_values(const CLI::App& program) {
+    std::string cases;
+    for_each_command(program, [&cases](const CLI::App& command) {
+        for (const CLI::Option* option : options_of(command, false)) {
+            const std::string offered = offered_words(*option);
+            if (option->get_items_expected_max() > 1 && !offered.empty()) {
+                cases += "            " + case_of(command, *option, offered + " " + words_after(command));
             }
         }
     });
@@ -77,7 +95,7 @@ std::string cases_of_options(const CLI::App& program) {
 std::string cases_of_commands(const CLI::App& program) {
     std::string cases;
     for_each_command(program, [&cases](const CLI::App& command) {
-        cases += fmt::format("            '{}') next='{}' ;;\n", full_name(command), words_after(command));
+        cases += fmt::format("                '{}') next='{}' ;;\n", full_name(command), words_after(command));
     });
     return cases;
 }
@@ -110,12 +128,12 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
         shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
     return head +
            "# Completes the commands and options of downwash, what options take, and names of files.\n_downwash() {\n"
-           "    local given=downwash word next current=\"${COMP_WORDS[COMP_CWORD]}\"\n"
+           "    local given=downwash word next option= current=\"${COMP_WORDS[COMP_CWORD]}\"\n"
            "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
            "        case \"$given $word\" in\n            " +
            names_of_commands(program) +
            ") given=\"$given $word\" ;;\n"
-           "        esac\n    done\n"
+           "        esac\n        [[ $word != -* ]] || option=\"$word\"\n    done\n"
            "    # Of --option=value bash makes three words, zsh one.\n"
            "    local before=\"${COMP_WORDS[COMP_CWORD - 1]}\" glued=\n"
            "    COMPREPLY=()\n"
@@ -126,8 +144,9 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            "        before=\"${current%%=*}\" glued=\"${current%%=*}=\" current=\"${current#*=}\"\n"
            "    fi\n"
            "    case \"$given $before\" in\n" +
-           cases_of_options(program) + "        *) case \"$given\" in\n" + cases_of_commands(program) +
-           "        esac ;;\n    esac\n"
+           cases_of_options(program) + "        *) case \"$given $option\" in\n" + cases_of_more_values(program) +
+           "            *) case \"$given\" in\n" + cases_of_commands(program) +
+           "            esac ;;\n        esac ;;\n    esac\n"
            "    COMPREPLY=($(compgen -P \"$glued\" -W \"$next\" -- \"$current\"))\n"
            "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -P \"$glued\" -f -- "
            "\"$current\"))\n"

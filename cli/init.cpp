@@ -34,8 +34,12 @@ std::string replaced(std::string text, std::string_view word, std::string_view b
 
 /// The first problem for a file of that name, which names the problem too where it may.
 std::string first_problem_for(const fs::path& file) {
-    std::string text = replaced(std::string(DOWNWASH_EMBEDDED_FILE(downwash_first_problem)), "my_problem.yaml",
-                                file.filename().string());
+    const auto in_place_of = [](std::string_view field, const std::string& word) {
+        return fmt::format("{:<{}}", word, field.size());
+    };
+    constexpr std::string_view file_field = "my_problem.yaml      ";  // up to a blank before what the command does
+    std::string text = replaced(std::string(DOWNWASH_EMBEDDED_FILE(downwash_first_problem)), file_field,
+                                in_place_of(file_field, file.filename().string()));
     const std::string name = file.stem().string();
     const auto is_sound = [](char c) {
         return (std::isalnum(static_cast<unsigned char>(c)) != 0) || c == '_' || c == '-';
@@ -43,7 +47,7 @@ std::string first_problem_for(const fs::path& file) {
     constexpr std::size_t longest = 64;
     if (name.size() <= longest && std::all_of(name.begin(), name.end(), is_sound)) {
         constexpr std::string_view field = "my_problem                        ";  // up to its comment
-        text = replaced(std::move(text), field, fmt::format("{:<{}}", name, field.size()));
+        text = replaced(std::move(text), field, in_place_of(field, name));
     }
     return text;
 }

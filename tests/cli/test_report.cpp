@@ -132,6 +132,8 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(seed.at("type") == "integer");
     CHECK(seed.at("minimum") == 0);
     CHECK(seed.at("default") == 1);
+    const std::string shown = seed.at("description");  // all that an editor shows of a key
+    CHECK(shown == "of every random number of the search\na whole number from 0 to 4294967295; default 1");
     CHECK_THAT(run(folder, {"manual", "aeromap", "plot"}).out,
                Catch::StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Catch::Contains(".SH OPTIONS"));
     CHECK(run(folder, {"manual", "--all", "man"}).code == 0);
@@ -163,6 +165,10 @@ TEST_CASE("Completions offer commands, options, what options take, and files") {
         {"downwash execute --aero o", "on off"},
         {"downwash completion z", "zsh"},
         {"downwash aeromap query --model hayd", "hayden"},
+        {"downwash aeromap plot --model hayden l", "li"},
+        {"downwash aeromap plot --model hayden li --sur", "--surface"},
+        {"downwash aeromap plot --model hayden --surface c", "ceiling"},
+        {"downwash aeromap plot one.yaml --what h", "hold"},
         {"downwash export flown --format g", "glb"},
         {"downwash solve o", "one.yaml"},
         {"downwash solve --out o", "one.yaml"},
