@@ -47,10 +47,16 @@ Json json_of(const Value& value) {
         value);
 }
 
-std::string description_of(const ParameterInfo& info) {
+/// Units, ranges and defaults too: of all that a schema says editors show people this alone.
+std::string description_of(const KeyReference& key) {
+    const ParameterInfo& info = key.info;
     std::string text = info.description;
     if (!info.condition.empty()) {
         text += " (" + info.condition + ")";
+    }
+    if (info.kind != ParameterKind::group && info.kind != ParameterKind::list) {
+        text += (text.empty() ? "" : "\n") + expectation(info);
+        text += key.default_value ? "; default " + key.default_text : "";
     }
     return text;
 }
@@ -115,7 +121,7 @@ class SchemaWriter {
             forms.push_back({{"type", "null"}});
         }
         Json schema = any_of(std::move(forms));
-        if (const std::string description = description_of(info); !description.empty()) {
+        if (const std::string description = description_of(key); !description.empty()) {
             schema["description"] = description;
         }
         if (key.default_value) {
