@@ -111,10 +111,9 @@ class Document {
 
     void flights() {
         add("## Success and flights\n\n`failed flight`: the reported plan, flown with direct aerodynamics and held at "
-            "the "
-            "goal, collided, left the flyable area, became unstable or\nmissed the goal. `discarded`: plans of the "
-            "aware "
-            "planner that failed so and were not reported. Least clearance over the flights of all solved seeds.\n\n"
+            "the goal, collided, left the flyable area, became unstable or\nmissed the goal. `discarded`: plans of the "
+            "aware planner that failed so, or came nearer than the margin, and were not reported. Least clearance over "
+            "the\nflights of all solved seeds.\n\n"
             "| problem | planner | solved | failed flight | solved and held | failures by cause | least clearance | "
             "discarded |\n|---|---|---|---|---|---|---|---|\n");
         for (const CellFigures& cell : report_.cells) {

@@ -147,7 +147,7 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            cases_of_options(program) + "        *) case \"$given $option\" in\n" + cases_of_more_values(program) +
            "            *) case \"$given\" in\n" + cases_of_commands(program) +
            "            esac ;;\n        esac ;;\n    esac\n"
-           "    COMPREPLY=($(compgen -P \"$glued\" -W \"$next\" -- \"$current\"))\n"
+           "    for word in $next; do\n        [[ $word != \"$current\"* ]] || COMPREPLY+=(\"$glued$word\")\n    done\n"
            "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -P \"$glued\" -f -- "
            "\"$current\"))\n"
            "}\n"

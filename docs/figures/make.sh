@@ -55,7 +55,7 @@ run() { # VARIANT ITERATIONS EXIT-CODE: the picture of a flight, left in the fol
 run mp-arm 1000 3
 run mp-arm-da 3000 3
 cp "$work/run/plots.svg" plots_mp_arm_da.svg
-run mp-arm-ada 1000 0
+run mp-arm-ada 3000 0
 
 # Tables: what stands between <!-- NAME --> and <!-- /NAME --> in the page is replaced.
 replace() { # NAME, new text on standard input

@@ -144,7 +144,7 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(run(folder, {"completion", "fish"}).code == 2);
 }
 
-TEST_CASE("Completions offer commands, options, what options take, and files") {
+TEST_CASE("Completions offer commands, options, what options take, and files, in bash and zsh") {
     const ScratchFolder folder;
     struct Asked {
         const char* words;  ///< of the command line, quoted for the shell; the last one is completed
@@ -174,20 +174,25 @@ TEST_CASE("Completions offer commands, options, what options take, and files") {
         {"downwash solve --out o", "one.yaml"},
         {"downwash solve --seed -", ""},
     };
-    std::string script = run(folder, {"completion", "bash"}).out;
-    script +=
-        "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _downwash; echo \"${COMPREPLY[*]}\"; }\n"
-        "cd '" +
-        (folder.path() / "run").string() + "' && touch one.yaml\n";
+    std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
+    questions += "for PREFIX; do :; done; _downwash; echo \"${COMPREPLY[*]}\"; }\n";  // zsh finds files by PREFIX
+    questions += "cd '" + (folder.path() / "run").string() + "' && touch one.yaml\n";
     std::string expected;
     for (const Asked& asked : all) {
-        script += std::string("ask ") + asked.words + "\n";
+        questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
     }
     const auto path = [&folder](const char* name) { return (folder.path() / name).string(); };
-    write_file(path("script"), script);
-    REQUIRE(std::system(("bash '" + path("script") + "' >'" + path("offered") + "'").c_str()) == 0);
-    CHECK(read_file(path("offered")) == expected);
+    // What zsh sets up before it calls a completion that was written for bash.
+    const std::string zsh_head = "autoload -U compinit && compinit -u -D\n";
+    const std::string zsh_middle = "emulate sh; setopt kshglob noshglob braceexpand\n";
+    for (const std::string shell : {"bash", "zsh"}) {
+        CAPTURE(shell);
+        const std::string script = run(folder, {"completion", shell}).out;
+        write_file(path("script"), shell == "zsh" ? zsh_head + script + zsh_middle + questions : script + questions);
+        REQUIRE(std::system((shell + " '" + path("script") + "' >'" + path("offered") + "'").c_str()) == 0);
+        CHECK(read_file(path("offered")) == expected);
+    }
 }
 
 TEST_CASE("What cannot be reported or exported is refused with a remedy") {
