@@ -76,6 +76,7 @@ std::string kinds_text() {
 
 std::vector<std::string_view> kind_names() {
     std::vector<std::string_view> names;
+    names.reserve(field_kinds.size());
     for (const FieldKind& kind : field_kinds) {
         names.emplace_back(kind.name);
     }
