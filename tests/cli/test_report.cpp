@@ -188,8 +188,12 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
     const std::string zsh_middle = "emulate sh; setopt kshglob noshglob braceexpand\n";
     for (const std::string shell : {"bash", "zsh"}) {
         CAPTURE(shell);
-        const std::string script = run(folder, {"completion", shell}).out;
-        write_file(path("script"), shell == "zsh" ? zsh_head + script + zsh_middle + questions : script + questions);
+        const bool is_zsh = shell == "zsh";
+        std::string script = is_zsh ? zsh_head : "";
+        script += run(folder, {"completion", shell}).out;
+        script += is_zsh ? zsh_middle : "";
+        script += questions;
+        write_file(path("script"), script);
         REQUIRE(std::system((shell + " '" + path("script") + "' >'" + path("offered") + "'").c_str()) == 0);
         CHECK(read_file(path("offered")) == expected);
     }
