@@ -15,6 +15,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/completion.hpp"
+#include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/standard_error.hpp"
@@ -249,7 +250,7 @@ void add_options(CLI::App& plot, PlotRequest& request) {
     plot.add_option("--data", request.data, "measurements to show with them: CSV as for `aeromap fit`")
         ->type_name("CSV");
     CLI::Option* surface = plot.add_option("--surface", request.surface, "only measurements at this surface");
-    offer_words(*surface->type_name("S"), std::array<std::string_view, 2>{"ground", "ceiling"});
+    offer_words(*surface->type_name("S"), measured_surfaces);
     plot.add_option("--source", request.source, "only measurements of this source")->type_name("NAME");
     plot.add_option("--max-factor", request.max_factor, "cap of the models; default 2")->type_name("K");
     plot.add_option("--rotor-spacing", request.rotor_spacing,

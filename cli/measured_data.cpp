@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <vector>
 
@@ -45,7 +44,7 @@ void MeasuredData::add_options(CLI::App& command) {
     CLI::Option* at = command.add_option(
         "--surface", surface,
         "only rows with this surface, `ground` or `ceiling`; what all are made at when there is no such column");
-    offer_words(*at->type_name("S"), std::array<std::string_view, 2>{"ground", "ceiling"});
+    offer_words(*at->type_name("S"), measured_surfaces);
     command.add_option("--source", source, "only rows with this source")->type_name("NAME");
     command.add_option("--from", from, "only measurements at this z/R and beyond")->type_name("Z");
     command.add_option("--to", to, "only measurements up to this z/R")->type_name("Z");
@@ -63,7 +62,7 @@ Measurements MeasuredData::read() const {
     if (measurements.index("surface")) {
         measurements = chosen(measurements, file, "surface", surface);
     } else if (!surface.empty()) {
-        const std::vector<std::string_view> surfaces{"ground", "ceiling"};
+        const std::vector<std::string_view> surfaces(measured_surfaces.begin(), measured_surfaces.end());
         if (std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end()) {
             throw UsageError("--surface '" + excerpt(surface) + "': expected ground or ceiling" +
                              did_you_mean(surface, surfaces));

@@ -1,13 +1,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "downwash/effects/measurements.hpp"
 #include "downwash/effects/rotor_layout.hpp"
 
 namespace downwash::cli {
+
+/// What --surface takes.
+inline constexpr std::array<std::string_view, 2> measured_surfaces{"ground", "ceiling"};
 
 /// Which measurements a command is about: a file, narrowed down by options, and the rotors they were made with.
 struct MeasuredData {

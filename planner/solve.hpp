@@ -72,9 +72,9 @@ struct AlgorithmInfo {
 
 /// Plans, and flies the plan with direct aerodynamics, hold included.
 /// An aerodynamics-aware plan whose direct flight fails or comes nearer to an obstacle than the margin, at any tick, is
-/// discarded and the search goes on; the other variants'
-/// plans are reported with their failed flight. Never prints, never exits. While it runs OMPL's log, one for the whole
-/// process, is silent; OMPL's global seeds are neither needed nor set.
+/// discarded and the search goes on; the other variants' plans are reported with their failed flight. Never prints,
+/// never exits. While it runs OMPL's log, one for the whole process, is silent; OMPL's global seeds are neither needed
+/// nor set.
 /// @throws InputError with every fault when the problem cannot be planned
 [[nodiscard]] DOWNWASH_EXPORT Solution solve(const Problem& problem, const SolveOptions& options = {});
 

@@ -140,7 +140,8 @@ export function make_tables(model) {
           "Shares are of all attempted seeds, with 95 % Wilson intervals. A failed flight: the reported plan, flown with " +
               "direct aerodynamics and held at the goal, collided, left the flyable area, became unstable or missed the " +
               "goal. Discarded: plans of the aware planner that failed so, or came nearer than the " +
-              "margin, and were not reported. Verified: to the first plan that may be reported, which the aware planner has flown with direct aerodynamics by then."),
+              "margin, and were not reported. Verified: to the first plan that may be reported, which the aware planner " +
+              "has flown with direct aerodynamics by then."),
         flights_table(model), figures.bars.length > 0 ? folded(`The ${figures.bars.length} bars`, bars_table(model)) : null,
         folded("Time to the first solution", times_table(model)), folded("Costs", costs_table(model)),
         figures.comparisons.length > 0 ? folded("Paired comparisons", pairs_table(model)) : null,
