@@ -105,18 +105,7 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress)
     for (std::size_t layer = 0; layer < grids.size(); ++layer) {
         Raster raster;
         for (std::size_t task = layer * tasks_per_layer; task < (layer + 1) * tasks_per_layer; ++task) {
-            std::size_t node = raster.nodes.size();
-            for (const CellSteps& steps : parts[task].steps) {
-                raster.cells.push_back({static_cast<std::uint32_t>(node), steps.x, steps.z});
-                node += std::size_t{steps.x + 1U} * (steps.z + 1U);
-            }
-            if (node > std::numeric_limits<std::uint32_t>::max()) {
-                throw InputError(
-                    std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
-            }
-            raster.flyability.insert(raster.flyability.end(), parts[task].flyability.begin(),
-                                     parts[task].flyability.end());
-            raster.nodes.insert(raster.nodes.end(), parts[task].nodes.begin(), parts[task].nodes.end());
+            raster.append(parts[task]);
             parts[task] = {};
         }
         raster.cells.shrink_to_fit();
@@ -124,6 +113,27 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress)
         raster.nodes.shrink_to_fit();
         add_raster(std::move(raster));
     }
+}
+
+void AeroMap::Raster::append(const CellRows& rows) {
+    auto values = rows.nodes.begin();
+    for (const CellSteps& steps : rows.steps) {
+        const auto end = values + (steps.x + std::ptrdiff_t{1}) * (steps.z + 1);
+        const bool is_as_before =
+            !cells.empty() && cells.back().steps_x == steps.x && cells.back().steps_z == steps.z &&
+            std::equal(values, end, nodes.begin() + static_cast<std::ptrdiff_t>(cells.back().first_node));
+        const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
+        if (first > std::numeric_limits<std::uint32_t>::max()) {
+            throw InputError(
+                std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
+        }
+        cells.push_back({static_cast<std::uint32_t>(first), steps.x, steps.z});
+        if (!is_as_before) {
+            nodes.insert(nodes.end(), values, end);
+        }
+        values = end;
+    }
+    flyability.insert(flyability.end(), rows.flyability.begin(), rows.flyability.end());
 }
 
 void AeroMap::add_raster(Raster raster) {

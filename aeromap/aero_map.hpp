@@ -15,6 +15,8 @@
 
 namespace downwash {
 
+struct CellRows;
+
 /// The rectangle of plane coordinates that a map covers [m].
 struct MapExtent {
     double x_low_m = 0, x_high_m = 0;
@@ -114,7 +116,9 @@ class DOWNWASH_EXPORT AeroMap {
     struct Raster {
         std::vector<MapCell> cells;
         std::vector<CellFlyability> flyability;  ///< of each cell
-        std::vector<float> nodes;
+        std::vector<float> nodes;  ///< a cell that has the values of the one before it shares them: most cells do
+
+        void append(const CellRows& rows);
     };
 
     /// A map that holds nothing yet.

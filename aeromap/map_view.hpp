@@ -9,7 +9,7 @@ namespace downwash {
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
-/// A cell of a layer: where its own grid of values begins, and how fine it is.
+/// A cell of a layer: where its grid of values begins, and how fine it is.
 struct MapCell {
     std::uint32_t first_node;
     std::uint16_t steps_x;  ///< intervals along x, a power of two

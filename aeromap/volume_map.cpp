@@ -73,29 +73,34 @@ void VolumeMap::build(int threads, const std::function<void(double)>& on_progres
         bricks.size(), threads, [&](std::size_t brick) { bricks[brick].build(); }, on_progress);
     nodes_.resize(cells_[0] * cells_[1] * cells_[2]);
     polynomials_.resize(1);  // index 0 stands for K = 1
+    KnownPolynomials known;
     for (Builder& brick : bricks) {
-        append(brick);
+        append(brick, known);
         brick.clear();
     }
     nodes_.shrink_to_fit();
     polynomials_.shrink_to_fit();
 }
 
-void VolumeMap::append(const Builder& brick) {
+void VolumeMap::append(const Builder& brick, KnownPolynomials& known) {
     const Cell& first = brick.first();
     const Cell& last = brick.last();
     const std::uint32_t columns = last[0] - first[0];
     const std::uint32_t rows = last[1] - first[1];
     const std::uint32_t cells = columns * rows * (last[2] - first[2]);
-    // The nodes of cells go to their places, the others and the polynomials to the ends.
+    // The nodes of cells go to their places, the others to the end.
     const std::size_t nodes_before = nodes_.size() - cells;
-    const std::size_t boxes_before = polynomials_.size() - 1;
     for (std::uint32_t n = 0; n < brick.nodes().size(); ++n) {
         Node node = brick.nodes()[n];
         if (node.axis != no_axis) {
             node.index = static_cast<std::uint32_t>(node.index + nodes_before);
         } else if (node.index > 0) {
-            node.index = static_cast<std::uint32_t>(node.index + boxes_before);
+            const Coefficients& polynomial = brick.polynomials()[node.index];
+            const auto [place, is_new] = known.try_emplace(polynomial, static_cast<std::uint32_t>(polynomials_.size()));
+            if (is_new) {
+                polynomials_.push_back(polynomial);
+            }
+            node.index = place->second;
         }
         if (n < cells) {
             const Cell cell{first[0] + n % columns, first[1] + n / columns % rows, first[2] + n / (columns * rows)};
@@ -104,7 +109,6 @@ void VolumeMap::append(const Builder& brick) {
             nodes_.push_back(node);
         }
     }
-    polynomials_.insert(polynomials_.end(), brick.polynomials().begin() + 1, brick.polynomials().end());
 }
 
 double VolumeMap::factor(const Vector3& hub_m) const {

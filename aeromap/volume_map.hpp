@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -41,8 +42,8 @@ class DOWNWASH_EXPORT VolumeMap {
     [[nodiscard]] double factor(const Vector3& hub_m) const;
 
     [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
-    /// Boxes that hold a polynomial of their own.
-    [[nodiscard]] std::size_t boxes() const noexcept { return polynomials_.size() - 1; }
+    /// How many different ones. Boxes of equal values share theirs, as along a deck most do.
+    [[nodiscard]] std::size_t polynomials() const noexcept { return polynomials_.size() - 1; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
  private:
@@ -57,12 +58,13 @@ class DOWNWASH_EXPORT VolumeMap {
     static constexpr std::uint32_t no_axis = 3;
     /// Of K's polynomial in the box.
     using Coefficients = std::array<float, 28>;
+    using KnownPolynomials = std::map<Coefficients, std::uint32_t>;  ///< and their indices
 
     [[nodiscard]] std::size_t node_of(const Cell& cell) const noexcept {
         return (std::size_t{cell[2]} * cells_[1] + cell[1]) * cells_[0] + cell[0];
     }
     void build(int threads, const std::function<void(double)>& on_progress);
-    void append(const Builder& brick);
+    void append(const Builder& brick, KnownPolynomials& known);
 
     std::shared_ptr<const DirectEffect> effect_;
     PlaneOfMotion frame_;

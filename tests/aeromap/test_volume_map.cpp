@@ -113,7 +113,7 @@ TEST_CASE("A volume of random scenes is within 0.01 of the direct effect whereve
         const Block block{{-0.5, 0.7, -0.6, 0.5}, -0.4, 0.5, PlaneOfMotion({0.1, 0.2, 0.1}, heading_rad)};
         const VolumeMap map = map_of(effect, block);
         const Comparison found = compare(map, block, 10000, 200U + static_cast<unsigned>(scene));
-        CAPTURE(scene, found.worst, map.boxes(), map.memory_bytes());
+        CAPTURE(scene, found.worst, map.polynomials(), map.memory_bytes());
         CHECK(found.worst <= 0.01);
         all.felt += found.felt;
         all.near_edges += found.near_edges;
@@ -161,13 +161,21 @@ TEST_CASE("A volume is the same to the bit for any number of threads") {
     const VolumeMap one = map_of(effect, block, 1);
     const VolumeMap two = map_of(effect, block, 2);
     CHECK(one.memory_bytes() == two.memory_bytes());
-    CHECK(one.boxes() > 100);
+    CHECK(one.polynomials() > 100);
     for (int i = 0; i < 50000; ++i) {
         const Vector3 hub_m = block.any(random);
         const double a = one.factor(hub_m);
         const double b = two.factor(hub_m);
         REQUIRE(std::memcmp(&a, &b, sizeof a) == 0);
     }
+}
+
+TEST_CASE("Over level ground a volume that is wider keeps no more values") {
+    const auto effect = effect_in({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}}, 0.2);
+    const VolumeMap narrow(effect, {}, {-1, 1, 0.1, 1}, -0.5, 0.5);
+    const VolumeMap wide(effect, {}, {-4, 4, 0.1, 1}, -2, 2);
+    CHECK(narrow.polynomials() > 5);
+    CHECK(wide.polynomials() == narrow.polynomials());
 }
 
 TEST_CASE("Outside its block a volume evaluates directly, and its borders belong to it") {
@@ -191,7 +199,7 @@ TEST_CASE("A volume without obstacles, or with the effects disabled, holds no va
     disabled.enabled = false;
     for (const auto& effect : {effect_in({}, 0.2), effect_in(test::bridge(), 0.2, disabled)}) {
         const VolumeMap map(effect, {}, {-2, 2, 8, 10}, -1, 1);
-        CHECK(map.boxes() == 0);
+        CHECK(map.polynomials() == 0);
         CHECK(map.factor({0.3, 0.2, 9.1}) == 1);
     }
 }
