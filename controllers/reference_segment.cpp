@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "downwash/controllers/quintic.hpp"
 
@@ -32,15 +32,39 @@ double ratio_at(const ReferencePoint& p, const ReferenceLimits& limits) {
                      std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
 }
 
-/// Largest ratio of a sampled speed or acceleration to its limit between the ends of the segment.
-double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
+std::int64_t samples_of(const ReferenceSegment& segment) {
     constexpr std::int64_t most_samples = 64;
-    const std::int64_t samples = std::min(most_samples, segment.ticks());
+    return std::min(most_samples, segment.ticks());
+}
+
+/// Ratio of a sampled speed or acceleration to its limit, the larger one. Sample 0 is the segment's beginning.
+double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const ReferenceLimits& limits) {
+    return ratio_at(segment.at_tick(segment.ticks() * sample / samples_of(segment)), limits);
+}
+
+/// The largest ratio at samples between the ends.
+double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
     double worst = 0;
-    for (std::int64_t i = 1; i < samples; ++i) {
-        worst = std::max(worst, ratio_at(segment.at_tick(segment.ticks() * i / samples), limits));
+    for (std::int64_t i = 1; i < samples_of(segment); ++i) {
+        worst = std::max(worst, ratio_at_sample(segment, i, limits));
     }
     return worst;
+}
+
+/// Whether all samples between the ends keep the limits.
+/// @param suspect the sample that is asked first, as it did not keep them last; becomes the one that does not
+bool keeps_limits_between(const ReferenceSegment& segment, const ReferenceLimits& limits, std::int64_t& suspect) {
+    const std::int64_t samples = samples_of(segment);
+    if (suspect < samples && ratio_at_sample(segment, suspect, limits) > kept) {
+        return false;
+    }
+    for (std::int64_t i = 1; i < samples; ++i) {
+        if (ratio_at_sample(segment, i, limits) > kept) {
+            suspect = i;
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -121,38 +145,36 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,
                                       std::abs(change[2]) / limits.max_arm_acceleration_rad_s2);
     ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
-    const auto ratio_in = [&](std::int64_t count) {
-        return worst_ratio(ReferenceSegment(from, to, count, tick_s), limits);
-    };
+    const auto segment_in = [&](std::int64_t count) { return ReferenceSegment(from, to, count, tick_s); };
+    std::int64_t suspect = 1;
+    const auto is_enough = [&](std::int64_t count) { return keeps_limits_between(segment_in(count), limits, suspect); };
     constexpr int most_stretches = 60;
-    std::int64_t too_few = ticks - 1;
-    std::int64_t gentlest = ticks;
-    double least_ratio = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < most_stretches; ++i) {
-        const double ratio = ratio_in(ticks);
-        if (ratio < least_ratio) {
-            least_ratio = ratio;
-            gentlest = ticks;
+    std::vector<std::int64_t> too_short;
+    while (!is_enough(ticks)) {
+        too_short.push_back(ticks);
+        if (too_short.size() == most_stretches) {
+            const auto ratio_in = [&](std::int64_t count) { return worst_ratio(segment_in(count), limits); };
+            return *std::min_element(too_short.begin(), too_short.end(),
+                                     [&](std::int64_t a, std::int64_t b) { return ratio_in(a) < ratio_in(b); });
         }
-        if (ratio <= kept) {
-            break;
-        }
-        too_few = ticks;
         ticks += std::max<std::int64_t>(1, ticks / 16);
     }
-    if (least_ratio > kept) {
-        return gentlest;
-    }
+    std::int64_t too_few = too_short.empty() ? ticks - 1 : too_short.back();
     while (ticks - too_few > 1) {
         const std::int64_t middle = too_few + (ticks - too_few) / 2;
-        (ratio_in(middle) <= kept ? ticks : too_few) = middle;
+        (is_enough(middle) ? ticks : too_few) = middle;
     }
     return ticks;
 }
 
+bool keeps_limits(const ReferencePoint& point, const ReferenceLimits& limits) {
+    return ratio_at(point, limits) <= kept;
+}
+
 bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits) {
-    return std::max({ratio_at(segment.from(), limits), ratio_at(segment.to(), limits), worst_ratio(segment, limits)}) <=
-           kept;
+    std::int64_t suspect = 1;
+    return keeps_limits(segment.from(), limits) && keeps_limits(segment.to(), limits) &&
+           keeps_limits_between(segment, limits, suspect);
 }
 
 }  // namespace downwash

@@ -57,6 +57,9 @@ struct ReferenceKnot {
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
                                                           const ReferenceLimits& limits, double tick_s);
 
+/// Whether speeds and accelerations at a point keep the limits. No segment that ends where they do not keeps them.
+[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferencePoint& point, const ReferenceLimits& limits);
+
 /// Whether a segment keeps the limits wherever they are sampled, its ends included.
 [[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits);
 

@@ -4,6 +4,7 @@
 #include <ompl/base/ScopedState.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -105,7 +106,7 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
       tree_(tree),
       space_(space),
       flights_(flights),
-      refined_flights_(flights, std::max(1, threads / 2)),
+      refined_flights_(flights, threads),
       random_(random),
       refiner_random_(random.branch()),
       refiner_(problem, space, refined_flights_, refiner_random_),
@@ -167,7 +168,11 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
     }
     tree_left_ = std::min(tree_left_, 0.0) + work;
     refiner_left_ = std::min(refiner_left_, 0.0) + work;
-    flights_.use_threads(std::max(1, threads_ - threads_ / 2));
+    // Tree and refiner share the threads, and whoever goes on alone has them all.
+    std::atomic<bool> is_tree_done = false;
+    std::atomic<bool> is_refiner_done = false;
+    const int refiner_threads = std::max(1, threads_ / 2);
+    const int tree_threads = std::max(1, threads_ - refiner_threads);
     const Strand strands[] = {
         [&] {
             if (proposed) {
@@ -176,19 +181,21 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             return false;
         },
         [&] {
-            if (terminated || is_used_up() || tree_left_ <= 0) {
-                return false;
+            is_tree_done = terminated || is_used_up() || tree_left_ <= 0;
+            if (!is_tree_done) {
+                flights_.use_threads(is_refiner_done ? threads_ : tree_threads);
+                grow();
             }
-            grow();
-            return true;
+            return !is_tree_done;
         },
         [&] {
             const bool has_work = refiner_.champion() != nullptr || !handed_over_.empty();
-            if (terminated || !has_work || refiner_left_ <= 0) {
-                return false;
+            is_refiner_done = terminated || !has_work || refiner_left_ <= 0;
+            if (!is_refiner_done) {
+                refined_flights_.use_threads(is_tree_done ? threads_ : refiner_threads);
+                refine();
             }
-            refine();
-            return true;
+            return !is_refiner_done;
         },
     };
     run_side_by_side(strands, std::min(threads_, 2));

@@ -116,9 +116,15 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
     // Segments that do not change keep their ticks; their numbers may have shifted by a corner more or less.
     const std::size_t segments = change.points.size() - 1;
     const std::size_t old_segments = track.plan.ticks.size();
+    const auto keeps_limits_at = [&](std::size_t corner) {
+        return keeps_limits(change.points[corner], flights_.limits());
+    };
     std::int64_t total = 0;
     for (std::size_t i = 0; i < segments; ++i) {
         if (i >= drawn->first_segment && i <= drawn->last_segment) {
+            if (!keeps_limits_at(i) || !keeps_limits_at(i + 1)) {
+                return std::nullopt;
+            }
             const ReferenceSegment segment = flights_.fastest_segment(change.points[i], change.points[i + 1]);
             if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment)) {
                 return std::nullopt;
