@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -53,12 +54,13 @@ void run_parallel(std::size_t count, int threads, const Task& task,
 using Strand = std::function<bool()>;
 
 /// Works on some strands side by side until none has a piece left: the pieces of one strand one after the other, those
-/// of different strands on any threads; on a single one the strands take turns, the first strand first. Rethrows what
-/// a piece threw.
+/// of different strands on any threads. A thread that is free takes the strand that has had the least time, so that
+/// strands of the same length end together. Rethrows what a piece threw.
 /// @param threads at least 1, the calling one included
 inline void run_side_by_side(std::span<const Strand> strands, int threads) {
+    using Clock = std::chrono::steady_clock;
     struct Turn {
-        std::size_t pieces = 0;
+        Clock::duration spent{};
         bool is_taken = false;  ///< by a thread, or for good: it is at its end
     };
     std::vector<Turn> turns(strands.size());
@@ -69,7 +71,7 @@ inline void run_side_by_side(std::span<const Strand> strands, int threads) {
             {
                 const std::scoped_lock lock(mutex);
                 for (std::size_t i = 0; i < turns.size(); ++i) {
-                    if (!turns[i].is_taken && (mine == strands.size() || turns[i].pieces < turns[mine].pieces)) {
+                    if (!turns[i].is_taken && (mine == strands.size() || turns[i].spent < turns[mine].spent)) {
                         mine = i;
                     }
                 }
@@ -78,9 +80,11 @@ inline void run_side_by_side(std::span<const Strand> strands, int threads) {
                 }
                 turns[mine].is_taken = true;
             }
+            const Clock::time_point began = Clock::now();
             const bool goes_on = strands[mine]();
+            const Clock::time_point ended = Clock::now();
             const std::scoped_lock lock(mutex);
-            ++turns[mine].pieces;
+            turns[mine].spent += ended - began;
             turns[mine].is_taken = !goes_on;
         }
     };

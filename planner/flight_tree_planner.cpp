@@ -45,24 +45,21 @@ constexpr double worthwhile_gain = 0.02;
 constexpr double any_gain = 1e-6;
 
 /// Work in rounds is counted in ticks of flights side by side. In a round tree and refiner do so much each ...
-constexpr double round_work = 120'000;
-/// ... or, while a plan is flown directly, about as much as that takes, by the tick; but no more than this.
+constexpr double round_work = 400'000;
+/// ... or, while a plan is flown directly, so much by its tick, lest that goes on alone; but no more than this.
 constexpr double direct_tick_work = 150;
 constexpr double most_round_work = 1'000'000;
 /// What a sample of the tree costs beside its flights, and what it mostly costs with them.
 constexpr double sample_work = 200;
 constexpr double usual_sample_work = 1'500;
 /// What a wave of the refiner costs beside its flights.
-constexpr double refine_work = 400;
+constexpr double refine_work = 2'000;
 
 /// So many plans may be refused after the end of a search until it is given up.
 constexpr int most_refused_at_end = 4;
 
-/// How often in a round the refiner, when it has room, gets another way of the tree.
-constexpr double other_way_share = 0.4;
-
 /// Samples whose flights are flown side by side. Fixed, so that the result does not depend on lanes and threads.
-constexpr std::uint64_t wave_size = 8;
+constexpr std::uint64_t wave_size = 32;
 constexpr std::uint64_t first_wave_size = 4;  ///< as long as there is no plan
 
 /// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
@@ -381,7 +378,7 @@ void FlightTreePlanner::hand_to_refiner() {
     if (is_idle || best->cost < (1 - worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
         handed_over_.push_back(tree_.plan_to(*best));
-    } else if (refiner_.champion() != nullptr && refiner_.wants_plan() && random_.chance(other_way_share)) {
+    } else if (refiner_.champion() != nullptr && refiner_.wants_plan()) {
         if (const FlightNode* hold = other_way()) {
             handed_over_.push_back(tree_.plan_to(*hold));
         }

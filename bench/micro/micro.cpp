@@ -254,21 +254,24 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     return true;
 }();
 
-/// Edges that whole searches fly, up to the same iteration whatever the number of threads. Several at once share
-/// nothing but the map: what processors give to one search with as many threads can hardly be more.
+/// Edges that whole searches of three seeds fly, up to the same iteration whatever the number of threads. Several at
+/// once share nothing but the map: what processors give to one search with as many threads can hardly be more.
 void search(benchmark::State& state, int threads, std::size_t at_once) {
     const Bridge& bridge = Bridge::get();
-    Problem problem = bridge.problem;
-    problem.planner.max_iterations = 4000;
-    problem.planner.time_limit_s.reset();
     SolveOptions how;
     how.threads = threads;
     how.map = bridge.map;
     std::atomic<std::int64_t> edges = 0;
     for ([[maybe_unused]] auto _ : state) {
-        run_parallel(at_once, static_cast<int>(at_once), [&](std::size_t /*search*/) {
-            edges += static_cast<std::int64_t>(solve(problem, how).planning.edges_simulated);
-        });
+        for (const std::uint32_t seed : {1U, 2U, 3U}) {
+            Problem problem = bridge.problem;
+            problem.planner.seed = seed;
+            problem.planner.max_iterations = 4000;
+            problem.planner.time_limit_s.reset();
+            run_parallel(at_once, static_cast<int>(at_once), [&](std::size_t /*search*/) {
+                edges += static_cast<std::int64_t>(solve(problem, how).planning.edges_simulated);
+            });
+        }
     }
     state.SetItemsProcessed(edges);
 }

@@ -3,26 +3,30 @@
 #include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "downwash/base/parallel.hpp"
 
 using namespace downwash;
 
-TEST_CASE("on one thread strands take turns, the first one first, until none has a piece left") {
+TEST_CASE("the strand that has had the least time goes on, the first one first, until none has a piece left") {
     std::string order;
-    const auto strand = [&order](char name, int pieces) -> Strand {
-        return [&order, name, pieces, done = 0]() mutable {
+    const auto strand = [&order](char name, int pieces, std::chrono::milliseconds each) -> Strand {
+        return [&order, name, pieces, each, done = 0]() mutable {
             if (done == pieces) {
                 return false;
             }
             order += name;
             ++done;
+            std::this_thread::sleep_for(each);
             return true;
         };
     };
-    const Strand strands[] = {strand('a', 2), strand('b', 4), strand('c', 0)};
+    using std::chrono::milliseconds;
+    const Strand strands[] = {strand('a', 2, milliseconds(100)), strand('b', 4, milliseconds(0)),
+                              strand('c', 0, milliseconds(0))};
     run_side_by_side(strands, 1);
-    CHECK(order == "ababbb");
+    CHECK(order == "abbbba");
 }
 
 TEST_CASE("a strand is worked on by one thread at a time, and all of them to their ends") {
