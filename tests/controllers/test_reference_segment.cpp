@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "../support/random.hpp"
 #include "downwash/controllers/reference_segment.hpp"
@@ -176,6 +177,20 @@ TEST_CASE("The limit of translation is Euclidean, not per axis") {
 
 TEST_CASE("Going nowhere takes one tick") {
     CHECK(shortest_ticks(rest_at(1, 2, 3), rest_at(1, 2, 3), limits, tick_s) == 1);
+}
+
+TEST_CASE("A point keeps the limits up to them, its speed and acceleration in the plane taken together") {
+    ReferencePoint point = rest_at(1, 2, 3);
+    CHECK(keeps_limits(point, limits));
+    point.velocity[0] = 0.6;
+    point.velocity[1] = -0.8;
+    point.acceleration[2] = -1.57;
+    CHECK(keeps_limits(point, limits));
+    for (double* value : {&point.velocity[0], &point.velocity[1], &point.acceleration[2]}) {
+        const double before = std::exchange(*value, 1.01 * *value);
+        CHECK_FALSE(keeps_limits(point, limits));
+        *value = before;
+    }
 }
 
 TEST_CASE("From a moving start the limits are kept all the way") {
