@@ -37,7 +37,7 @@ std::int64_t samples_of(const ReferenceSegment& segment) {
     return std::min(most_samples, segment.ticks());
 }
 
-/// Ratio of a sampled speed or acceleration to its limit, the larger one. Sample 0 is the segment's beginning.
+/// The largest ratio of a speed or an acceleration to its limit at a sample. Sample 0 is the segment's beginning.
 double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const ReferenceLimits& limits) {
     return ratio_at(segment.at_tick(segment.ticks() * sample / samples_of(segment)), limits);
 }
