@@ -30,45 +30,48 @@ bool may_hide_a_turn(const Values& v) {
     return std::abs(v[2] - v[0]) > 6 * negligible_error;
 }
 
-/// Finds the errors along one line by halving it where it is not straight.
+/// Finds the errors along one line by halving it where it is not straight, where they matter.
 class LineProbe {
  public:
     /// @param value K along the line, from 0 to 1   @param shortest_turn longer stretches are looked into anyway
     /// @param is_forbidden whether a stretch of the line with this middle and half width does not matter
     template <class Value, class IsForbidden>
-    static void run(const Values& v, double shortest_turn, Value&& value, IsForbidden&& is_forbidden,
-                    ErrorPerLevel& errors) {
-        LineProbe(shortest_turn, errors).descend(v, 0, 1, 0, value, is_forbidden);
+    static void run(double shortest_turn, Value&& value, IsForbidden&& is_forbidden, ErrorPerLevel& errors) {
+        if (!is_forbidden(0.5, 0.5)) {
+            LineProbe(shortest_turn, errors).descend({value(0), value(0.5), value(1)}, 0, 1, 0, value, is_forbidden);
+        }
     }
 
  private:
     LineProbe(double shortest_turn, ErrorPerLevel& errors) : shortest_turn_(shortest_turn), errors_(errors) {}
 
     template <class Value, class IsForbidden>
-    void descend(const Values& v, double low, double high, std::size_t level, Value& value, IsForbidden& is_forbidden) {
+    void descend(const Values& v, double low, double width, std::size_t level, Value& value,
+                 IsForbidden& is_forbidden) {
         double error = deviation(v);
-        const double width = high - low;
-        Values lower{v[0], 0, v[1]};
-        Values upper{v[1], 0, v[2]};
+        const double half = 0.5 * width;
         const bool is_long = width > shortest_turn_;
-        const bool is_split = is_long || error > negligible_error || may_hide_a_turn(v);
-        if (is_split) {
-            if (is_forbidden(low + 0.5 * width, 0.5 * width)) {
-                return;
-            }
-            lower[1] = value(low + 0.25 * width);
-            upper[1] = value(low + 0.75 * width);
+        std::array<Values, 2> halves{{{v[0], 0, v[1]}, {v[1], 0, v[2]}}};
+        std::array<bool, 2> do_matter{};
+        if (is_long || error > negligible_error || may_hide_a_turn(v)) {
             chords_[level] = {low, width, v[0], v[2]};
-            error =
-                std::max({error, add(low + 0.25 * width, lower[1], level), add(low + 0.75 * width, upper[1], level)});
+            for (std::size_t i = 0; i < 2; ++i) {
+                const double middle = low + (static_cast<double>(i) + 0.5) * half;
+                do_matter[i] = !is_forbidden(middle, 0.5 * half);
+                if (do_matter[i]) {
+                    halves[i][1] = value(middle);
+                    error = std::max(error, add(middle, halves[i][1], level));
+                }
+            }
         }
         const bool is_last = (!is_long && error <= negligible_error) || level + 1 == levels;
         for (std::size_t finer = level; finer < (is_last ? levels : level + 1); ++finer) {
             errors_[finer] = std::max(errors_[finer], error);
         }
-        if (!is_last) {
-            descend(lower, low, low + 0.5 * width, level + 1, value, is_forbidden);
-            descend(upper, low + 0.5 * width, high, level + 1, value, is_forbidden);
+        for (std::size_t i = 0; i < 2 && !is_last; ++i) {
+            if (do_matter[i]) {
+                descend(halves[i], low + static_cast<double>(i) * half, half, level + 1, value, is_forbidden);
+            }
         }
     }
 
@@ -122,7 +125,7 @@ CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
 
 }  // namespace
 
-CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const CellField& field) {
+CellSteps steps_for(const CellSquare& cell, const CellField& field) {
     const auto x_at = [&](double part) { return cell.x_low_m + part * cell.side_m; };
     const auto z_at = [&](double part) { return cell.z_low_m + part * cell.side_m; };
     const auto is_forbidden = [&](double x, double z, double half) {
@@ -130,25 +133,28 @@ CellSteps steps_for(const CellSquare& cell, const CellProbes& probes, const Cell
     };
     ErrorPerLevel along_x{};
     ErrorPerLevel along_z{};
-    for (std::size_t j = 0; j < 3; ++j) {
-        const double at = 0.5 * static_cast<double>(j);
+    const double shortest_turn = field.shortest_turn_m / cell.side_m;
+    for (const double at : {0.0, 0.5, 1.0}) {
         LineProbe::run(
-            probes[j], field.shortest_turn_m / cell.side_m, [&](double x) { return field.factor(x_at(x), z_at(at)); },
+            shortest_turn, [&](double x) { return field.factor(x_at(x), z_at(at)); },
             [&](double x, double half) { return is_forbidden(x, at, half); }, along_x);
         LineProbe::run(
-            {probes[0][j], probes[1][j], probes[2][j]}, field.shortest_turn_m / cell.side_m,
-            [&](double z) { return field.factor(x_at(at), z_at(z)); },
+            shortest_turn, [&](double z) { return field.factor(x_at(at), z_at(z)); },
             [&](double z, double half) { return is_forbidden(at, z, half); }, along_z);
     }
     return cheapest(along_x, along_z);
 }
 
 void append_nodes(const CellSquare& cell, const CellSteps& steps, const CellField& field, std::vector<float>& nodes) {
+    const double step_x_m = cell.side_m / steps.x;
+    const double step_z_m = cell.side_m / steps.z;
+    const double reach_m = std::sqrt(step_x_m * step_x_m + step_z_m * step_z_m);
     for (int k = 0; k <= steps.z; ++k) {
         for (int i = 0; i <= steps.x; ++i) {
             const double x = cell.x_low_m + cell.side_m * i / steps.x;
             const double z = cell.z_low_m + cell.side_m * k / steps.z;
-            nodes.push_back(static_cast<float>(field.factor(x, z)));
+            const bool is_forbidden = field.is_forbidden_around && field.is_forbidden_around(x, z, reach_m);
+            nodes.push_back(is_forbidden ? 1.0F : static_cast<float>(field.factor(x, z)));
         }
     }
 }

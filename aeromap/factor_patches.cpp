@@ -103,8 +103,9 @@ double FactorPatches::factor(double x_m, double z_m) {
     const double z_low_m = grid_.z_low_m + static_cast<double>(first_) * grid_.side_m;
     const auto x = static_cast<std::uint64_t>(std::llround((x_m - grid_.x_low_m) * units_per_m));
     const auto z = static_cast<std::uint64_t>(std::llround((z_m - z_low_m) * units_per_m));
-    const std::size_t block = x / block_units;
-    if (!(block < blocks_ && z < block_units)) {
+    // The last of a row of blocks has the border to its right.
+    const std::size_t block = x == blocks_ * block_units ? blocks_ - 1 : x / block_units;
+    if (!(block < blocks_ && z <= block_units)) {
         return sample(x, z);
     }
     Square square{block * block_units, 0, block_units};

@@ -19,8 +19,6 @@ constexpr double quiet_change = 0.006;
 /// How exact clearances are taken to be: the cell's verdict and the exact test must never disagree.
 constexpr double clearance_slack_m = 1e-6;
 
-constexpr double unknown = -1;  // no K
-
 class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
@@ -30,7 +28,6 @@ class RowsBuilder {
           first_(first),
           last_(last),
           patches_(grid, first) {
-        forget(lines_[2]);
         rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
         everywhere_.factor = [this](double x, double z) { return patches_.factor(x, z); };
         everywhere_.shortest_turn_m = shortest_turn_m(grid.effect);
@@ -52,9 +49,6 @@ class RowsBuilder {
                 [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, first_ + k, n); });
         }
         for (std::size_t k = first_; k < last_; ++k) {
-            lines_[0].swap(lines_[2]);
-            forget(lines_[1]);
-            forget(lines_[2]);
             for (std::size_t i = 0; i < grid_.columns; ++i) {
                 add_cell(i, k);
             }
@@ -179,42 +173,10 @@ class RowsBuilder {
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
         const bool is_quiet =
             !grid_.effect.settings().enabled || largest_change(grid_.effect, hubs_in(cell)) <= quiet_change;
-        const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, probes(i, k), field);
+        const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, field);
         rows_.steps.push_back(steps);
-        if (steps.x == 1 && steps.z == 1) {
-            for (const std::size_t line : {0U, 2U}) {
-                for (const std::size_t end : {0U, 2U}) {
-                    rows_.nodes.push_back(static_cast<float>(probe(i, k, end, line)));
-                }
-            }
-        } else {
-            append_nodes(cell, steps, field, rows_.nodes);
-        }
+        append_nodes(cell, steps, field, rows_.nodes);
     }
-
-    CellProbes probes(std::size_t i, std::size_t k) {
-        CellProbes all{};
-        for (std::size_t line = 0; line < 3; ++line) {
-            for (std::size_t part = 0; part < 3; ++part) {
-                all[line][part] = probe(i, k, part, line);
-            }
-        }
-        return all;
-    }
-
-    /// K at the lower end, middle or upper end of cell (i, k) in x (`part`) and in z (`line`); cells share their
-    /// borders.
-    double probe(std::size_t i, std::size_t k, std::size_t part, std::size_t line) {
-        double& known = lines_[line][2 * i + part];
-        if (known == unknown) {
-            const double x = grid_.x_low_m + (static_cast<double>(i) + 0.5 * static_cast<double>(part)) * grid_.side_m;
-            const double z = grid_.z_low_m + (static_cast<double>(k) + 0.5 * static_cast<double>(line)) * grid_.side_m;
-            known = everywhere_.factor(x, z);
-        }
-        return known;
-    }
-
-    void forget(std::vector<double>& line) const { line.assign(2 * grid_.columns + 1, unknown); }
 
     const LayerGrid& grid_;
     double radius_m_;
@@ -227,9 +189,6 @@ class RowsBuilder {
         double x_m, z_m, clearance_m;
     };
     Middle middle_{};  ///< of the present cell, when it is mixed
-    /// K along the lower border, the middle and the upper border of the present row of cells, as far as it was asked
-    /// for.
-    std::array<std::vector<double>, 3> lines_;
 };
 
 /// Largest |dK/d(z/R)| of one side from a distance on.

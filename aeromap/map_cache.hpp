@@ -12,7 +12,7 @@
 namespace downwash {
 
 /// Raised when maps of the same key would hold other values, or hold them otherwise.
-inline constexpr int map_format_version = 7;
+inline constexpr int map_format_version = 8;
 
 /// A digest of everything that makes a map: scene, plane, extent, layers, models with their parameters and tables,
 /// rotors, grid, version. Names of obstacles and files do not count, the contents of meshes, octrees and tables do.
