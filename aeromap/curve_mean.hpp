@@ -17,7 +17,8 @@ class CurveMean {
     explicit CurveMean(const EffectCurve& curve);
 
     /// Mean of k between two distances in radii, in either order; at least 0 and finite. Off by less than 1e-6 up to
-    /// `reach` beyond the cap and by less than 1e-4 where a range reaches farther.
+    /// `reach` beyond the cap and by less than 1e-4 where a range reaches farther; over less than a thousandth of a
+    /// radius k in the middle.
     [[nodiscard]] double operator()(double one, double other) const;
 
  private:

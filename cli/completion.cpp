@@ -148,8 +148,14 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
            "            *) case \"$given\" in\n" + cases_of_commands(program) +
            "            esac ;;\n        esac ;;\n    esac\n"
            "    for word in $next; do\n        [[ $word != \"$current\"* ]] || COMPREPLY+=(\"$glued$word\")\n    done\n"
-           "    [[ ${#COMPREPLY[@]} -gt 0 || $current == -* ]] || COMPREPLY=($(compgen -P \"$glued\" -f -- "
-           "\"$current\"))\n"
+           "    [[ ${#COMPREPLY[@]} -eq 0 && $current != -* ]] || return 0\n"
+           "    if [[ -z $glued ]]; then\n"
+           "        COMPREPLY=($(compgen -f -- \"$current\"))\n"
+           "    else # zsh's compgen has no prefix\n"
+           "        for word in \"$current\"*; do\n"
+           "            [[ ! -e $word ]] || COMPREPLY+=(\"$glued$word\")\n"
+           "        done\n"
+           "    fi\n"
            "}\n"
            "complete -o filenames -F _downwash downwash\n" +
            tail;

@@ -172,6 +172,8 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash export flown --format g", "glb"},
         {"downwash solve o", "one.yaml"},
         {"downwash solve --out o", "one.yaml"},
+        {"downwash solve --out=o", "--out=one.yaml"},
+        {"downwash solve --out=x", ""},
         {"downwash solve --seed -", ""},
     };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
