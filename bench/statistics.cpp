@@ -69,6 +69,16 @@ double quantile(std::vector<double> values, double q) {
     return std::isfinite(values[low]) ? values[low] + share * (values[low + 1] - values[low]) : values[low + 1];
 }
 
+Range median_range(std::vector<double> values, double confidence) {
+    std::sort(values.begin(), values.end());
+    Range range{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    // With i of n values before it the median is outside of the next pair.
+    for (std::size_t i = 0; 2 * i < values.size() && sign_test_p(i, values.size() - i) <= 1 - confidence; ++i) {
+        range = {values[i], values[values.size() - 1 - i]};
+    }
+    return range;
+}
+
 double sign_test_p(std::size_t wins, std::size_t losses) {
     const auto n = static_cast<double>(wins + losses);
     double tail = 0;

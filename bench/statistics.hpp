@@ -23,6 +23,16 @@ struct Share {
 /// infinite; between a finite and an infinite one it is infinite. NaN without values.
 [[nodiscard]] double quantile(std::vector<double> values, double q);
 
+struct Range {
+    double low, high;
+};
+
+/// The narrowest pair of order statistics, as many from either end, between which the median lies with at least the
+/// given confidence, whatever the distribution (Conover 1999, "Practical nonparametric statistics", section 3.2).
+/// Values may be infinite; minus to plus infinity when there are too few.
+/// @pre 0 < confidence < 1, no NaN
+[[nodiscard]] Range median_range(std::vector<double> values, double confidence);
+
 /// Two runs of equal seeds after the other, compared.
 struct Pairing {
     std::size_t first_smaller = 0, second_smaller = 0, equal = 0;

@@ -72,6 +72,25 @@ TEST_CASE("quantiles lie between the order statistics, and what has no value is 
     CHECK(std::isnan(quantile({}, 0.5)));
 }
 
+TEST_CASE("the median's range is that of the tables of order statistics") {
+    // Of 1 to n: from the 95 % ranks of the binomial distribution, as tabulated for 6, 10, 20 and 100 values.
+    struct Case {
+        std::size_t count;
+        double low, high;
+    };
+    const Case c = GENERATE(Case{6, 1, 6}, Case{10, 2, 9}, Case{20, 6, 15}, Case{100, 40, 61},
+                            Case{5, -infinite, infinite}, Case{0, -infinite, infinite});
+    std::vector<double> values;
+    for (std::size_t i = c.count; i > 0; --i) {
+        values.push_back(static_cast<double>(i));
+    }
+    const Range range = median_range(values, 0.95);
+    CHECK(range.low == c.low);
+    CHECK(range.high == c.high);
+    CHECK(median_range({1, 2, 3, 4, infinite, infinite}, 0.95).high == infinite);
+    CHECK(median_range({3, 1, 2}, 0.7).low == 1);
+}
+
 TEST_CASE("the sign test counts the tails of a fair coin") {
     CHECK(sign_test_p(5, 0) == Approx(2.0 / 32));
     CHECK(sign_test_p(1, 9) == Approx(2.0 * (1 + 10) / 1024));
