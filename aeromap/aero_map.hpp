@@ -69,8 +69,8 @@ class DOWNWASH_EXPORT AeroMap {
     [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
-    /// K at a rotor hub in the plane coordinates (x, z) of a layer: interpolated inside the extent, evaluated directly
-    /// outside it or when x or z is not finite (then 1).
+    /// K at a rotor hub in the plane coordinates (x, z) of a layer: interpolated inside the extent, where it means
+    /// nothing unless is_flyable(), evaluated directly outside it or when x or z is not finite (then 1).
     [[nodiscard]] double factor(std::size_t layer, double x_m, double z_m) const noexcept {
         const double u = (x_m - extent_.x_low_m) * cells_per_m_;
         const double w = (z_m - extent_.z_low_m) * cells_per_m_;
