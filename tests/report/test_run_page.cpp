@@ -120,8 +120,10 @@ TEST_CASE("a page's aero map is that of the first rotor within its steps") {
     const std::string levels = unpacked(map["levels"], columns * rows);
     std::size_t flyable = 0;
     for (std::size_t i = 0; i < levels.size(); i += 7) {
-        const double x_m = map["x_low_m"].get<double>() + cell_m * static_cast<double>(i % columns);
-        const double z_m = map["z_low_m"].get<double>() + cell_m * static_cast<double>(i / columns);
+        const std::size_t column = i % columns;
+        const std::size_t row = i / columns;
+        const double x_m = map["x_low_m"].get<double>() + cell_m * static_cast<double>(column);
+        const double z_m = map["z_low_m"].get<double>() + cell_m * static_cast<double>(row);
         const int level = static_cast<unsigned char>(levels[i]);
         const Vector3 hub_m = run.problem.plane.to_world(x_m, model->rotor_lateral_m(0), z_m);
         REQUIRE(model->effect(0).is_flyable(hub_m) == (level != 255));
