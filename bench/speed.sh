@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Times ticks and look-ups beside what others would use, in one run, and writes bench/results/speed.md: medians of
-# five repetitions, and their ratios. Some three minutes, and as many to build; close everything else first.
+# Times ticks and look-ups beside what others would use, in one run, and writes bench/results/speed.md: medians of seven
+# repetitions in random order, lest what disturbs one benchmark disturbs all of its repetitions, and their ratios. Some five
+# minutes, and as many to build; close everything else first.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,7 +14,7 @@ if grep -qw avx2 /proc/cpuinfo; then
     cmake --build build-x86-64-v3 --target bench_micro -j "$(nproc)" >&2
     peers=(build-x86-64-v3/bench/bench_micro --benchmark_filter=ode)
 fi
-options=(--benchmark_repetitions=5 --benchmark_report_aggregates_only=true --benchmark_format=csv "$@")
+options=(--benchmark_repetitions=7 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true --benchmark_format=csv "$@")
 commit=$(bench/source_commit.sh)
 processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1)
 mkdir -p bench/results
@@ -38,7 +39,7 @@ mkdir -p bench/results
         { gsub(/"/, ""); sub(/\/real_time/, "") }
         /_median,/ { sub(/_median/, "", $1); items[$1] = $7; names[++n] = $1 }
         END {
-            printf "# Speed\n\nCommit %s; %s; medians of five repetitions in one run. Per second; a tick is 10 ms of flight, those of ", commit, processor
+            printf "# Speed\n\nCommit %s; %s; medians of seven repetitions in one run, in random order. Per second; a tick is 10 ms of flight, those of ", commit, processor
             print "`ode_solver` and `mujoco_rk4` the same step of what a practitioner would use.\n`bench/speed.sh` writes this page.\n"
             print "| benchmark | million per second |\n| --- | --: |"
             for (i = 1; i <= n; ++i) { printf "| %s | %.4g |\n", names[i], rate(names[i]) }
