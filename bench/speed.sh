@@ -42,7 +42,9 @@ mkdir -p bench/results
             printf "# Speed\n\nCommit %s; %s; medians of seven repetitions in one run, in random order. Per second; a tick is 10 ms of flight, those of ", commit, processor
             print "`ode_solver` and `mujoco_rk4` the same step of what a practitioner would use.\n`bench/speed.sh` writes this page.\n"
             print "| benchmark | million per second |\n| --- | --: |"
-            for (i = 1; i <= n; ++i) { printf "| %s | %.4g |\n", names[i], rate(names[i]) }
+            fflush()
+            for (i = 1; i <= n; ++i) { printf "| %s | %.4g |\n", names[i], rate(names[i]) | "LC_ALL=C sort" }
+            close("LC_ALL=C sort")
             ada = best("aerodynamics_aware")
             print "\n| bound | found | |\n| --- | --: | --- |"
             bound("single ticks with the map, at least 2.5 M/s", rate("tick_with_map"), 2.5, " M/s")
