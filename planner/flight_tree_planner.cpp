@@ -4,7 +4,6 @@
 #include <ompl/base/ScopedState.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -165,11 +164,11 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
     }
     tree_left_ = std::min(tree_left_, 0.0) + work;
     refiner_left_ = std::min(refiner_left_, 0.0) + work;
-    // Tree and refiner share the threads, and whoever goes on alone has them all.
-    std::atomic<bool> is_tree_done = false;
-    std::atomic<bool> is_refiner_done = false;
+    // Tree and refiner share the threads, and whoever is done leaves all to the other, for the batches of the piece
+    // that is being worked on too.
     const int refiner_threads = std::max(1, threads_ / 2);
-    const int tree_threads = std::max(1, threads_ - refiner_threads);
+    refined_flights_.use_threads(refiner_threads);
+    flights_.use_threads(std::max(1, threads_ - refiner_threads));
     const Strand strands[] = {
         [&] {
             if (proposed) {
@@ -178,21 +177,23 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             return false;
         },
         [&] {
-            is_tree_done = terminated || is_used_up() || tree_left_ <= 0;
-            if (!is_tree_done) {
-                flights_.use_threads(is_refiner_done ? threads_ : tree_threads);
+            const bool goes_on = !terminated && !is_used_up() && tree_left_ > 0;
+            if (goes_on) {
                 grow();
+            } else {
+                refined_flights_.use_threads(threads_);
             }
-            return !is_tree_done;
+            return goes_on;
         },
         [&] {
             const bool has_work = refiner_.champion() != nullptr || !handed_over_.empty();
-            is_refiner_done = terminated || !has_work || refiner_left_ <= 0;
-            if (!is_refiner_done) {
-                refined_flights_.use_threads(is_tree_done ? threads_ : refiner_threads);
+            const bool goes_on = !terminated && has_work && refiner_left_ > 0;
+            if (goes_on) {
                 refine();
+            } else {
+                flights_.use_threads(threads_);
             }
-            return !is_refiner_done;
+            return goes_on;
         },
     };
     run_side_by_side(strands, std::min(threads_, 2));

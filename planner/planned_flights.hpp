@@ -38,7 +38,7 @@ class PlannedFlights {
     /// Flights of the same search, to be flown beside the others and counted on their own.
     PlannedFlights(const PlannedFlights& others, int threads);
 
-    /// From now on flies with so many of its threads.
+    /// From its next batch on flies with so many of its threads. May be called from any thread.
     void use_threads(int threads) { crew_.use_threads(threads); }
 
     /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows

@@ -199,9 +199,9 @@ struct FlightCrew::Impl {
     std::mutex mutex;
     std::condition_variable called, done;
     std::uint64_t batch = 0;
-    std::size_t allowed = 0;  ///< threads beside the calling one that may fly
-    std::size_t helpers = 0;  ///< that fly this batch
-    std::size_t working = 0;  ///< of them, still at it
+    std::atomic<std::size_t> allowed{0};  ///< threads beside the calling one that may fly
+    std::size_t helpers = 0;              ///< that fly this batch
+    std::size_t working = 0;              ///< of them, still at it
     bool is_dismissed = false;
     std::vector<std::jthread> others;
 };
@@ -237,18 +237,17 @@ void FlightCrew::fly(std::span<FlightJob> jobs) {
     crew.jobs = jobs;
     crew.next_job = 0;
     // The pace of one or two lanes is the same: two flights are not worth waking others for.
-    const bool is_alone = crew.allowed == 0 || jobs.size() <= 2;
-    const std::size_t threads = is_alone ? 1 : crew.allowed + 1;
-    crew.lanes_used = std::clamp<std::size_t>((jobs.size() + threads - 1) / threads, 1, lane_count);
-    if (is_alone) {
+    const std::size_t helpers = jobs.size() <= 2 ? 0 : crew.allowed.load();
+    crew.lanes_used = std::clamp<std::size_t>((jobs.size() + helpers) / (helpers + 1), 1, lane_count);
+    if (helpers == 0) {
         crew.work();
         return;
     }
     {
         const std::scoped_lock lock(crew.mutex);
         ++crew.batch;
-        crew.helpers = crew.allowed;
-        crew.working = crew.helpers;
+        crew.helpers = helpers;
+        crew.working = helpers;
     }
     crew.called.notify_all();
     crew.work();

@@ -67,7 +67,8 @@ class DOWNWASH_EXPORT FlightCrew {
     /// Not to be called from two threads at once.
     void fly(std::span<FlightJob> jobs);
 
-    /// From now on flies with so many of its threads, at least 1, the calling one included.
+    /// From its next batch on flies with so many of its threads, at least 1, the calling one included. May be called
+    /// from any thread, while others fly too.
     void use_threads(int threads);
 
     /// As given to the constructor.
