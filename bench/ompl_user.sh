@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Times first solutions of a typical OMPL set-up beside ours, and writes bench/results/ompl_user.md. A quarter of an hour; close
-# everything else first.
+# Times first solutions of a typical OMPL set-up beside ours, and writes bench/results/ompl_user.md. A quarter of an
+# hour; close everything else first.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -8,4 +8,5 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p bench/results
 build/bench/bench_ompl_user problems/bridge_inspection.yaml "$@" >bench/results/ompl_user.md.new
 mv bench/results/ompl_user.md.new bench/results/ompl_user.md
+bench/bars.sh --write
 cat bench/results/ompl_user.md

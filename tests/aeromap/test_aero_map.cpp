@@ -76,6 +76,35 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
     }
 }
 
+TEST_CASE("Up to the edge of the flyable area no value of the other side is seen") {
+    test::Random random(13);
+    int points = 0;
+    for (int scene = 0; scene < 6; ++scene) {
+        const double radius = random.uniform(0.06, 0.25);
+        const AeroMap map(test::layers(effect_in(random_obstacles(random, 6), radius), {0.1}),
+                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, 2);
+        const DirectEffect& direct = *map.layers()[0].effect;
+        const MapView view = map.view(0);
+        double worst = 0;
+        for (std::size_t cell = 0; cell < std::size_t{view.columns} * view.rows; ++cell) {
+            for (int i = 0; view.flyability[cell] == CellFlyability::mixed && i < 100; ++i) {
+                const auto column = static_cast<double>(cell % view.columns);
+                const std::size_t row = cell / view.columns;
+                const double x = view.x_low_m + (column + random.uniform(0, 1)) / view.cells_per_m;
+                const double z = view.z_low_m + (static_cast<double>(row) + random.uniform(0, 1)) / view.cells_per_m;
+                if (map.is_flyable(0, x, z)) {
+                    const Vector3 hub = map.plane().to_world(x, 0.1, z);
+                    worst = std::max(worst, std::abs(map.factor(0, x, z) - direct.factor(hub)));
+                    ++points;
+                }
+            }
+        }
+        CAPTURE(scene, radius, worst);
+        CHECK(worst <= 0.01);
+    }
+    CHECK(points > 20000);
+}
+
 TEST_CASE("A map of a bridge is within 0.01 of the direct effect wherever one may fly") {
     const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {-0.18, 0.18}), {}, {-12, 12, 0, 12}, 2);
     const Comparison found = compare(map, 40000, 21);
