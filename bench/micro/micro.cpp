@@ -256,7 +256,7 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
 
 /// Edges that whole searches of three seeds fly, up to the same iteration whatever the number of threads. Several at
 /// once share nothing but the map: what processors give to one search with as many threads can hardly be more.
-void search(benchmark::State& state, int threads, std::size_t at_once) {
+void search(benchmark::State& state, std::uint64_t iterations, int threads, std::size_t at_once) {
     const Bridge& bridge = Bridge::get();
     SolveOptions how;
     how.threads = threads;
@@ -266,7 +266,7 @@ void search(benchmark::State& state, int threads, std::size_t at_once) {
         for (const std::uint32_t seed : {1U, 2U, 3U}) {
             Problem problem = bridge.problem;
             problem.planner.seed = seed;
-            problem.planner.max_iterations = 4000;
+            problem.planner.max_iterations = iterations;
             problem.planner.time_limit_s.reset();
             run_parallel(at_once, static_cast<int>(at_once), [&](std::size_t /*search*/) {
                 edges += static_cast<std::int64_t>(solve(problem, how).planning.edges_simulated);
@@ -275,9 +275,24 @@ void search(benchmark::State& state, int threads, std::size_t at_once) {
     }
     state.SetItemsProcessed(edges);
 }
-BENCHMARK_CAPTURE(search, one_thread, 1, 1)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(search, two_threads, 2, 1)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(search, two_at_once, 1, 2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// What one thread does in some ten seconds, as long as a search lasts unless told otherwise, and in the first few.
+[[maybe_unused]] const bool searches_are_registered = [] {
+    constexpr std::uint64_t whole = 15'000;
+    constexpr std::uint64_t first_seconds = 4'000;
+    const auto add = [](const char* name, std::uint64_t iterations, int threads, std::size_t at_once) {
+        benchmark::RegisterBenchmark(name, search, iterations, threads, at_once)
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond)
+            ->Repetitions(3);
+    };
+    add("search/one_thread", whole, 1, 1);
+    add("search/two_threads", whole, 2, 1);
+    add("search/two_at_once", whole, 1, 2);
+    add("search/first_seconds_one_thread", first_seconds, 1, 1);
+    add("search/first_seconds_two_threads", first_seconds, 2, 1);
+    return true;
+}();
 
 /// A whole edge of 6 m through the slot under all rules: ticks, map, flyable area, collisions.
 void edge(benchmark::State& state, bool is_aware) {
