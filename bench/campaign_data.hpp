@@ -80,6 +80,8 @@ struct Run {
     double wall_s = 0;                       ///< from the parsed problem with its map to the answer, flight included
     std::optional<double> first_solution_s;  ///< from the start of planning to the first accepted plan
     std::optional<double> cost;              ///< the planner's own figure
+    /// Without a plan: how near to the goal region the search came [m].
+    std::optional<double> nearest_approach_m;
     std::uint64_t iterations = 0;
     std::uint64_t edges_simulated = 0;
     std::uint64_t states_checked = 0;

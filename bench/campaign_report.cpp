@@ -196,14 +196,26 @@ void list_failures(const std::vector<Row>& rows, CampaignReport& report) {
             const std::string cause = full_cause_of(*run);
             const auto same = std::find_if(report.failures.begin() + static_cast<std::ptrdiff_t>(begin),
                                            report.failures.end(), [&](const auto& f) { return f.cause == cause; });
-            if (same == report.failures.end()) {
-                report.failures.push_back(
-                    {report.cells[cell].experiment, report.cells[cell].planner, cause, {run->seed}});
-            } else {
-                same->seeds.push_back(run->seed);
+            FailureGroup& group = same != report.failures.end()
+                                      ? *same
+                                      : report.failures.emplace_back(FailureGroup{
+                                            report.cells[cell].experiment, report.cells[cell].planner, cause, {}, {}});
+            group.seeds.push_back(run->seed);
+            if (run->nearest_approach_m) {
+                group.nearest_approach_m.push_back(*run->nearest_approach_m);
             }
         }
     }
+}
+
+/// The share that some planners solve of an experiment with a margin.
+Share solved_with(const CampaignReport& report, const std::vector<std::size_t>& planners, std::size_t experiment,
+                  double margin_m) {
+    const auto cell = std::find_if(report.cells.begin(), report.cells.end(), [&](const CellFigures& c) {
+        return c.experiment == experiment && report.plan.planners[c.planner].margin_m == margin_m &&
+               std::count(planners.begin(), planners.end(), c.planner) > 0;
+    });
+    return cell->solved;
 }
 
 /// The least of the margins from which on every cell of that margin and above, of the given experiments, saw no flight
@@ -246,13 +258,12 @@ void find_margins(CampaignReport& report) {
         }
         MarginFinding finding{kind.first, kind.second, safe_margin(report, of_kind, {}), {}, {}};
         for (std::size_t e = 0; e < report.plan.experiments.size(); ++e) {
-            finding.safe_margin_of_experiment_m.push_back(safe_margin(report, of_kind, e));
-            for (const CellFigures& cell : report.cells) {
-                if (finding.safe_margin_m && cell.experiment == e &&
-                    std::count(of_kind.begin(), of_kind.end(), cell.planner) > 0 &&
-                    planners[cell.planner].margin_m == finding.safe_margin_m) {
-                    finding.solved_when_safe.push_back(cell.solved);
-                }
+            if (finding.safe_margin_m) {
+                finding.solved_when_safe.push_back(solved_with(report, of_kind, e, *finding.safe_margin_m));
+            }
+            std::optional<SafeMargin>& alone = finding.alone.emplace_back();
+            if (const auto margin_m = safe_margin(report, of_kind, e)) {
+                alone = {*margin_m, solved_with(report, of_kind, e, *margin_m)};
             }
         }
         report.margins.push_back(std::move(finding));

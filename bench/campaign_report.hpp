@@ -75,6 +75,14 @@ struct FailureGroup {
     std::size_t experiment = 0, planner = 0;
     std::string cause;
     std::vector<std::uint32_t> seeds;
+    /// From the goal region, where the search found no plan: how near it came; empty, or one for each seed [m].
+    std::vector<double> nearest_approach_m;
+};
+
+/// The least margin from which on no flight of an experiment failed. It may be safe only because nothing was flown.
+struct SafeMargin {
+    double margin_m = 0;
+    Share solved;  ///< with it
 };
 
 /// How a variant and algorithm fare under margins that grow.
@@ -85,8 +93,8 @@ struct MarginFinding {
     std::optional<double> safe_margin_m;
     /// Solved shares at that margin by experiment; empty without one.
     std::vector<Share> solved_when_safe;
-    /// The same for each experiment on its own.
-    std::vector<std::optional<double>> safe_margin_of_experiment_m;
+    /// Each experiment on its own; empty when no margin is safe there.
+    std::vector<std::optional<SafeMargin>> alone;
 };
 
 /// A bar that the campaign sets, on one experiment and planner.

@@ -143,6 +143,7 @@ void fill(Run& run, const Solution& solution) {
         run.discarded = discarded->second;
     }
     if (solution.status != Status::solved) {
+        run.nearest_approach_m = record.nearest_approach_m;
         return;
     }
     run.cost = solution.cost;

@@ -73,6 +73,7 @@ Run run_of(const Statement& row) {
                                    row.number(19),
                                    row.number(20)};
     }
+    run.nearest_approach_m = row.optional_number(21);
     return run;
 }
 
@@ -122,8 +123,9 @@ void CampaignStore::add(const Run& run) {
     database_
         .prepare(
             "INSERT INTO runs (experimentid, plannerid, seed, time, status, solved, approximate_solution, "
-            "correct_solution, time_to_first_solution, best_cost, iterations, edges_simulated, states_checked, "
-            "simulated_time, discarded_plans) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+            "solution_difference, correct_solution, time_to_first_solution, best_cost, iterations, edges_simulated, "
+            "states_checked, "
+            "simulated_time, discarded_plans) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .bind(std::uint64_t{run.experiment + 1})
         .bind(std::uint64_t{run.planner + 1})
         .bind(std::uint64_t{run.seed})
@@ -131,6 +133,7 @@ void CampaignStore::add(const Run& run) {
         .bind(static_cast<std::uint64_t>(run.status))
         .bind(std::uint64_t{run.status == RunStatus::solved ? 1U : 0U})
         .bind(std::uint64_t{run.status == RunStatus::approximate ? 1U : 0U})
+        .bind(run.nearest_approach_m)
         .bind(std::uint64_t{run.holds() ? 1U : 0U})
         .bind(run.first_solution_s)
         .bind(run.cost)
@@ -194,9 +197,8 @@ CampaignResults read_results(const std::filesystem::path& folder) {
     for (Statement row = database.prepare(
              "SELECT id, experimentid, plannerid, seed, time, status, time_to_first_solution, best_cost, iterations, "
              "edges_simulated, states_checked, simulated_time, discarded_plans, message, outcome, cost, energy_j, "
-             "duration_s, length_m, min_clearance_m, goal_error_m FROM runs LEFT JOIN flights ON runs.id = "
-             "flights.runid "
-             "LEFT JOIN faults ON runs.id = faults.runid ORDER BY id");
+             "duration_s, length_m, min_clearance_m, goal_error_m, solution_difference FROM runs LEFT JOIN flights ON "
+             "runs.id = flights.runid LEFT JOIN faults ON runs.id = faults.runid ORDER BY id");
          row.step();) {
         place_of[row.integer(0)] = results.runs.size();
         results.runs.push_back(run_of(row));

@@ -116,8 +116,10 @@ Json comparison_json(const CampaignPlan& plan, const PlannerComparison& comparis
 Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
     Json problems = Json::array();
     for (std::size_t e = 0; e < plan.experiments.size(); ++e) {
+        const std::optional<SafeMargin>& alone = finding.alone[e];
         problems.push_back({{"experiment", plan.experiments[e].name()},
-                            {"safe_margin_m", optional_json(finding.safe_margin_of_experiment_m[e])},
+                            {"safe_margin_m", alone ? Json(alone->margin_m) : Json()},
+                            {"solved_when_safe", alone ? share_json(alone->solved) : Json()},
                             {"solved_when_safe_everywhere",
                              e < finding.solved_when_safe.size() ? share_json(finding.solved_when_safe[e]) : Json()}});
     }
@@ -159,7 +161,8 @@ std::string json_of(const CampaignReport& report) {
         document["failures"].push_back({{"experiment", plan.experiments[failure.experiment].name()},
                                         {"planner", plan.planners[failure.planner].name()},
                                         {"cause", failure.cause},
-                                        {"seeds", failure.seeds}});
+                                        {"seeds", failure.seeds},
+                                        {"nearest_approach_m", failure.nearest_approach_m}});
     }
     for (const BarResult& bar : report.bars) {
         document["bars"].push_back({{"experiment", plan.experiments[bar.experiment].name()},

@@ -42,6 +42,26 @@ std::string in_cell(std::string text) {
     return text;
 }
 
+/// What a margin costs that is safe.
+const char* reach_text(const std::optional<SafeMargin>& alone, const std::optional<Share>& when_safe_everywhere) {
+    if (alone && alone->solved.hits == 0) {
+        return "**out of reach before it is safe**";
+    }
+    if (!when_safe_everywhere || when_safe_everywhere->hits == when_safe_everywhere->attempts) {
+        return "";
+    }
+    return when_safe_everywhere->hits == 0 ? "**no longer reached**" : "no longer always reached";
+}
+
+/// ", 0.12 to 0.4 m from the goal region", where that is known.
+std::string distance_text(const std::vector<double>& distances_m) {
+    if (distances_m.empty()) {
+        return "";
+    }
+    const auto [least, most] = std::minmax_element(distances_m.begin(), distances_m.end());
+    return fmt::format(", {:.3g} to {:.3g} m from the goal region", *least, *most);
+}
+
 class Document {
  public:
     explicit Document(const CampaignReport& report) : report_(report), plan_(report.plan) {}
@@ -204,17 +224,16 @@ class Document {
                 add("**{}**: safe on all problems from a margin of {} on, with which it solves:\n\n", who,
                     number_text(*finding.safe_margin_m, " m"));
             }
-            add("| problem | safe there from | solved with the margin that is safe everywhere | "
-                "|\n|---|---|---|---|\n");
+            add("| problem | safe there from | with which it solves | solved with the margin that is safe everywhere | "
+                "|\n|---|---|---|---|---|\n");
             for (std::size_t e = 0; e < plan_.experiments.size(); ++e) {
-                const auto& alone = finding.safe_margin_of_experiment_m[e];
+                const auto& alone = finding.alone[e];
                 const bool is_known = e < finding.solved_when_safe.size();
                 const Share solved = is_known ? finding.solved_when_safe[e] : Share{};
-                add("| {} | {} | {} | {} |\n", in_cell(plan_.experiments[e].name()),
-                    alone ? number_text(*alone, " m") : "no margin tried", is_known ? share_text(solved) : "none",
-                    !is_known || solved.hits == solved.attempts ? ""
-                    : solved.hits == 0                          ? "**no longer reached**"
-                                                                : "no longer always reached");
+                add("| {} | {} | {} | {} | {} |\n", in_cell(plan_.experiments[e].name()),
+                    alone ? number_text(alone->margin_m, " m") : "no margin tried",
+                    alone ? share_text(alone->solved) : "none", is_known ? share_text(solved) : "none",
+                    reach_text(alone, is_known ? std::optional(solved) : std::nullopt));
             }
             add("\n");
         }
@@ -250,9 +269,9 @@ class Document {
         }
         add("## Failures\n\n{} of {} runs have no flight that held.\n", count, report_.done);
         for (const FailureGroup& failure : report_.failures) {
-            add("{}- {}, {}: {}: seeds {}\n", &failure == report_.failures.data() ? "\n" : "",
+            add("{}- {}, {}: {}{}: seeds {}\n", &failure == report_.failures.data() ? "\n" : "",
                 plan_.experiments[failure.experiment].name(), plan_.planners[failure.planner].name(),
-                in_cell(failure.cause), seeds_text(failure.seeds));
+                in_cell(failure.cause), distance_text(failure.nearest_approach_m), seeds_text(failure.seeds));
         }
     }
 

@@ -7,7 +7,7 @@ namespace {
 
 /// "Down" in ASCII: says to file(1) and to us whose SQLite file this is.
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 2;
+constexpr std::uint64_t layout_version = 3;
 
 // The first five tables are those that OMPL's ompl_benchmark_statistics.py makes, with the columns that it lets a log
 // add to experiments, runs and progress. Planner Arena reads them as they are.
@@ -25,8 +25,8 @@ CREATE TABLE enums (name VARCHAR(512), value INTEGER, description TEXT, PRIMARY 
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER, plannerid INTEGER,
   seed INTEGER NOT NULL, time REAL, memory REAL, status ENUM, solved BOOLEAN, approximate_solution BOOLEAN,
-  correct_solution BOOLEAN, time_to_first_solution REAL, best_cost REAL, iterations INTEGER, edges_simulated INTEGER,
-  states_checked INTEGER, simulated_time REAL, discarded_plans INTEGER,
+  solution_difference REAL, correct_solution BOOLEAN, time_to_first_solution REAL, best_cost REAL, iterations INTEGER,
+  edges_simulated INTEGER, states_checked INTEGER, simulated_time REAL, discarded_plans INTEGER,
   UNIQUE (experimentid, plannerid, seed),
   FOREIGN KEY (experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
   FOREIGN KEY (plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);

@@ -131,7 +131,9 @@ std::string verdict_on_search(const Solution& solution) {
                verdict_on_flight(*solution.execution);
     }
     if (solution.status == Status::approximate) {
-        return stopped + "No solution within the limits; the nearest approach to the goal is reported.";
+        const auto& off_m = solution.planning.nearest_approach_m;
+        return stopped + "No solution within the limits; the nearest approach to the goal" +
+               (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
     }
     return stopped + "No solution within the limits.";
 }
@@ -156,7 +158,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         table.add("stopped by",
                   fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m before the goal region", o.cause,
                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
-        if (o.goal_distance_m <= 0) {
+        if (o.cause == "direct_flight") {
+            table.add("",
+                      "every plan was discarded: flown directly, the last one failed or came nearer than the margin");
+        } else if (o.goal_distance_m <= 0) {
             table.add("", "it was there by then; whether a hover is stable there tells downwash aeromap hold");
         }
     }

@@ -91,7 +91,8 @@ std::vector<FlightPoint> moments_of(const oc::PathControl& path, const SteeredFl
 /// The search for a plan and then for better ones, one OMPL solution at a time.
 class ControlSearch {
  public:
-    ControlSearch(const SteeredFlights& flights, const ControlHooks& hooks) : flights_(flights), hooks_(hooks) {}
+    ControlSearch(const SteeredFlights& flights, const ControlHooks& hooks)
+        : flights_(flights), hooks_(hooks), nearest_{flights.start()} {}
 
     void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
         review({flights_.start()});
@@ -107,7 +108,7 @@ class ControlSearch {
                 if (review_of == Review::discarded) {
                     prepared.forget_solution();
                 }
-                if (review_of != Review::accepted) {
+                if (review_of != Review::accepted && distance_m(moments.back()) < distance_m(nearest_.back())) {
                     nearest_ = std::move(moments);
                 }
             }
@@ -122,8 +123,7 @@ class ControlSearch {
         ControlResult result = result_;
         result.iterations = iterations_;
         if (!result.plan) {
-            const FlightPoint nearest = nearest_.empty() ? flights_.start() : nearest_.back();
-            result.nearest_approach_m = flights_.space().goal_distance_m(nearest.rest);
+            result.nearest_approach_m = distance_m(nearest_.back());
         }
         if (!result.plan && nearest_.size() > 1) {
             result.status = Status::approximate;
@@ -138,6 +138,11 @@ class ControlSearch {
         is_over_ = is_over_ || hooks_.is_over(iterations_);
         iterations_ += is_over_ ? 0 : 1;
         return is_over_;
+    }
+
+    /// From the place of rest to the goal region.
+    [[nodiscard]] double distance_m(const FlightPoint& moment) const {
+        return flights_.space().goal_distance_m(moment.rest);
     }
 
     enum class Review { accepted, not_closed, no_better, discarded };
@@ -167,7 +172,7 @@ class ControlSearch {
     const SteeredFlights& flights_;
     const ControlHooks& hooks_;
     ControlResult result_;
-    std::vector<FlightPoint> nearest_;
+    std::vector<FlightPoint> nearest_;  ///< the way to the place of rest that came nearest to the goal
     std::uint64_t iterations_ = 0;
     bool is_over_ = false;
 };

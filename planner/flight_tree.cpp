@@ -1,23 +1,13 @@
 #include "downwash/planner/flight_tree.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <cstring>
-#include <stdexcept>
-
-#include "downwash/planner/solve.hpp"
 
 namespace downwash::planning {
 namespace {
 
 bool is_at_rest(const ReferencePoint& point) {
     return point == at_rest({point.position[0], point.position[1], point.position[2]});
-}
-
-bool same_bytes(const FlightState& a, const FlightState& b) {
-    static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
-    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
 }
 
 }  // namespace
@@ -238,7 +228,9 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
         for (std::size_t i = 0; i < children.size(); ++i) {
             const FlightNode& from = *children[i]->parent;
             const auto again = flown(from, jobs[i]);
-            if (!again || again->cost >= children[i]->cost) {
+            const bool is_too_long =
+                !children[i]->is_hold && again && from.ticks_from_start + again->ticks > most_plan_ticks;
+            if (!again || is_too_long || again->cost >= children[i]->cost) {
                 return undo();
             }
             replace(*children[i], from, *again);
@@ -268,22 +260,13 @@ Plan FlightTree::plan_to(const FlightNode& node) const {
     return plan;
 }
 
-void FlightTree::verify(const FlightNode& node) const {
-    std::vector<const FlightNode*> way;
-    for (const FlightNode* n = &node; n->parent != nullptr; n = n->parent) {
-        way.push_back(n);
+std::vector<FlightState> FlightTree::states_to(const FlightNode& node) const {
+    std::vector<FlightState> states;
+    for (const FlightNode* n = &node; n != nullptr; n = n->parent) {
+        states.push_back(n->state);
     }
-    std::reverse(way.begin(), way.end());
-    FlightRules rules = flights_.rules();
-    rules.is_over = {};  // to the end, even when the search is over
-    FlightState state = nodes_.front().state;
-    for (const FlightNode* n : way) {
-        const ReferenceSegment segment = segment_to(*n->parent, n->reference, n->ticks);
-        const SegmentFlight flight = fly(model_, flights_.map(), rules, segment, state);
-        if (flight.fault != FlightFault::none || !same_bytes(state, n->state)) {
-            throw std::logic_error("re-flying a plan did not reproduce the search tree bit for bit");
-        }
-    }
+    std::reverse(states.begin(), states.end());
+    return states;
 }
 
 }  // namespace downwash::planning

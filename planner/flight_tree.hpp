@@ -46,7 +46,7 @@ class FlightTree {
     /// What the flight of an edge would cost far from all surfaces, without flying it.
     [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
 
-    /// No flight from a configuration to the goal, and hold there, costs less, far from all surfaces.
+    /// No chain of edges from a configuration to the goal, and hold there, costs less, far from all surfaces.
     [[nodiscard]] double least_cost_to_goal(const Configuration& from) const;
 
     /// An edge that may be worth flying: from a node to rest at a configuration (arm angle unwrapped as seen from it).
@@ -84,9 +84,8 @@ class FlightTree {
     /// The plan that leads to a node (for a hold: to its parent).
     [[nodiscard]] Plan plan_to(const FlightNode& node) const;
 
-    /// Flies the plan to a node again from the start through the planner's own model.
-    /// @throws std::logic_error when some node's state does not come out bit for bit
-    void verify(const FlightNode& node) const;
+    /// The whole vehicle at the knots of that plan; for a hold also after it.
+    [[nodiscard]] std::vector<FlightState> states_to(const FlightNode& node) const;
 
  private:
     [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,

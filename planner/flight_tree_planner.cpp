@@ -125,6 +125,7 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
     if (iterations_ == 0 && space_.is_near_goal(tree_.root().configuration)) {
         const std::vector<FlightNode*> root{&tree_.root()};
         tree_.add_holds(root);
+        note_best_hold();
     }
     const auto is_done = [this] { return incumbent_ && stops_at_first_plan_; };
     while (!terminated && !is_used_up() && !is_done()) {
@@ -254,11 +255,11 @@ void FlightTreePlanner::grow() {
         }
     }
     tree_.add_holds(arrived);
+    note_best_hold();
     if (has_plan()) {
         rewire_through(wave, added);
+        note_best_hold();
     }
-    const FlightNode* const hold = best_hold();
-    best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
     tree_left_ -=
         static_cast<double>(flights_.statistics().ticks - ticks_before) + sample_work * static_cast<double>(samples);
 }
@@ -417,23 +418,29 @@ FlightNode* FlightTreePlanner::best_hold() const {
     return best;
 }
 
+void FlightTreePlanner::note_best_hold() {
+    const FlightNode* const hold = best_hold();
+    best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
+}
+
 /// The cheapest plan, of tree and refiner, if it is by this share cheaper than the incumbent.
 std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double least_gain) const {
     const double to_beat = incumbent_ ? (1 - least_gain) * incumbent_->cost : HUGE_VAL;
     const FlownPlan* const champion = refiner_.champion();
     FlightNode* const hold = best_hold();
     if (champion != nullptr && champion->cost < to_beat && (hold == nullptr || champion->cost <= hold->cost)) {
-        return Proposal{{refiner_.plan_of(*champion), champion->cost, iterations_}, refiner_.champion_number()};
+        return Proposal{
+            {refiner_.plan_of(*champion), champion->cost, iterations_}, champion->states, refiner_.champion_number()};
     }
     if (hold != nullptr && hold->cost < to_beat) {
-        tree_.verify(*hold);
-        return Proposal{{tree_.plan_to(*hold), hold->cost, iterations_}, 0, hold};
+        return Proposal{{tree_.plan_to(*hold), hold->cost, iterations_}, tree_.states_to(*hold), 0, hold};
     }
     return std::nullopt;
 }
 
 void FlightTreePlanner::fly(Proposal& proposal) const {
     proposal.is_good = hooks_.counts(proposal.candidate);
+    flights_.verify(proposal.candidate.plan.reference, proposal.states);
 }
 
 /// What becomes of a plan that was flown.
@@ -451,17 +458,18 @@ void FlightTreePlanner::settle(Proposal proposal) {
         }
     } else if (proposal.hold->cost == proposal.candidate.cost) {
         proposal.hold->is_discarded = true;  // unless it was rewired meanwhile: a new flight, a new chance
+        note_best_hold();
     }
 }
 
-/// Flies the cheapest plans one after the other until one is good; not many any more once the search is over.
+/// Flies the cheapest plans one after the other until one is good; not many any more once the search is at its end.
 void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationCondition& terminated) {
     int refused_at_end = 0;
     while (auto best = proposal(any_gain)) {
         fly(*best);
         const bool is_good = best->is_good;
         settle(std::move(*best));
-        refused_at_end += terminated ? 1 : 0;
+        refused_at_end += terminated || is_used_up() ? 1 : 0;
         if (is_good || refused_at_end >= most_refused_at_end) {
             return;
         }

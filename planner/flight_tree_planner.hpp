@@ -77,12 +77,13 @@ class FlightTreePlanner : public ompl::base::Planner {
         FlightNode* best_parent = nullptr;
     };
 
-    /// A plan on its way to become the incumbent: of the refiner or of the tree.
+    /// A plan on its way to become the incumbent, of the refiner or of the tree, as it was flown.
     struct Proposal {
         Candidate candidate;
-        int refined = 0;             ///< number of the refiner's plan, or
-        FlightNode* hold = nullptr;  ///< of the tree
-        bool is_good = false;        ///< it counts
+        std::vector<FlightState> states;  ///< at the plan's knots, and after the hold
+        int refined = 0;                  ///< number of the refiner's plan, or
+        FlightNode* hold = nullptr;       ///< of the tree
+        bool is_good = false;             ///< it counts
     };
 
     void grow();
@@ -97,7 +98,9 @@ class FlightTreePlanner : public ompl::base::Planner {
     void hand_to_refiner();
     [[nodiscard]] FlightNode* best_hold() const;
     [[nodiscard]] const FlightNode* other_way();
-    [[nodiscard]] bool has_plan() const noexcept { return !tree_.holds().empty(); }
+    /// Whether there is a plan, of the tree or the incumbent, that was not discarded.
+    [[nodiscard]] bool has_plan() const noexcept { return incumbent_ || best_hold_cost_ < HUGE_VAL; }
+    void note_best_hold();
     [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
     [[nodiscard]] std::optional<Proposal> proposal(double least_gain) const;
     void fly(Proposal& proposal) const;
@@ -121,7 +124,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> incumbent_;
     std::vector<Plan> handed_over_;       ///< the refiner takes them on in the next round
-    double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds
+    double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds that were not discarded
     double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
     double refiner_left_ = 0;             ///< the same of the refiner

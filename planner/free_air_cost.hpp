@@ -14,10 +14,10 @@ class FreeAirCost {
     /// Along the rest-to-rest reference between two configurations, the arm by the shorter turn.
     [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;
 
-    /// No motion between two configurations, however it is divided, costs less than this.
+    /// No chain of rest-to-rest motions between two configurations costs less than this.
     [[nodiscard]] double least_of_motion(const Configuration& from, const Configuration& to) const;
 
-    /// Nor does any motion from a configuration to one that meets the goal, and the hold there.
+    /// Nor does any from a configuration to one that meets the goal, with the hold there.
     [[nodiscard]] double least_to_goal(const Configuration& from) const;
 
     /// Of holding at a configuration [s].

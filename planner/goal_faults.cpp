@@ -8,6 +8,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/planner/goal_reach.hpp"
+#include "downwash/planner/solution.hpp"
 
 namespace downwash {
 namespace {
@@ -80,6 +81,19 @@ std::vector<Fault> unclear_goals(const Problem& p) {
     return faults;
 }
 
+std::vector<Fault> holds_beyond_longest_plan(const Problem& p) {
+    const double most_s = static_cast<double>(most_plan_ticks) / p.robot.controller.rate_hz;
+    double sum_s = 0;
+    for (const Goal& stop : p.stops) {
+        sum_s += stop.hold_s;
+    }
+    if (sum_s < most_s) {
+        return {};
+    }
+    return {{"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
+                         to_text(most_s) + " s, " + std::to_string(most_plan_ticks) + " control ticks, in one plan"}};
+}
+
 std::vector<Fault> configurations_outside_bounds(const Problem& p) {
     return in_each_goal(p, [&](const Goal& goal, const std::string& goal_key) {
         std::vector<Fault> faults;
@@ -103,7 +117,8 @@ std::vector<Fault> configurations_outside_bounds(const Problem& p) {
 std::vector<Fault> configurations_beyond_arm_limits(const Problem& p) {
     return in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<Fault> {
         if (!goal.configuration || !goal.configuration->arm_rad ||
-            arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad, goal.configuration->tolerance_rad)) {
+            arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad,
+                            usable_tolerance_share * goal.configuration->tolerance_rad)) {
             return {};
         }
         return {
@@ -152,9 +167,10 @@ std::vector<Fault> end_effectors_out_of_reach(const Problem& p) {
     });
 }
 
-const std::array<Check<Problem>, 6> checks{{
+const std::array<Check<Problem>, 7> checks{{
     {{"goal"}, too_many_goals},
     {{"goal"}, unclear_goals},
+    {{"goal", "robot.controller"}, holds_beyond_longest_plan},
     {{"goal", "environment.bounds"}, configurations_outside_bounds},
     {{"goal", "robot.arm"}, configurations_beyond_arm_limits},
     {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},

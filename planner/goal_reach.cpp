@@ -13,31 +13,37 @@ namespace downwash {
 namespace {
 
 constexpr double turn_rad = 2 * std::numbers::pi;
-constexpr int arm_angles = 720;
 constexpr double rounding_m = 1e-9;
 
 struct Offset {
     double x, z;
 };
 
-/// Offsets within a tolerance: its centre, then points half way and near its rim, or, where x and z have tolerances of
-/// their own, a grid, its points at most a quarter of a metre apart up to a tolerance of two metres.
+/// A coordinate's tolerance is tried in steps of at most a quarter of a metre up to this; beyond it trying does not
+/// show that there is no pose.
+constexpr double widest_m = 2;
+
+/// Offsets within the usable part of a tolerance: rings around its centre or, where x and z have tolerances of their
+/// own, a grid.
 std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
+    const auto steps = [](double half_width_m) {
+        constexpr double step_m = 0.25;
+        return std::clamp(static_cast<int>(std::ceil(half_width_m / step_m)), 2, static_cast<int>(widest_m / step_m));
+    };
+    const int nx = steps(tolerance.x_m);
+    const int nz = steps(tolerance.z_m);
     std::vector<Offset> offsets{{0, 0}};
     if (tolerance.is_disc) {
-        for (int i = 0; i < 8; ++i) {
-            const double angle = i * turn_rad / 8;
-            for (const double share : {0.5, usable_tolerance_share}) {
-                offsets.push_back({share * tolerance.x_m * std::cos(angle), share * tolerance.z_m * std::sin(angle)});
+        for (int ring = 1; ring <= nx; ++ring) {
+            const double radius_m = usable_tolerance_share * tolerance.x_m * ring / nx;
+            const int places = 8 * ring;
+            for (int i = 0; i < places; ++i) {
+                const double angle = i * turn_rad / places;
+                offsets.push_back({radius_m * std::cos(angle), radius_m * std::sin(angle)});
             }
         }
         return offsets;
     }
-    const auto steps = [](double half_width_m) {
-        return std::clamp(static_cast<int>(std::ceil(half_width_m / 0.25)), 2, 8);
-    };
-    const int nx = steps(tolerance.x_m);
-    const int nz = steps(tolerance.z_m);
     for (int i = -nx; i <= nx; ++i) {
         for (int k = -nz; k <= nz; ++k) {
             offsets.push_back(
@@ -47,10 +53,28 @@ std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
     return offsets;
 }
 
-/// Whether a tolerance of the coordinates is so wide that trying does not show that there is no pose.
 bool is_too_wide_to_try(const GoalTolerance& tolerance) {
-    constexpr double widest_m = 2;
-    return !tolerance.is_disc && std::max(tolerance.x_m, tolerance.z_m) > widest_m;
+    return std::max(tolerance.x_m, tolerance.z_m) > widest_m;
+}
+
+/// Angles that the arm can turn to within the usable part of a tolerance around another, at most half a degree apart,
+/// the ends of the tolerance and limits of the arm among them; more than half a turn leaves every angle.
+std::vector<double> angles_within(double middle_rad, double tolerance_rad, const ArmParameters& arm) {
+    constexpr double step_rad = turn_rad / 720;
+    const double most_rad = std::min(usable_tolerance_share * tolerance_rad, turn_rad / 2);
+    const int steps = static_cast<int>(std::ceil(most_rad / step_rad));
+    std::vector<double> angles{middle_rad};
+    for (int i = 1; i <= steps; ++i) {
+        angles.push_back(middle_rad + most_rad * i / steps);
+        angles.push_back(middle_rad - most_rad * i / steps);
+    }
+    for (const double limit_rad : {arm.lower_limit_rad, arm.upper_limit_rad}) {
+        if (arm.is_limited && std::abs(lane::wrap_angle(limit_rad - middle_rad)) <= most_rad) {
+            angles.push_back(limit_rad);
+        }
+    }
+    std::erase_if(angles, [&arm](double angle_rad) { return !arm_can_turn_to(arm, angle_rad, 0); });
+    return angles;
 }
 
 bool is_within(const Bounds& bounds, double x_m, double z_m) {
@@ -99,18 +123,11 @@ Reach reach_of_end_effector(const Problem& problem, const Goal& wanted) {
     const EndEffectorGoal& goal = *wanted.end_effector;
     const ArmParameters& arm = problem.robot.arm;
     const CollisionChecker checker = checker_of(problem);
-    const std::vector<Offset> offsets = offsets_within(tolerance_of(wanted));
+    const double tolerance_rad = goal.direction_rad ? goal.direction_tolerance_rad : turn_rad;
+    const std::vector<double> angles = angles_within(goal.direction_rad.value_or(0), tolerance_rad, arm);
     Reach reach = Reach::none;
-    for (int k = 0; k < arm_angles; ++k) {
-        // Counted from the wanted direction, so that this one is tried whatever it is.
-        const double angle_rad = goal.direction_rad.value_or(0) + k * turn_rad / arm_angles;
-        const bool is_direction_right =
-            !goal.direction_rad ||
-            std::abs(lane::wrap_angle(angle_rad - *goal.direction_rad)) <= goal.direction_tolerance_rad;
-        if (!is_direction_right || !arm_can_turn_to(arm, angle_rad, 0)) {
-            continue;
-        }
-        for (const Offset& offset : offsets) {
+    for (const Offset& offset : offsets_within(tolerance_of(wanted))) {
+        for (const double angle_rad : angles) {
             const double x_m = goal.x_m + offset.x - arm.length_m * std::cos(angle_rad) - arm.joint_x_m;
             const double z_m = goal.z_m + offset.z + arm.length_m * std::sin(angle_rad) - arm.joint_z_m;
             if (!is_within(problem.bounds, x_m, z_m)) {
@@ -132,10 +149,10 @@ bool has_clear_configuration(const Problem& problem, const Goal& wanted) {
         return true;
     }
     const CollisionChecker checker = checker_of(problem);
+    const std::vector<double> angles = angles_within(*goal.arm_rad, goal.tolerance_rad, problem.robot.arm);
     for (const Offset& offset : offsets_within(tolerance)) {
-        for (const double turned : {0.0, -0.5, 0.5, -usable_tolerance_share, usable_tolerance_share}) {
-            const PlanarPose pose{*goal.x_m + offset.x, *goal.z_m + offset.z, 0,
-                                  *goal.arm_rad + goal.tolerance_rad * turned};
+        for (const double angle_rad : angles) {
+            const PlanarPose pose{*goal.x_m + offset.x, *goal.z_m + offset.z, 0, angle_rad};
             if (!checker.is_nearer_than(pose, problem.planner.safety_margin_m)) {
                 return true;
             }

@@ -194,8 +194,9 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
             ++solution.planning.rejected["too_long"];
             solution.planning.improvements.clear();
             solution.planning.first_solution_wall_s.reset();
-            solution.status = Status::none;
-            solution.plan.reset();
+            solution.status = Status::approximate;
+            solution.plan = course.plan;
+            solution.cost = course.cost;
             return;
         }
         if (is_last) {

@@ -228,15 +228,16 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     result.refused_bounds = counts.refused_bounds;
     result.nearest_approach_m = space.goal_distance_m(start);
     if (definition->getSolutionPath() != nullptr) {
-        const auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
+        auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
         const std::vector<Waypoint> waypoints = unwrapped(*path, space, start);
+        const Waypoint& end = waypoints.back();
+        const double off_m = space.goal_distance_m({end.x_m, end.z_m, end.arm_rad});
         // The planner's status counts an approximate solution as one.
-        const bool is_exact = definition->hasExactSolution();
+        const bool is_exact =
+            definition->hasExactSolution() && definition->getGoal()->isSatisfied(path->getStates().back());
         if (is_exact || waypoints.size() > 1) {
             result.status = is_exact ? Status::solved : Status::approximate;
-            const Waypoint& end = waypoints.back();
-            result.nearest_approach_m =
-                std::min(result.nearest_approach_m, space.goal_distance_m({end.x_m, end.z_m, end.arm_rad}));
+            result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
             result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
                                      model.tick().tick_s);
             if (is_exact && !best_cost) {

@@ -146,10 +146,13 @@ class GoalRegion : public ob::GoalSampleableRegion {
 
     double distanceGoal(const ob::State* state) const override { return space_.goal_distance_m(read(state, space_)); }
 
+    /// Some planners take every valid sample for a goal, so it has to be one: where no new one is found, the last;
+    /// before there is any, the middle of the region, which the planner may find invalid.
     void sampleGoal(ob::State* state) const override {
-        const std::optional<Configuration> sample = space_.sample_goal(random_);
-        // Without a valid sample an arbitrary one keeps the search going; it is checked like any other.
-        write(sample.value_or(space_.sample(random_)), state, space_);
+        if (const std::optional<Configuration> sample = space_.sample_goal(random_)) {
+            last_ = *sample;
+        }
+        write(last_.value_or(space_.moved_into_goal(space_.sample(random_), 0)), state, space_);
     }
 
     unsigned int maxSampleCount() const override { return most_samples_; }
@@ -158,6 +161,7 @@ class GoalRegion : public ob::GoalSampleableRegion {
     const SearchSpace& space_;
     Random& random_;
     unsigned int most_samples_;
+    mutable std::optional<Configuration> last_;
 };
 
 }  // namespace

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "downwash/planner/solve.hpp"
-
 namespace downwash::planning {
 namespace {
 
@@ -73,6 +71,7 @@ FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const 
         plan.states.push_back(job.legs[leg].end);
     }
     plan.cost = flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs.back());
+    plan.states.push_back(job.end());
     return plan;
 }
 

@@ -13,7 +13,7 @@ namespace downwash::planning {
 /// A plan with all that was found out by flying it, hold included.
 struct FlownPlan {
     std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
-    std::vector<FlightState> states;     ///< the vehicle at each point
+    std::vector<FlightState> states;     ///< the vehicle at each point, and after the hold
     std::vector<double> costs;           ///< from the start up to each point
     std::vector<std::int64_t> ticks;     ///< from each point to the next
     double cost = 0;                     ///< hold included

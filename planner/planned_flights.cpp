@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 #include "downwash/planner/free_air_cost.hpp"
 #include "downwash/planner/solve.hpp"
@@ -18,6 +20,11 @@ FlightRules planning_rules(const Problem& problem, std::function<bool()> is_over
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
     return rules;
+}
+
+bool same_bytes(const FlightState& a, const FlightState& b) {
+    static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
+    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
 }
 
 }  // namespace
@@ -164,6 +171,23 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
         if (const FlightLeg* leg = job.refused_leg()) {
             const double* q = leg->end.plant.q;
             refuse(leg->segment, leg->flight.fault, {q[0], q[1], q[3]});
+        }
+    }
+}
+
+void PlannedFlights::verify(std::span<const ReferenceKnot> knots, std::span<const FlightState> states) const {
+    FlightRules to_the_end = rules();
+    to_the_end.is_over = {};
+    FlightState state = start_;
+    for (std::size_t i = 1; i < states.size(); ++i) {
+        const ReferenceKnot& from = knots[i - 1];
+        const ReferenceSegment segment =
+            i < knots.size()
+                ? ReferenceSegment(from.point, knots[i].point, knots[i].tick - from.tick, model_.tick().tick_s)
+                : hold_leg(from.point).segment;
+        const SegmentFlight flight = downwash::fly(model_, map_, to_the_end, segment, state);
+        if (flight.fault != FlightFault::none || !same_bytes(state, states[i])) {
+            throw std::logic_error("flying a plan again did not reproduce the planner's flight bit for bit");
         }
     }
 }

@@ -48,6 +48,12 @@ class PlannedFlights {
     /// Flies jobs, and counts ticks and refusals.
     void fly(std::span<FlightJob> jobs);
 
+    /// Flies a reference again, from the start of the search through the planner's own model, by the plain loop over
+    /// ticks. May be called from any thread.
+    /// @param states the whole vehicle at each knot; one more: after the hold at the last of them
+    /// @throws std::logic_error when something is refused, or a state does not come out bit for bit
+    void verify(std::span<const ReferenceKnot> knots, std::span<const FlightState> states) const;
+
     /// The hold at the goal as the last leg of a job; the job's judged_ticks have to be judged_ticks().
     [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
     [[nodiscard]] std::int64_t judged_ticks() const;

@@ -93,9 +93,14 @@ Configuration SearchSpace::sample(Random& random) const {
     return c;
 }
 
-double SearchSpace::into_arm_range(double arm_rad) const noexcept {
+double SearchSpace::into_arm_range(double arm_rad, double near_rad) const noexcept {
     constexpr double turn = 2 * std::numbers::pi;
-    return arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
+    const double least = arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
+    const double turns_to_spare = std::floor((arm_high_rad() - least) / turn);
+    if (!arm_.is_limited || turns_to_spare < 1) {
+        return least;
+    }
+    return least + turn * std::clamp(std::round((near_rad - least) / turn), 0.0, turns_to_spare);
 }
 
 Configuration SearchSpace::sample_near(const Configuration& configuration, double radius_m, Random& random) const {
@@ -135,7 +140,7 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
     if (goal.end_effector) {
         const EndEffectorGoal& point = *goal.end_effector;
         if (point.direction_rad) {
-            c.arm_rad = into_arm_range(*point.direction_rad + turn);
+            c.arm_rad = into_arm_range(*point.direction_rad + turn, c.arm_rad);
         }
         const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
         const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
@@ -151,7 +156,7 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
         c.z_m = *pose.z_m + dz;
     }
     if (pose.arm_rad) {
-        c.arm_rad = into_arm_range(*pose.arm_rad + (share > 0 ? turn : 0));
+        c.arm_rad = into_arm_range(*pose.arm_rad + (share > 0 ? turn : 0), c.arm_rad);
     }
     return c;
 }
@@ -164,7 +169,7 @@ Configuration SearchSpace::moved_into(const Goal& wanted, Configuration c, doubl
     const GoalTolerance tolerance = tolerance_of(wanted);
     const auto nearest_angle = [&](double from_rad, double goal_rad) {
         const double most = share * tolerance.angle_rad;
-        return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most));
+        return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most), from_rad);
     };
     // What may stay of the deviation from the goal.
     const auto keep = [&](double& dx, double& dz) {

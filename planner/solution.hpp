@@ -33,7 +33,7 @@ struct Plan {
     }
 };
 
-/// Plans longer than this many control ticks, hold apart, are not looked for: an hour at 100 Hz.
+/// Plans longer than this many control ticks, the last hold apart, are not looked for: an hour at 100 Hz.
 inline constexpr std::int64_t most_plan_ticks = 360000;
 
 /// What a search came to.
@@ -52,7 +52,8 @@ struct Improvement {
 };
 
 /// What stood between a search and its goal: of the ways into the goal region that were refused, holds included, the
-/// one that came nearest.
+/// one that came nearest. `direct_flight`, if it had plans: where the flight of the one that was discarded last came
+/// nearest to an obstacle or, if that is not why, ended.
 struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
     Waypoint at;                 ///< where it was refused

@@ -1,5 +1,6 @@
 #include "downwash/planner/solve.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <span>
@@ -83,6 +84,16 @@ Execution fly_directly(const FlightState& start, std::span<const Goal> goals, co
     return execution;
 }
 
+/// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
+Obstruction obstruction_of(const Execution& flight, const planning::SearchSpace& space) {
+    const auto nearest =
+        std::min_element(flight.rows.begin(), flight.rows.end(),
+                         [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
+    const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
+    const double* q = (is_too_near ? *nearest : flight.rows.back()).q;
+    return {"direct_flight", {q[0], q[1], q[3]}, space.goal_distance_m({q[0], q[1], q[3]})};
+}
+
 void search_geometrically(const Problem& problem, const FlightModel& model, const SolveOptions& options,
                           Solution& solution) {
     const planning::SearchSpace space(problem, model);
@@ -151,18 +162,34 @@ struct FlightSearch {
             flown = fly_directly(start, goals, model, before.continued_by(plan), flown_wall_s);
         }
         known_at_s = search.seconds();
-        return !flown || (flown->outcome == Outcome::ok && flown->min_clearance_m >= problem.planner.safety_margin_m);
+        if (!flown || (flown->outcome == Outcome::ok && flown->min_clearance_m >= problem.planner.safety_margin_m)) {
+            return true;
+        }
+        discarded = obstruction_of(*flown, space);
+        return false;
     }
 
-    /// Takes on the plan of which counts() was asked last; it has counted since the answer was known.
-    void accept(double cost, std::uint64_t iteration) {
+    /// Takes on the plan of which counts() was asked last; it has counted since the answer was known. One that is
+    /// cheaper in the planner's model only, and not when flown, is no better.
+    void accept(const Plan& plan, double cost, std::uint64_t iteration) {
         std::optional<double> flown_cost;
         if (flown) {
             flown_cost = cost_of(*flown, problem.planner.objective);
+            if (solution.execution && *flown_cost >= cost_of(*solution.execution, problem.planner.objective)) {
+                return;
+            }
             solution.execution = std::move(*std::exchange(flown, std::nullopt));
             solution.planning.flight_wall_s = flown_wall_s;
         }
+        solution.status = Status::solved;
+        solution.plan = plan;
+        solution.cost = cost;
         search.improved(known_at_s, cost, iteration, flown_cost);
+    }
+
+    /// What stood before the goal of a search that found no plan: if it had one, what became of its flight.
+    void tell_obstruction(const planning::FlightStatistics& statistics) {
+        solution.planning.obstruction = discarded ? discarded : statistics.obstruction;
     }
 
     void account(std::uint64_t iterations, const planning::FlightStatistics& statistics) {
@@ -188,7 +215,8 @@ struct FlightSearch {
     planning::PlannedFlights flights;
     std::optional<Execution> flown;  ///< the direct flight made last
     double flown_wall_s = 0;
-    double known_at_s = 0;  ///< when it was known whether the plan counts
+    std::optional<Obstruction> discarded;  ///< what refused the plan that was discarded last
+    double known_at_s = 0;                 ///< when it was known whether the plan counts
 };
 
 /// OMPL's planners over controls.
@@ -206,20 +234,22 @@ void search_by_controls(FlightSearch& common) {
         if (!common.counts(plan)) {
             return false;
         }
-        common.accept(cost, iteration);
+        common.accept(plan, cost, iteration);
         return true;
     };
     planning::ControlResult result =
         planning::plan_by_controls(settings.algorithm, settings.seed, flights, common.random, hooks);
     common.account(result.iterations, common.flights.statistics());
-    common.solution.tree = std::move(result.tree);
-    if (result.nearest_approach_m) {
-        common.solution.planning.nearest_approach_m = result.nearest_approach_m;
-        common.solution.planning.obstruction = common.flights.statistics().obstruction;
+    Solution& solution = common.solution;
+    solution.tree = std::move(result.tree);
+    if (solution.status == Status::solved) {
+        return;
     }
-    common.solution.status = result.status;
-    common.solution.plan = std::move(result.plan);
-    common.solution.cost = result.cost;
+    common.tell_obstruction(common.flights.statistics());
+    solution.planning.nearest_approach_m = result.nearest_approach_m;
+    solution.status = result.status;
+    solution.plan = std::move(result.plan);
+    solution.cost = result.cost;
 }
 
 /// The tree of flights.
@@ -230,7 +260,9 @@ void search_by_flights(FlightSearch& common) {
     const auto information = planning::make_space_information(common.space, common.random, 0.1, counts);
     planning::CandidateHooks hooks;
     hooks.counts = [&](const planning::Candidate& candidate) { return common.counts(candidate.plan); };
-    hooks.accept = [&](const planning::Candidate& candidate) { common.accept(candidate.cost, candidate.iteration); };
+    hooks.accept = [&](const planning::Candidate& candidate) {
+        common.accept(candidate.plan, candidate.cost, candidate.iteration);
+    };
     planning::FlightTreePlanner planner(information, common.problem, tree, common.space, common.flights, common.random,
                                         hooks, common.options.threads);
     planner.set_max_iterations(common.problem.planner.max_iterations);
@@ -246,14 +278,11 @@ void search_by_flights(FlightSearch& common) {
         solution.tree = planning::tree_of(
             planner, [&common](const ompl::base::State* state) { return planning::read(state, common.space); });
     }
-    if (planner.incumbent()) {
-        solution.status = Status::solved;
-        solution.plan = planner.incumbent()->plan;
-        solution.cost = planner.incumbent()->cost;
+    if (solution.status == Status::solved) {
         return;
     }
+    common.tell_obstruction(statistics);
     solution.planning.nearest_approach_m = planner.nearest_distance_m();
-    solution.planning.obstruction = statistics.obstruction;
     if (planner.nearest_to_goal().parent != nullptr) {
         solution.status = Status::approximate;
         solution.plan = tree.plan_to(planner.nearest_to_goal());
@@ -274,7 +303,9 @@ FlightState start_state(const FlightModel& model, const Start& start) {
     return model.state_at(q, u);
 }
 
-Solution solve(const Problem& problem, const SolveOptions& options) {
+Solution solve(const Problem& problem, const SolveOptions& asked) {
+    SolveOptions options = asked;
+    options.threads = std::max(1, options.threads);
     if (std::vector<Fault> faults = problem_faults(problem); !faults.empty()) {
         throw InputError(std::move(faults));
     }

@@ -26,7 +26,7 @@ struct Progress {
 
 /// How a program takes part in a search.
 struct SolveOptions {
-    int threads = 1;       ///< for flights and the aero map; the result does not depend on it
+    int threads = 1;       ///< for flights and the aero map, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, up to ten times a second
     /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map

@@ -1,10 +1,6 @@
 #include "downwash/planner/steered_flights.hpp"
 
-#include <cstring>
 #include <span>
-#include <stdexcept>
-
-#include "downwash/planner/solve.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -12,11 +8,7 @@ namespace {
 /// A flight may close from so far away [m], the arm's turn counted as way.
 constexpr double closing_range_m = 0.5;
 
-bool same_bytes(const FlightState& a, const FlightState& b) {
-    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
-}
-
-bool is_at_rest(const ReferencePoint& point) {
+bool stands_still(const ReferencePoint& point) {
     return point.velocity[0] == 0 && point.velocity[1] == 0 && point.velocity[2] == 0;
 }
 
@@ -114,7 +106,7 @@ std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
     }
     const double arrived = flights_.cost_after(from.cost, from.vehicle, job.legs[0]);
     const double cost = flights_.cost_after(arrived, job.legs[0].end, job.legs[1]);
-    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.end(), cost};
+    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.legs[0].end, job.end(), cost};
 }
 
 Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
@@ -127,7 +119,7 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
         plan.reference.push_back(end->goal);
     } else {
         constexpr double still[3] = {0, 0, 0};
-        while (!is_at_rest(plan.reference.back().point)) {
+        while (!stands_still(plan.reference.back().point)) {
             const ReferenceKnot& last = plan.reference.back();
             plan.reference.push_back({last.tick + steps_.ticks(), steps_.after(last.point, still)});
         }
@@ -139,26 +131,13 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
 }
 
 void SteeredFlights::verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const {
-    FlightRules rules = flights_.rules();
-    rules.is_over = {};
-    FlightState state = points.front().vehicle;
-    const auto fly_and_compare = [&](const ReferenceSegment& segment, const FlightState& expected) {
-        const SegmentFlight flight = fly(flights_.model(), flights_.map(), rules, segment, state);
-        if (flight.fault != FlightFault::none || !same_bytes(state, expected)) {
-            throw std::logic_error("flying a plan did not reproduce the planner's flight bit for bit");
-        }
-    };
-    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
-        const ReferenceKnot& from = plan.reference[i - 1];
-        const ReferenceKnot& to = plan.reference[i];
-        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan.tick_s);
-        if (i < points.size()) {
-            fly_and_compare(segment, points[i].vehicle);
-        } else {
-            static_cast<void>(fly(flights_.model(), flights_.map(), rules, segment, state));
-        }
+    std::vector<FlightState> states;
+    for (const FlightPoint& point : points) {
+        states.push_back(point.vehicle);
     }
-    fly_and_compare(flights_.hold_leg(end.goal.point).segment, end.end);
+    states.push_back(end.arrival);
+    states.push_back(end.end);
+    flights_.verify(plan.reference, states);
 }
 
 }  // namespace downwash::planning

@@ -22,9 +22,10 @@ struct FlightPoint {
 
 /// How a flight ends: a reference segment to rest at the goal, and the hold there.
 struct Closing {
-    ReferenceKnot goal;  ///< at rest, in ticks since the start
-    FlightState end;     ///< the vehicle after the hold
-    double cost = 0;     ///< of the whole flight, hold included
+    ReferenceKnot goal;   ///< at rest, in ticks since the start
+    FlightState arrival;  ///< the vehicle before the hold
+    FlightState end;      ///< the vehicle after the hold
+    double cost = 0;      ///< of the whole flight, hold included
 };
 
 /// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick.
@@ -59,8 +60,7 @@ class SteeredFlights {
     /// The plan through these moments, one step apart; with an end where there is one, otherwise braked to rest.
     [[nodiscard]] Plan plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const;
 
-    /// Flies a plan from the start through the planner's own model, tick by tick by the plain loop over segments.
-    /// @throws std::logic_error when some vehicle on the way, or after the hold, does not come out bit for bit
+    /// Flies the plan through moments to an end again; see PlannedFlights::verify.
     void verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const;
 
  private:

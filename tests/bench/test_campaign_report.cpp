@@ -219,13 +219,44 @@ TEST_CASE("the safe margin is the least from which on no flight fails, and what 
     REQUIRE(report.margins.size() == 1);
     const MarginFinding& finding = report.margins[0];
     CHECK(finding.safe_margin_m == 0.4);
-    CHECK(finding.safe_margin_of_experiment_m == std::vector<std::optional<double>>{0.4, 0.2});
+    REQUIRE(finding.alone.size() == 2);
+    REQUIRE(finding.alone[0].has_value());
+    REQUIRE(finding.alone[1].has_value());
+    CHECK(finding.alone[0]->margin_m == 0.4);
+    CHECK(finding.alone[0]->solved.hits == 1);
+    CHECK(finding.alone[1]->margin_m == 0.2);
+    CHECK(finding.alone[1]->solved.hits == 1);
     REQUIRE(finding.solved_when_safe.size() == 2);
     CHECK(finding.solved_when_safe[0].hits == 1);
     CHECK(finding.solved_when_safe[1].hits == 0);
-    CHECK(markdown_of(report).find("| hard, energy | 0.2 m | 0/1 [0.0, 79.3 %] | **no longer reached** |") !=
+    CHECK(markdown_of(report).find(
+              "| hard, energy | 0.2 m | 1/1 [20.7, 100.0 %] | 0/1 [0.0, 79.3 %] | **no longer reached** |") !=
           std::string::npos);
     CHECK(report.comparisons.empty());  // planners of different margins are no pair
+}
+
+TEST_CASE("a margin that is safe only because nothing is reached with it is told apart") {
+    CampaignResults results;
+    results.plan.experiments = {{"bridge", "energy"}};
+    for (const double margin_m : {0.1, 0.2}) {
+        results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
+    }
+    results.plan.seeds = {1};
+    results.runs = {run_of(0, 1, RunStatus::solved, 0.1, 100, Outcome::collision), run_of(1, 1, RunStatus::impossible)};
+    CHECK(markdown_of(report_of(results))
+              .find("| bridge, energy | 0.2 m | 0/1 [0.0, 79.3 %] | 0/1 [0.0, 79.3 %] | "
+                    "**out of reach before it is safe** |") != std::string::npos);
+}
+
+TEST_CASE("runs without a plan are listed with how near they came") {
+    CampaignResults results = some_results();
+    for (const auto& [place, distance_m] : {std::pair(5U, 0.3), std::pair(7U, 0.1234)}) {
+        results.runs[place] = run_of(1, results.runs[place].seed, RunStatus::approximate);
+        results.runs[place].nearest_approach_m = distance_m;
+    }
+    CHECK(markdown_of(report_of(results))
+              .find("mp-arm rrt-star: approximate, 0.123 to 0.3 m from the goal region: seeds 2 7") !=
+          std::string::npos);
 }
 
 TEST_CASE("curves have a step for every first solution and end with the searches") {

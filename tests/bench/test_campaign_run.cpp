@@ -104,6 +104,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     written.wall_s = 0.1 + 0.2;
     written.first_solution_s = 1.0 / 3;
     written.cost = 1e-7 / 3;
+    written.nearest_approach_m = 0.7 / 3;
     written.iterations = 1234567890123;
     written.edges_simulated = 5;
     written.states_checked = 6;
@@ -130,6 +131,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     CHECK(read.wall_s == written.wall_s);
     CHECK(read.first_solution_s == written.first_solution_s);
     CHECK(read.cost == written.cost);
+    CHECK(read.nearest_approach_m == written.nearest_approach_m);
     CHECK(read.iterations == written.iterations);
     CHECK(read.discarded == 8);
     REQUIRE(read.improvements.size() == 2);

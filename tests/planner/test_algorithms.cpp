@@ -113,6 +113,33 @@ TEST_CASE("no algorithm calls a walled problem solved") {
     });
 }
 
+TEST_CASE("where hardly any sample of the goal is clear, what is called solved ends there") {
+    // The tip has to get into a slot of the ceiling, so that the arm has a few degrees to choose from.
+    Problem problem = test::ceiling_problem();
+    for (const double side : {-1.0, 1.0}) {
+        problem.obstacles.push_back(test::box(side < 0 ? "left" : "right", {6, 8, 1}, {3 + 3.15 * side, 0, 4.5}));
+    }
+    problem.planner.variant = Variant::mp_arm;
+    problem.planner.max_iterations = 3000;
+    const EndEffectorGoal& goal = *problem.goal.end_effector;
+    const double arm_m = problem.robot.arm.length_m;
+    for (const char* algorithm : {"rrt-connect", "bit-star"}) {  // they take samples of the goal at their word
+        CAPTURE(algorithm);
+        problem.planner.algorithm = algorithm;
+        int solved = 0;
+        for (problem.planner.seed = 1; problem.planner.seed <= 8; ++problem.planner.seed) {
+            const Solution solution = solve(problem);
+            if (solution.status == Status::solved) {
+                ++solved;
+                const Waypoint& end = solution.plan->waypoints.back();
+                CHECK(std::hypot(end.x_m + arm_m * std::cos(end.arm_rad) - goal.x_m,
+                                 end.z_m - arm_m * std::sin(end.arm_rad) - goal.z_m) <= goal.tolerance_m);
+            }
+        }
+        CHECK(solved > 0);
+    }
+}
+
 TEST_CASE("planners over controls keep the limits of the reference at every tick") {
     SolveOptions first;
     first.stop_at_first_solution = true;

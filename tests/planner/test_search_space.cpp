@@ -57,6 +57,28 @@ TEST_CASE("moved into the goal's tolerance, a configuration stays as near as the
     CHECK(inside.z_m == Approx(3.1));
 }
 
+TEST_CASE("an arm that turns more than once reaches a direction by the shorter turn") {
+    Problem problem = test::ceiling_problem();
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = -200 * pi / 180;
+    problem.robot.arm.upper_limit_rad = 300 * pi / 180;
+    problem.goal.end_effector->direction_rad = 250 * pi / 180;
+    const Fixture f(problem);
+    const double once = 250 * pi / 180, before = -110 * pi / 180;
+    CHECK(f.space.moved_into_goal({0, 2, 280 * pi / 180}, 0).arm_rad == Approx(once));
+    CHECK(f.space.moved_into_goal({0, 2, -150 * pi / 180}, 0).arm_rad == Approx(before));
+    planning::Random random(1);
+    int high = 0, low = 0;
+    for (int i = 0; i < 200; ++i) {
+        if (const auto c = f.space.sample_goal(random)) {
+            CHECK(f.space.is_inside(*c));
+            ++(c->arm_rad > 0 ? high : low);
+        }
+    }
+    CHECK(high > 20);
+    CHECK(low > 20);
+}
+
 TEST_CASE("the wanted direction of the arm is taken on to within the tolerance") {
     Problem problem = test::ceiling_problem();
     problem.goal.end_effector->direction_rad = -pi / 2;

@@ -17,6 +17,26 @@ Problem with(Variant variant, Problem problem = test::ceiling_problem()) {
     return problem;
 }
 
+/// Where the vehicle arrives and cannot hold.
+Problem right_under_the_ceiling() {
+    Problem problem = test::ceiling_problem();
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = 0;
+    problem.goal.configuration->z_m = 5 - 0.06 - 0.16;
+    problem.goal.configuration->tolerance_m = 0.02;
+    problem.planner.safety_margin_m = 0.01;
+    return problem;
+}
+
+/// The same problem's map as if other obstacles were there: plans that fly through it may do otherwise when flown
+/// directly.
+std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obstacle> obstacles) {
+    Problem other = problem;
+    other.obstacles = std::move(obstacles);
+    return make_flight_model(other)->make_map(problem.bounds);
+}
+
 }  // namespace
 
 TEST_CASE("each variant solves an easy problem and its plan starts where the vehicle is") {
@@ -79,6 +99,15 @@ TEST_CASE("the same seed and iteration budget give the same bytes, whatever the 
     }
 }
 
+TEST_CASE("no threads are as good as one") {
+    const Problem problem = with(Variant::mp_arm_ada);
+    SolveOptions none;
+    none.threads = 0;
+    const Solution solution = solve(problem, none);
+    CHECK(solution.threads == 1);
+    CHECK(solution.cost == solve(problem).cost);
+}
+
 TEST_CASE("a search tells how far its aero map is, and nothing of a map that it is given or needs not") {
     Problem problem = with(Variant::mp_arm_ada);
     problem.planner.max_iterations = 1;
@@ -112,6 +141,9 @@ TEST_CASE("improvements only ever get cheaper and the last one is the plan's cos
             REQUIRE(!improvements.empty());
             for (std::size_t i = 1; i < improvements.size(); ++i) {
                 CHECK(improvements[i].cost <= improvements[i - 1].cost);
+                if (variant == Variant::mp_arm_ada) {
+                    CHECK(improvements[i].flown_cost < improvements[i - 1].flown_cost);
+                }
             }
             CHECK(improvements.back().cost == Approx(solution.cost).epsilon(1e-12));
             if (variant == Variant::mp_arm_ada) {
@@ -327,15 +359,7 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     CHECK(walled.planning.obstruction->cause == "collision");
     CHECK(walled.planning.obstruction->at.x_m < 0);  // touching the wall from the side of the start
 
-    // Right under the ceiling the vehicle arrives and cannot hold.
-    Problem problem = test::ceiling_problem();
-    problem.goal.end_effector.reset();
-    problem.goal.configuration = ConfigurationGoal{};
-    problem.goal.configuration->x_m = 0;
-    problem.goal.configuration->z_m = 5 - 0.06 - 0.16;
-    problem.goal.configuration->tolerance_m = 0.02;
-    problem.planner.safety_margin_m = 0.01;
-    const Solution sucked_in = solve(problem);
+    const Solution sucked_in = solve(right_under_the_ceiling());
     CHECK(sucked_in.status != Status::solved);
     REQUIRE(sucked_in.planning.obstruction);
     CHECK(sucked_in.planning.obstruction->goal_distance_m < 0.5);
@@ -344,6 +368,44 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     REQUIRE(solved.status == Status::solved);
     CHECK_FALSE(solved.planning.nearest_approach_m);
     CHECK_FALSE(solved.planning.obstruction);
+}
+
+TEST_CASE("where every plan was discarded, the direct flight is what stopped the search") {
+    Problem problem = right_under_the_ceiling();
+    SolveOptions deceived;
+    deceived.map = map_as_if(problem, {});
+    const Solution solution = solve(problem, deceived);
+    CHECK(solution.status != Status::solved);
+    CHECK(solution.planning.rejected.at("direct_flight") > 0);
+    REQUIRE(solution.planning.obstruction);
+    CHECK(solution.planning.obstruction->cause == "direct_flight");
+    CHECK(solution.planning.obstruction->at.z_m > 4);
+}
+
+TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {
+    // Under the ceiling a hover needs less than elsewhere; the planner believes here that it does near the ground.
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = 3;
+    problem.goal.configuration->z_m = 3.2;
+    problem.goal.configuration->tolerance_z_m = 1.3;
+    problem.goal.hold_s = 20;
+    problem.planner.max_iterations = 800;
+    SolveOptions deceived;
+    deceived.map = map_as_if(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
+    for (problem.planner.seed = 1; problem.planner.seed <= 3; ++problem.planner.seed) {
+        CAPTURE(problem.planner.seed);
+        const Solution solution = solve(problem, deceived);
+        const auto& improvements = solution.planning.improvements;
+        for (std::size_t i = 1; i < improvements.size(); ++i) {
+            CHECK(improvements[i].flown_cost < improvements[i - 1].flown_cost);
+        }
+        if (solution.status == Status::solved) {
+            CHECK(improvements.back().flown_cost == solution.execution_cost);
+            CHECK(improvements.back().cost == solution.cost);
+        }
+    }
 }
 
 TEST_CASE("where a surface saves energy the aware planner flies and holds along it, and that pays") {

@@ -145,6 +145,11 @@ const Edit edits[] = {
      "goal: [{end_effector: {x_m: 3, z_m: 9}}, {configuration: {x_m: 3}}]\n",
      "problem.yaml:13:9: goal[0].end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses "
      "it by 2.7 m; widen environment.bounds or move the goal"},
+    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "goal: [{configuration: {x_m: 1}, hold_s: 3000}, {configuration: {x_m: 2}, hold_s: 600}, {configuration: {x_m: "
+     "3}}]\n",
+     "problem.yaml:13:1: goal is held for 3600 s before its last entry: expected less than 3600 s, 360000 control "
+     "ticks, in one plan"},
     {"end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}", "configuration: {tolerance_m: 0.1}",
      "problem.yaml:14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"hold_s: 5", "hold_s: 0.5", "problem.yaml:15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},

@@ -82,11 +82,12 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
     comparisons = [comparison(f"{cells[i]['problem']}, energy", cells[i], cells[i + 1])
                    for i in range(0, len(cells), count)]
     failures = [{"experiment": f"{c['problem']}, energy", "planner": c["planner"], "cause": "collision",
-                 "seeds": [seed for seed, cause in zip(c["seeds"]["seed"], c["seeds"]["cause"]) if cause]}
+                 "seeds": [seed for seed, cause in zip(c["seeds"]["seed"], c["seeds"]["cause"]) if cause],
+                 "nearest_approach_m": []}
                 for c in cells if c["failed_flights"]["hits"]]
     runs = seeds * len(cells)
     sweep = [{"variant": "mp-arm", "algorithm": "rrt-star", "safe_margin_m": None,
-              "experiments": [{"experiment": f"{problem}, energy", "safe_margin_m": 0.2,
+              "experiments": [{"experiment": f"{problem}, energy", "safe_margin_m": 0.2, "solved_when_safe": share(0, 20),
                                "solved_when_safe_everywhere": None} for problem in problems]}]
     return {
         "schema": "downwash/campaign-report/v1",

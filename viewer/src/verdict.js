@@ -45,7 +45,11 @@ function blocked_lines({solution, outcome}) {
     if (Number.isFinite(nearest)) {
         lines.push(`The vehicle was brought within ${meters(nearest)} of the goal region.`);
     }
-    if (stop) {
+    if (stop?.cause === "direct_flight") {
+        lines.push(
+            "Every plan was discarded: flown with direct aerodynamics, the last one failed or came nearer than the margin, " +
+            `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
+    } else if (stop) {
         lines.push(
             `Of the ways into the goal region the nearest was refused because it ${cause_text(stop.cause)}, ` +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ` +

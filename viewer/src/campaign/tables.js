@@ -9,6 +9,9 @@ const share = ({hits, attempts, low, high}) =>
 const seconds = (value) => !Number.isFinite(value) ? "none" :
     value < 1 ? `${number(1e3 * value, ".3~g")} ms` : `${number(value, ".3~g")} s`;
 const cost = (value) => (Number.isFinite(value) ? plain(value) : "none");
+const distance = (metres) => metres.length === 0 ?
+    "" :
+    `, ${number(Math.min(...metres), ".3~g")} to ${number(Math.max(...metres), ".3~g")} m from the goal region`;
 const p_value = (p) => (p === null ? "–" : p < 0.0001 ? "< 0.0001" : number(p, ".2g"));
 
 /** @param {string[]} names of columns; the first `texts` hold words */
@@ -104,11 +107,11 @@ function margins_tables({figures}) {
               `safe on all problems from a margin of ${plain(finding.safe_margin_m)} m on.`),
         table(
             "Margins",
-            ["problem", "safe there from", "solved with the margin that is safe everywhere"], 1,
+            ["problem", "safe there from", "with which it solves", "solved with the margin that is safe everywhere"], 1,
             finding.experiments.map(
-                ({experiment, safe_margin_m, solved_when_safe_everywhere: solved}) =>
+                ({experiment, safe_margin_m, solved_when_safe: alone, solved_when_safe_everywhere: everywhere}) =>
                     [experiment, safe_margin_m === null ? "no margin tried" : `${plain(safe_margin_m)} m`,
-                     solved === null ? "none" : share(solved)]))
+                     alone === null ? "none" : share(alone), everywhere === null ? "none" : share(everywhere)]))
     ]);
 }
 
@@ -126,8 +129,8 @@ function failures_list({figures}) {
     return table(
         "Failures", ["problem", "planner", "cause", "count", "seeds"], 3,
         figures.failures.map(
-            ({experiment, planner, cause, seeds}) =>
-                [experiment, planner, cause, String(seeds.length), seeds.join(" ")]));
+            ({experiment, planner, cause, seeds, nearest_approach_m}) =>
+                [experiment, planner, cause + distance(nearest_approach_m), String(seeds.length), seeds.join(" ")]));
 }
 
 export function make_tables(model) {
