@@ -77,8 +77,8 @@ struct Run {
     std::size_t planner = 0;
     std::uint32_t seed = 0;
     RunStatus status = RunStatus::none;
-    double wall_s = 0;                       ///< from the parsed problem with its map to the answer, flight included
-    std::optional<double> first_solution_s;  ///< from the start of planning to the first accepted plan
+    double wall_s = 0;                       ///< from the parsed problem to the answer, flight included
+    std::optional<double> first_solution_s;  ///< from the parsed problem to the first accepted plan
     std::optional<double> cost;              ///< the planner's own figure
     /// Without a plan: how near to the goal region the search came [m].
     std::optional<double> nearest_approach_m;
@@ -86,8 +86,8 @@ struct Run {
     std::uint64_t edges_simulated = 0;
     std::uint64_t states_checked = 0;
     double simulated_s = 0;
-    std::uint64_t discarded = 0;  ///< aware plans whose direct flight failed, so that they were not reported
-    std::vector<Improvement> improvements;
+    std::uint64_t discarded = 0;            ///< aware plans whose direct flight failed, so that they were not reported
+    std::vector<Improvement> improvements;  ///< their times are from the parsed problem on, too
     std::map<std::string, std::uint64_t> refusals;
     std::optional<FlightFigures> flight;  ///< of a solved run
     std::string fault;                    ///< why it is impossible or failed

@@ -132,12 +132,17 @@ std::vector<Task> missing_runs(const CampaignPlan& plan, const CampaignStore& st
 void fill(Run& run, const Solution& solution) {
     const SearchRecord& record = solution.planning;
     run.status = static_cast<RunStatus>(solution.status);
-    run.first_solution_s = record.first_solution_wall_s;
+    if (record.first_solution_wall_s) {
+        run.first_solution_s = record.setup_wall_s + *record.first_solution_wall_s;
+    }
     run.iterations = record.iterations;
     run.edges_simulated = record.edges_simulated;
     run.states_checked = record.states_checked;
     run.simulated_s = record.simulated_s;
     run.improvements = record.improvements;
+    for (Improvement& improvement : run.improvements) {
+        improvement.wall_s += record.setup_wall_s;
+    }
     run.refusals = record.rejected;
     if (const auto discarded = record.rejected.find("direct_flight"); discarded != record.rejected.end()) {
         run.discarded = discarded->second;
@@ -150,6 +155,16 @@ void fill(Run& run, const Solution& solution) {
     const Execution& flight = solution.execution.value();
     run.flight = FlightFigures{flight.outcome,  solution.execution_cost, flight.energy_j,    flight.duration_s,
                                flight.length_m, flight.min_clearance_m,  flight.goal_error_m};
+}
+
+/// Whether a problem's map is read, not built.
+bool is_in_cache(const Problem& problem, const std::filesystem::path& cache) {
+    bool is_built = cache.empty();
+    if (!is_built) {
+        static_cast<void>(make_flight_model(problem)->make_map(
+            problem.bounds, 1, [&is_built](double) { is_built = true; }, cache));
+    }
+    return !is_built;
 }
 
 static_assert(static_cast<int>(RunStatus::none) == static_cast<int>(Status::none));
@@ -219,8 +234,8 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     const std::vector<Task> tasks = missing_runs(plan, store);
     const int jobs = job_count(read.campaign);
 
-    std::vector<Problem> problems;  // one for each experiment
-    std::vector<std::shared_ptr<const AeroMap>> maps;
+    std::vector<Problem> problems;                     // one for each experiment
+    std::vector<std::shared_ptr<const AeroMap>> maps;  // empty where each run reads it from the cache, as programs do
     const bool needs_maps =
         !tasks.empty() && std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
             return planner.variant == Variant::mp_arm_ada;
@@ -233,10 +248,12 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                 options.on_map_progress(problem.name, share);
             }
         };
-        const auto map =
-            needs_maps && problem.aero.enabled && !options.stop.stop_requested()
-                ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
-                : nullptr;
+        auto map = needs_maps && problem.aero.enabled && !options.stop.stop_requested()
+                       ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
+                       : nullptr;
+        if (map && is_in_cache(problem, options.map_cache)) {
+            map.reset();
+        }
         for (const CostFunction& objective : objectives_of(read.campaign, problem)) {
             problem.planner.objective = objective;
             problems.push_back(problem);
@@ -254,6 +271,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
         how.stop = options.stop;
         how.stop_at_first_solution = plan.stop_at_first_solution;
         how.map = maps[task.experiment];
+        how.map_cache = options.map_cache;
         Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how);
         run.experiment = task.experiment;
         run.planner = task.planner;

@@ -304,6 +304,7 @@ FlightState start_state(const FlightModel& model, const Start& start) {
 }
 
 Solution solve(const Problem& problem, const SolveOptions& asked) {
+    const Stopwatch since_call;
     SolveOptions options = asked;
     options.threads = std::max(1, options.threads);
     if (std::vector<Fault> faults = problem_faults(problem); !faults.empty()) {
@@ -335,6 +336,7 @@ Solution solve(const Problem& problem, const SolveOptions& asked) {
         FlightSearch common(part, problem, *model, how, map.get(), before, into);
         problem.planner.algorithm == "rrt-star" ? search_by_flights(common) : search_by_controls(common);
     };
+    solution.planning.setup_wall_s = since_call.seconds();
     if (problem.stops.empty()) {
         search(problem, options, planning::Course::from_start(problem, *model), solution);
     } else {
