@@ -132,6 +132,7 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
 
 void SteeredFlights::verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const {
     std::vector<FlightState> states;
+    states.reserve(points.size() + 2);
     for (const FlightPoint& point : points) {
         states.push_back(point.vehicle);
     }
