@@ -48,6 +48,14 @@ double cells_over(double length_m, double cells_per_m) {
     return std::max(1.0, std::ceil(length_m * cells_per_m - 1e-9));
 }
 
+double columns_over(const MapExtent& extent, double cells_per_m) {
+    return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m);
+}
+
+double rows_over(const MapExtent& extent, double cells_per_m) {
+    return cells_over(extent.z_high_m - extent.z_low_m, cells_per_m);
+}
+
 double cell_side_m(const std::vector<MapLayer>& layers) {
     double side_m = std::numeric_limits<double>::infinity();
     for (const MapLayer& layer : layers) {
@@ -61,8 +69,7 @@ double cell_side_m(const std::vector<MapLayer>& layers) {
 
 double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent) {
     const double cells_per_m = 1 / cell_side_m(layers);
-    return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m) *
-           cells_over(extent.z_high_m - extent.z_low_m, cells_per_m) * static_cast<double>(layers.size());
+    return columns_over(extent, cells_per_m) * rows_over(extent, cells_per_m) * static_cast<double>(layers.size());
 }
 
 AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads,
@@ -77,12 +84,14 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     require_valid(layers_.front().effect->settings().grid_m, extent_, layers_);
     cell_m_ = cell_side_m(layers_);
     cells_per_m_ = 1 / cell_m_;
-    if (!(map_cells(layers_, extent_) <= most_map_cells)) {
+    const double columns = columns_over(extent_, cells_per_m_);
+    const double rows = rows_over(extent_, cells_per_m_);
+    if (!(columns * rows * static_cast<double>(layers_.size()) <= most_map_cells)) {
         throw InputError(std::vector<Fault>{
             {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
     }
-    columns_ = static_cast<std::uint32_t>(cells_over(extent_.x_high_m - extent_.x_low_m, cells_per_m_));
-    rows_ = static_cast<std::uint32_t>(cells_over(extent_.z_high_m - extent_.z_low_m, cells_per_m_));
+    columns_ = static_cast<std::uint32_t>(columns);
+    rows_ = static_cast<std::uint32_t>(rows);
 }
 
 void AeroMap::build(int threads, const std::function<void(double)>& on_progress) {

@@ -121,11 +121,13 @@ bool AeroMap::is_sound(const Raster& raster) const {
     };
     const auto is_verdict = [](CellFlyability flyability) { return flyability <= CellFlyability::mixed; };
     const AeroSettings& settings = layers_.front().effect->settings();
-    const double most = settings.map ? largest_grid_factor : std::max(2.0, 2 * settings.max_factor);
-    const auto is_factor = [most](float value) { return value >= 0 && value <= most; };  // NaN fails
+    const auto most = static_cast<float>(settings.map ? largest_grid_factor : std::max(2.0, 2 * settings.max_factor));
+    // Counted and not searched for, so that several are looked at at once. NaN fails.
+    const auto factors = std::count_if(raster.nodes.begin(), raster.nodes.end(),
+                                       [most](float value) { return value >= 0 && value <= most; });
     return std::all_of(raster.cells.begin(), raster.cells.end(), is_cell) &&
            std::all_of(raster.flyability.begin(), raster.flyability.end(), is_verdict) &&
-           std::all_of(raster.nodes.begin(), raster.nodes.end(), is_factor);
+           static_cast<std::size_t>(factors) == raster.nodes.size();
 }
 
 /// Evaluates K anew at the lower corners of some cells where surfaces are felt and nothing was interpolated. Whoever

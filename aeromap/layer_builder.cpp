@@ -200,9 +200,11 @@ double steepest(const EffectCurve& curve, double from_radii) {
             largest = std::max(largest, steepest(curve.at_wall(d_over_r), from_radii));
         }
     }
-    for (int j = 0; j < 4000; ++j) {
-        const double zeta = from_radii + j * step;
-        largest = std::max(largest, std::abs(curve(zeta + step) - curve(zeta)) / step);
+    double here = curve(from_radii);
+    for (int j = 1; j <= 4000; ++j) {
+        const double next = curve(from_radii + j * step);
+        largest = std::max(largest, std::abs(next - here) / step);
+        here = next;
     }
     return largest;
 }
