@@ -17,19 +17,9 @@ Problem with(Variant variant, Problem problem = test::ceiling_problem()) {
     return problem;
 }
 
-/// The ceiling problem with the vehicle's place as its goal, the arm at any angle.
-Problem with_place(double x_m, double z_m) {
-    Problem problem = test::ceiling_problem();
-    problem.goal.end_effector.reset();
-    problem.goal.configuration = ConfigurationGoal{};
-    problem.goal.configuration->x_m = x_m;
-    problem.goal.configuration->z_m = z_m;
-    return problem;
-}
-
 /// Where the vehicle arrives and cannot hold.
 Problem right_under_the_ceiling() {
-    Problem problem = with_place(0, 5 - 0.06 - 0.16);
+    Problem problem = test::with_place(0, 5 - 0.06 - 0.16);
     problem.goal.configuration->tolerance_m = 0.02;
     problem.planner.safety_margin_m = 0.01;
     return problem;
@@ -390,7 +380,7 @@ TEST_CASE("where every plan was discarded, the direct flight is what stopped the
 
 TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {
     // Under the ceiling a hover needs less than elsewhere; the planner believes here that it does near the ground.
-    Problem problem = with_place(3, 3.2);
+    Problem problem = test::with_place(3, 3.2);
     problem.goal.configuration->tolerance_z_m = 1.3;
     problem.goal.hold_s = 20;
     problem.planner.max_iterations = 800;
@@ -411,7 +401,7 @@ TEST_CASE("a plan that is cheaper in the planner's model only, and not when flow
 }
 
 TEST_CASE("where a surface saves energy the aware planner flies and holds along it, and that pays") {
-    Problem problem = with_place(3, 3.3);  // the deck's lower side at 5 m
+    Problem problem = test::with_place(3, 3.3);  // the deck's lower side at 5 m
     problem.goal.configuration->tolerance_z_m = 1.5;
     problem.goal.hold_s = 60;
     problem.planner.max_iterations = 4000;

@@ -28,19 +28,10 @@ Execution flown(const Problem& problem, const std::vector<ReferenceKnot>& knots,
     return execute(*model, start_state(*model, problem.start), knots, problem.goal, aero);
 }
 
-Problem goal_at(double x_m, double z_m) {
-    Problem problem = test::ceiling_problem();
-    problem.goal.end_effector.reset();
-    problem.goal.configuration = ConfigurationGoal{};
-    problem.goal.configuration->x_m = x_m;
-    problem.goal.configuration->z_m = z_m;
-    return problem;
-}
-
 }  // namespace
 
 TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, hold included") {
-    const Problem problem = goal_at(2, 2.5);
+    const Problem problem = test::with_place(2, 2.5);
     const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
     CHECK(e.outcome == Outcome::ok);
     CHECK(e.goal_error_m < 0.02);
@@ -52,7 +43,7 @@ TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, ho
 }
 
 TEST_CASE("the energy of a flight is the integral of its power") {
-    const Problem problem = goal_at(2, 2.5);
+    const Problem problem = test::with_place(2, 2.5);
     const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
     double integral_j = 0;
     for (std::size_t i = 1; i < e.rows.size(); ++i) {
@@ -63,7 +54,7 @@ TEST_CASE("the energy of a flight is the integral of its power") {
 }
 
 TEST_CASE("a reference through a wall ends in a collision and the log with the offending row") {
-    Problem problem = goal_at(2, 2);
+    Problem problem = test::with_place(2, 2);
     problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
     const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300), false);
     CHECK(e.outcome == Outcome::collision);
@@ -76,7 +67,7 @@ TEST_CASE("a reference through a wall ends in a collision and the log with the o
 }
 
 TEST_CASE("a rotor disc that comes too near a wall has left the flyable area before it touches") {
-    Problem problem = goal_at(2, 2);
+    Problem problem = test::with_place(2, 2);
     problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
     const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300));
     CHECK(e.outcome == Outcome::left_flyable_area);
@@ -85,21 +76,21 @@ TEST_CASE("a rotor disc that comes too near a wall has left the flyable area bef
 }
 
 TEST_CASE("a plan that ends elsewhere misses the goal") {
-    const Problem problem = goal_at(2, 2.5);
+    const Problem problem = test::with_place(2, 2.5);
     const Execution e = flown(problem, from_start(problem, rest(1.5, 2.5, 1), 1300));
     CHECK(e.outcome == Outcome::goal_missed);
     CHECK(e.goal_error_m == Approx(0.5).margin(0.02));
 }
 
 TEST_CASE("a reference that nothing can follow is lost, not solved") {
-    const Problem problem = goal_at(2, 2.5);
+    const Problem problem = test::with_place(2, 2.5);
     const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 60));
     CHECK(e.outcome != Outcome::ok);
     CHECK(e.max_saturation > 1);
 }
 
 TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without surface effects") {
-    Problem problem = goal_at(-4, 4.7);
+    Problem problem = test::with_place(-4, 4.7);
     problem.start.z_m = 4.7;
     problem.goal.hold_s = 20;
     const std::vector<ReferenceKnot> hover{{0, rest(-4, 4.7, problem.start.arm_rad)}};
@@ -113,7 +104,7 @@ TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without
 }
 
 TEST_CASE("surfaces save energy where the vehicle can hold near them") {
-    Problem problem = goal_at(-4, 0.7);
+    Problem problem = test::with_place(-4, 0.7);
     problem.start.z_m = 0.7;
     problem.start.arm_rad = 0;
     const std::vector<ReferenceKnot> hover{{0, rest(-4, 0.7, 0)}};
@@ -124,7 +115,7 @@ TEST_CASE("surfaces save energy where the vehicle can hold near them") {
 }
 
 TEST_CASE("without obstacles the clearance is infinite and nothing collides") {
-    Problem problem = goal_at(2, 2.5);
+    Problem problem = test::with_place(2, 2.5);
     problem.obstacles.clear();
     const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
     CHECK(e.outcome == Outcome::ok);
@@ -132,7 +123,7 @@ TEST_CASE("without obstacles the clearance is infinite and nothing collides") {
 }
 
 TEST_CASE("the flight through the map stays beside the flight with direct aerodynamics") {
-    const Problem problem = goal_at(2, 4.0);
+    const Problem problem = test::with_place(2, 4.0);
     const auto model = make_flight_model(problem);
     const auto map = model->make_map(problem.bounds);
     FlightRules rules;
@@ -150,7 +141,7 @@ TEST_CASE("the flight through the map stays beside the flight with direct aerody
 }
 
 TEST_CASE("goals on the way count as met only when the reference stands at them for their hold, in their order") {
-    const Problem problem = goal_at(-2, 2);  // from (-4, 2)
+    const Problem problem = test::with_place(-2, 2);  // from (-4, 2)
     const auto model = make_flight_model(problem);
     Goal stop = problem.goal;
     stop.configuration->x_m = -3;

@@ -36,7 +36,17 @@ inline Problem ceiling_problem() {
     return problem;
 }
 
-/// The same with a wall across the whole space between start and goal.
+/// The same with the vehicle's place as its goal, the arm at any angle.
+inline Problem with_place(double x_m, double z_m) {
+    Problem problem = ceiling_problem();
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{};
+    problem.goal.configuration->x_m = x_m;
+    problem.goal.configuration->z_m = z_m;
+    return problem;
+}
+
+/// The ceiling problem with a wall across the whole space between start and goal.
 inline Problem walled_problem() {
     Problem problem = ceiling_problem();
     problem.name = "walled";
