@@ -10,7 +10,7 @@
 
 #include "downwash/aeromap/factor_patches.hpp"
 #include "downwash/aeromap/layer_builder.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 
 namespace downwash {
@@ -23,23 +23,23 @@ bool is_range(double low, double high) {
 }
 
 void require_valid(double grid_m, const MapExtent& extent, const std::vector<MapLayer>& layers) {
-    std::vector<Fault> faults;
+    std::vector<KeyError> errors;
     if (!(std::isfinite(grid_m) && grid_m > 0)) {
-        faults.push_back({"aero.grid_m", "must be a finite length above 0 in metres"});
+        errors.push_back({"aero.grid_m", "must be a finite length above 0 in metres"});
     }
     if (!is_range(extent.x_low_m, extent.x_high_m)) {
-        faults.push_back({"environment.bounds.x_m", "must be two finite numbers, the lower one first"});
+        errors.push_back({"environment.bounds.x_m", "must be two finite numbers, the lower one first"});
     }
     if (!is_range(extent.z_low_m, extent.z_high_m)) {
-        faults.push_back({"environment.bounds.z_m", "must be two finite numbers, the lower one first"});
+        errors.push_back({"environment.bounds.z_m", "must be two finite numbers, the lower one first"});
     }
     for (const MapLayer& layer : layers) {
         if (!std::isfinite(layer.lateral_m)) {
-            faults.push_back({"robot.rotors.positions_m", "must be finite numbers in metres"});
+            errors.push_back({"robot.rotors.positions_m", "must be finite numbers in metres"});
         }
     }
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
 }
 
@@ -87,7 +87,7 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     const double columns = columns_over(extent_, cells_per_m_);
     const double rows = rows_over(extent_, cells_per_m_);
     if (!(columns * rows * static_cast<double>(layers_.size()) <= most_map_cells)) {
-        throw InputError(std::vector<Fault>{
+        throw InputError(std::vector<KeyError>{
             {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
     }
     columns_ = static_cast<std::uint32_t>(columns);
@@ -134,7 +134,7 @@ void AeroMap::Raster::append(const CellRows& rows) {
         const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
         if (first > std::numeric_limits<std::uint32_t>::max()) {
             throw InputError(
-                std::vector<Fault>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
+                std::vector<KeyError>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
         }
         cells.push_back({static_cast<std::uint32_t>(first), steps.x, steps.z});
         if (!is_as_before) {

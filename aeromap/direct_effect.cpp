@@ -8,7 +8,7 @@
 #include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/aeromap/disc_average.hpp"
 #include "downwash/aeromap/footprints.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/factor_grid.hpp"
@@ -21,19 +21,19 @@ bool is_at_least(double x, double least) {
     return std::isfinite(x) && x >= least;
 }
 
-void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<Fault>& faults) {
+void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<KeyError>& errors) {
     if (effect.model == EffectModel::table && !effect.table) {
-        faults.push_back({key + ".file", "must name a table of K"});
+        errors.push_back({key + ".file", "must name a table of K"});
     }
     if (effect.d_over_r && !is_at_least(*effect.d_over_r, 0)) {
-        faults.push_back({key + ".d_over_r", "must be a finite number of at least 0"});
+        errors.push_back({key + ".d_over_r", "must be a finite number of at least 0"});
     }
     const auto& parameters = info(effect.model).parameters;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         const ModelParameter& parameter = parameters[i];
         const double value = effect.parameters[i];
         if (!(value >= parameter.low && value <= parameter.high) || (parameter.is_open && value == parameter.low)) {
-            faults.push_back({key + "." + std::string(parameter.name),
+            errors.push_back({key + "." + std::string(parameter.name),
                               "must be a number " + std::string(parameter.is_open ? "above " : "of at least ") +
                                   to_text(parameter.low) + " and at most " + to_text(parameter.high)});
         }
@@ -41,20 +41,20 @@ void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<Fa
 }
 
 const AeroSettings& checked(const AeroSettings& settings, double radius_m) {
-    std::vector<Fault> faults;
-    inspect(settings.ground, "aero.ground", faults);
-    inspect(settings.ceiling, "aero.ceiling", faults);
+    std::vector<KeyError> errors;
+    inspect(settings.ground, "aero.ground", errors);
+    inspect(settings.ceiling, "aero.ceiling", errors);
     if (!is_at_least(settings.max_factor, 1)) {
-        faults.push_back({"aero.max_factor", "must be a finite number of at least 1"});
+        errors.push_back({"aero.max_factor", "must be a finite number of at least 1"});
     }
     if (!is_at_least(settings.min_distance_radii, 0)) {
-        faults.push_back({"aero.min_distance_radii", "must be a finite number of at least 0"});
+        errors.push_back({"aero.min_distance_radii", "must be a finite number of at least 0"});
     }
     if (!(std::isfinite(radius_m) && radius_m > 0)) {
-        faults.push_back({"robot.rotors.radius_m", "must be a finite length above 0 in metres"});
+        errors.push_back({"robot.rotors.radius_m", "must be a finite length above 0 in metres"});
     }
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
     return settings;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
@@ -15,15 +15,15 @@ namespace {
 
 GridAxis axis_over(double low_m, double high_m, double step_m, const char* name) {
     if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m && step_m > 0)) {
-        throw InputError(std::vector<Fault>{{"", std::string("a grid wants its axis ") + name +
-                                                     " from a lower to a higher number of metres and a step "
-                                                     "above 0: found " +
-                                                     to_text(low_m, 6) + " to " + to_text(high_m, 6) + ", step " +
-                                                     to_text(step_m, 6)}});
+        throw InputError(std::vector<KeyError>{{"", std::string("a grid wants its axis ") + name +
+                                                        " from a lower to a higher number of metres and a step "
+                                                        "above 0: found " +
+                                                        to_text(low_m, 6) + " to " + to_text(high_m, 6) + ", step " +
+                                                        to_text(step_m, 6)}});
     }
     const double steps = std::max(1.0, std::ceil((high_m - low_m) / step_m - 1e-9));
     if (!(steps < static_cast<double>(most_grid_nodes))) {
-        throw InputError(std::vector<Fault>{{"", "a grid of this step has too many nodes; choose it coarser"}});
+        throw InputError(std::vector<KeyError>{{"", "a grid of this step has too many nodes; choose it coarser"}});
     }
     return {low_m, high_m, static_cast<std::size_t>(steps) + 1};
 }
@@ -32,9 +32,9 @@ void require_storable(const FactorGridParts& parts, std::size_t layers) {
     const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                          static_cast<double>(parts.z.count) * static_cast<double>(layers);
     if (nodes > static_cast<double>(most_grid_nodes)) {
-        throw InputError(std::vector<Fault>{{"", "a grid of " + to_text(nodes, 3) + " nodes is more than the " +
-                                                     std::to_string(most_grid_nodes) +
-                                                     " that are possible: choose a coarser step"}});
+        throw InputError(std::vector<KeyError>{{"", "a grid of " + to_text(nodes, 3) + " nodes is more than the " +
+                                                        std::to_string(most_grid_nodes) +
+                                                        " that are possible: choose a coarser step"}});
     }
 }
 
@@ -99,7 +99,7 @@ FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampl
     FactorGridParts parts = parts_over(sampling, provenance);
     for (const MapLayer& layer : layers) {
         if (!parts.lateral_offsets_m.empty() && parts.lateral_offsets_m.back() == layer.lateral_m) {
-            throw InputError(std::vector<Fault>{
+            throw InputError(std::vector<KeyError>{
                 {"", "two rotors " + to_text(layer.lateral_m, 6) +
                          " m beside the plane feel different effects, as their neighbours differ: choose one rotor"}});
         }

@@ -7,7 +7,7 @@
 #include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/layer_builder.hpp"
 #include "downwash/aeromap/triquadratic.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -83,7 +83,7 @@ void VolumeMap::Builder::fill(std::size_t node, const Box& box, bool is_flyable)
         }
     }
     if (++boxes_ > most_volume_boxes) {
-        throw InputError(std::vector<Fault>{{"", "the volume needs more than 2^23 boxes; choose it smaller"}});
+        throw InputError(std::vector<KeyError>{{"", "the volume needs more than 2^23 boxes; choose it smaller"}});
     }
     const std::size_t lower = nodes_.size();
     nodes_[node] = {static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(lower)};

@@ -8,7 +8,7 @@
 
 #include "downwash/aeromap/triquadratic.hpp"
 #include "downwash/aeromap/volume_builder.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 
 namespace downwash {
@@ -20,7 +20,7 @@ constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 void require_valid(const MapExtent& extent, double lateral_low_m, double lateral_high_m) {
     const auto require_range = [](double low_m, double high_m, const char* axis) {
         if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m)) {
-            throw InputError(std::vector<Fault>{
+            throw InputError(std::vector<KeyError>{
                 {"", std::string("the volume's ") + axis + " must be two finite numbers, the lower one first"}});
         }
     };
@@ -47,7 +47,7 @@ VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMo
         cells_per_m_[axis] = cells[axis] / length_m;
     }
     if (!(cells[0] * cells[1] * cells[2] <= static_cast<double>(most_volume_boxes))) {
-        throw InputError(std::vector<Fault>{{"", "the volume has more than 2^23 cells; choose it smaller"}});
+        throw InputError(std::vector<KeyError>{{"", "the volume has more than 2^23 cells; choose it smaller"}});
     }
     std::transform(cells.begin(), cells.end(), cells_.begin(),
                    [](double count) { return static_cast<std::uint32_t>(count); });

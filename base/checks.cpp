@@ -13,15 +13,15 @@ bool is_within(std::string_view inner, std::string_view outer) {
 
 }  // namespace
 
-void FaultyKeys::add(const std::vector<Fault>& faults) {
-    for (const Fault& fault : faults) {
-        keys_.push_back(fault.key);
+void WrongKeys::add(const std::vector<KeyError>& errors) {
+    for (const KeyError& error : errors) {
+        keys_.push_back(error.key);
     }
 }
 
-bool FaultyKeys::touch(std::string_view key) const {
+bool WrongKeys::touch(std::string_view key) const {
     return std::any_of(keys_.begin(), keys_.end(),
-                       [&](const std::string& faulty) { return is_within(key, faulty) || is_within(faulty, key); });
+                       [&](const std::string& wrong) { return is_within(key, wrong) || is_within(wrong, key); });
 }
 
 }  // namespace downwash

@@ -85,7 +85,7 @@ std::string elements_text(const std::vector<std::string_view>& elements) {
     return text + "]";
 }
 
-std::optional<std::string> number_fault(const ParameterInfo& info, double value) {
+std::optional<std::string> number_error(const ParameterInfo& info, double value) {
     const double written =
         is_in_degrees(info.path)
             ? static_cast<double>(static_cast<long double>(value) * 180 / std::numbers::pi_v<long double>)
@@ -99,7 +99,7 @@ std::optional<std::string> number_fault(const ParameterInfo& info, double value)
     return std::nullopt;
 }
 
-std::optional<std::string> text_fault(const ParameterInfo& info, const std::string& text) {
+std::optional<std::string> text_error(const ParameterInfo& info, const std::string& text) {
     if (info.kind == ParameterKind::identifier && !is_identifier(text)) {
         return "is '" + excerpt(text) + "': expected " + expectation(info);
     }
@@ -112,7 +112,7 @@ std::optional<std::string> text_fault(const ParameterInfo& info, const std::stri
 
 /// A list of which every element stands for itself, so that none is superfluous.
 template <class Element>
-std::optional<std::string> set_fault(const ParameterInfo& info, const std::vector<Element>& elements) {
+std::optional<std::string> set_error(const ParameterInfo& info, const std::vector<Element>& elements) {
     if (elements.empty()) {
         return "is empty: expected " + expectation(info);
     }
@@ -129,21 +129,21 @@ std::optional<std::string> set_fault(const ParameterInfo& info, const std::vecto
     return std::nullopt;
 }
 
-std::optional<std::string> texts_fault(const ParameterInfo& info, const std::vector<std::string>& texts) {
+std::optional<std::string> texts_error(const ParameterInfo& info, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
         if (info.kind == ParameterKind::choices &&
             std::find(info.names.begin(), info.names.end(), text) == info.names.end()) {
             return "has '" + excerpt(text) + "': expected " + expectation(info) + did_you_mean(text, info.names);
         }
     }
-    return set_fault(info, texts);
+    return set_error(info, texts);
 }
 
 template <class Numbers>
-std::optional<std::string> first_fault(const ParameterInfo& info, const Numbers& numbers) {
+std::optional<std::string> first_error(const ParameterInfo& info, const Numbers& numbers) {
     for (const double number : numbers) {
-        if (auto fault = number_fault(info, number)) {
-            return fault;
+        if (auto error = number_error(info, number)) {
+            return error;
         }
     }
     return std::nullopt;
@@ -233,31 +233,31 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
     return nearest.empty() ? "" : "; did you mean '" + std::string(nearest) + "'?";
 }
 
-std::optional<std::string> value_fault(const ParameterInfo& info, const Value& value) {
+std::optional<std::string> value_error(const ParameterInfo& info, const Value& value) {
     if (const auto* number = std::get_if<double>(&value)) {
-        return number_fault(info, *number);
+        return number_error(info, *number);
     }
     if (const auto* number = std::get_if<std::uint64_t>(&value)) {
-        return number_fault(info, static_cast<double>(*number));
+        return number_error(info, static_cast<double>(*number));
     }
     if (const auto* text = std::get_if<std::string>(&value)) {
-        return text_fault(info, *text);
+        return text_error(info, *text);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-        const auto fault = info.kind == ParameterKind::samples ? set_fault(info, *numbers) : std::nullopt;
-        return fault ? fault : first_fault(info, *numbers);
+        const auto error = info.kind == ParameterKind::samples ? set_error(info, *numbers) : std::nullopt;
+        return error ? error : first_error(info, *numbers);
     }
     if (const auto* integers = std::get_if<std::vector<std::uint64_t>>(&value)) {
-        const auto fault = set_fault(info, *integers);
-        return fault ? fault : first_fault(info, std::vector<double>(integers->begin(), integers->end()));
+        const auto error = set_error(info, *integers);
+        return error ? error : first_error(info, std::vector<double>(integers->begin(), integers->end()));
     }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
-        return texts_fault(info, *texts);
+        return texts_error(info, *texts);
     }
     if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
         for (const Vector3& point : *points) {
-            if (auto fault = first_fault(info, point)) {
-                return fault;
+            if (auto error = first_error(info, point)) {
+                return error;
             }
         }
     }

@@ -84,7 +84,7 @@ struct ParameterInfo {
 [[nodiscard]] DOWNWASH_EXPORT std::string expectation(const ParameterInfo& info);
 
 /// What is wrong with a value of the right type: not finite, out of range, not one of the names. Empty when it is fine.
-[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> value_fault(const ParameterInfo& info, const Value& value);
+[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> value_error(const ParameterInfo& info, const Value& value);
 
 /// The choice that a misspelt name most likely stands for, as a remedy: "; did you mean 'energy'?". May be empty.
 [[nodiscard]] DOWNWASH_EXPORT std::string did_you_mean(std::string_view word,

@@ -69,24 +69,24 @@ void for_each_value(const ParameterTable<Model>& table, const Model& model, cons
     }
 }
 
-/// Every value that is not finite, out of range or no known name, but for keys that are faulty already; what is found
-/// is faulty from then on.
+/// Every value that is not finite, out of range or no known name, but for keys that are wrong already; what is found
+/// is wrong from then on.
 /// @param prefix of the model's keys within a larger whole, for example "robot."
 template <class Model>
-std::vector<Fault> value_faults(const ParameterTable<Model>& table, const Model& model, std::string_view prefix,
-                                FaultyKeys& faulty) {
-    std::vector<Fault> faults;
+std::vector<KeyError> value_errors(const ParameterTable<Model>& table, const Model& model, std::string_view prefix,
+                                   WrongKeys& wrong) {
+    std::vector<KeyError> errors;
     for_each_value(table, model, [&](const Parameter<Model>& parameter, const std::string& key, std::size_t index) {
         const std::string full_key = std::string(prefix) + key;
-        if (faulty.touch(full_key)) {
+        if (wrong.touch(full_key)) {
             return;
         }
-        if (const auto fault = value_fault(parameter, parameter.get(model, index))) {
-            faults.push_back({full_key, *fault});
+        if (const auto error = value_error(parameter, parameter.get(model, index))) {
+            errors.push_back({full_key, *error});
         }
     });
-    faulty.add(faults);
-    return faults;
+    wrong.add(errors);
+    return errors;
 }
 
 }  // namespace downwash

@@ -90,7 +90,7 @@ struct Run {
     std::vector<Improvement> improvements;  ///< their times are from the parsed problem on, too
     std::map<std::string, std::uint64_t> refusals;
     std::optional<FlightFigures> flight;  ///< of a solved run
-    std::string fault;                    ///< why it is impossible or failed
+    std::string error;                    ///< why it is impossible or failed
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;

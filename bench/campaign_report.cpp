@@ -30,7 +30,7 @@ std::string cause_of(const Run& run) {
 /// The cause and, where there is one, what the program said.
 std::string full_cause_of(const Run& run) {
     const std::string cause = cause_of(run);
-    return run.fault.empty() ? cause : cause + ": " + run.fault;
+    return run.error.empty() ? cause : cause + ": " + run.error;
 }
 
 std::vector<std::pair<std::string, std::size_t>> failures_by_cause(const Row& row) {

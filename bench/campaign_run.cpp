@@ -98,11 +98,11 @@ void apply(const PlannerSetup& planner, Problem& problem) {
 }
 
 /// Why a variant cannot be planned with an algorithm; empty when it can.
-std::string fault_of_combination(Problem problem, const PlannerSetup& planner) {
+std::string error_of_combination(Problem problem, const PlannerSetup& planner) {
     apply(planner, problem);
-    for (const Fault& fault : problem_faults(problem)) {
-        if (fault.key == "planner.algorithm" || fault.key == "planner.variant") {
-            return planner.name() + ": " + fault.key + " " + fault.message;
+    for (const KeyError& error : problem_errors(problem)) {
+        if (error.key == "planner.algorithm" || error.key == "planner.variant") {
+            return planner.name() + ": " + error.key + " " + error.message;
         }
     }
     return "";
@@ -184,9 +184,9 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     }
     for (const Variant variant : c.variants) {
         for (const std::string& algorithm : c.algorithms) {
-            if (std::string fault = fault_of_combination(read.problems.at(0), {variant, algorithm, {}});
-                !fault.empty()) {
-                plan.left_out.push_back(std::move(fault));
+            if (std::string error = error_of_combination(read.problems.at(0), {variant, algorithm, {}});
+                !error.empty()) {
+                plan.left_out.push_back(std::move(error));
                 continue;
             }
             if (!c.margins_m) {
@@ -219,10 +219,10 @@ Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, co
         fill(run, solve(problem, how));
     } catch (const InputError& error) {
         run.status = RunStatus::impossible;
-        run.fault = error.what();
+        run.error = error.what();
     } catch (const std::exception& error) {
         run.status = RunStatus::error;
-        run.fault = error.what();
+        run.error = error.what();
     }
     run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return run;

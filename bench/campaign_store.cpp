@@ -62,7 +62,7 @@ Run run_of(const Statement& row) {
     run.states_checked = row.integer(10);
     run.simulated_s = row.number(11);
     run.discarded = row.integer(12);
-    run.fault = row.is_null(13) ? "" : row.text(13);
+    run.error = row.is_null(13) ? "" : row.text(13);
     if (!row.is_null(14)) {
         run.flight = FlightFigures{named(row.text(14), {Outcome::ok, Outcome::collision, Outcome::unstable,
                                                         Outcome::left_flyable_area, Outcome::goal_missed}),
@@ -172,8 +172,8 @@ void CampaignStore::add(const Run& run) {
             .bind(flight.goal_error_m)
             .run();
     }
-    if (!run.fault.empty()) {
-        database_.prepare("INSERT INTO faults VALUES (?, ?)").bind(key).bind(run.fault).run();
+    if (!run.error.empty()) {
+        database_.prepare("INSERT INTO faults VALUES (?, ?)").bind(key).bind(run.error).run();
     }
     database_.prepare("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?")
         .bind(run.wall_s)

@@ -175,7 +175,7 @@ void add_aeromap_build(CLI::App& aeromap, Action& action) {
         ->excludes(lateral);
     build_command->add_option("--threads", arguments->threads, "threads; the result does not depend on it")
         ->type_name("N");
-    build_command->add_flag("--quiet", arguments->is_quiet, "say nothing but faults");
+    build_command->add_flag("--quiet", arguments->is_quiet, "say nothing but errors");
     build_command->callback([arguments, &action] { action = [arguments] { return build(*arguments); }; });
 }
 

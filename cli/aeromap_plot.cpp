@@ -265,7 +265,7 @@ void add_options(CLI::App& plot, PlotRequest& request) {
     plot.add_option("--width", request.width_px, "width of the picture [pixels]")
         ->type_name("PX")
         ->capture_default_str();
-    plot.add_flag("--quiet", request.is_quiet, "print nothing but faults");
+    plot.add_flag("--quiet", request.is_quiet, "print nothing but errors");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ void add_bench_run(CLI::App& bench, Action& action) {
                       "go on with the results that are there, if they were begun with the same settings");
     command->add_flag("--no-cache", arguments->no_cache,
                       "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
-    command->add_flag("--quiet", arguments->is_quiet, "only faults on standard error, no progress");
+    command->add_flag("--quiet", arguments->is_quiet, "only errors on standard error, no progress");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -24,20 +24,20 @@ struct CheckArguments {
     bool as_json = false;
 };
 
-std::vector<LocatedFault> faults_of(const std::string& path) {
+std::vector<LocatedError> errors_of(const std::string& path) {
     try {
         static_cast<void>(read_problem(path));
     } catch (const ProblemFileError& error) {
-        return error.faults();
+        return error.errors();
     }
     return {};
 }
 
-void print_json(const std::vector<LocatedFault>& faults) {
+void print_json(const std::vector<LocatedError>& errors) {
     auto list = nlohmann::ordered_json::array();
-    for (const LocatedFault& fault : faults) {
+    for (const LocatedError& error : errors) {
         list.push_back(
-            {{"file", fault.file}, {"line", fault.line}, {"column", fault.column}, {"message", fault.message}});
+            {{"file", error.file}, {"line", error.line}, {"column", error.column}, {"message", error.message}});
     }
     const nlohmann::ordered_json document{{"faults", std::move(list)}};
     fmt::print("{}\n", json_text(document));
@@ -51,16 +51,16 @@ ExitCode run(const CheckArguments& arguments) {
     if (arguments.problems.empty()) {
         throw UsageError("which files? Expected problem files, or --schema problem, robot or campaign");
     }
-    std::vector<LocatedFault> all;
+    std::vector<LocatedError> all;
     for (const std::string& path : arguments.problems) {
-        const std::vector<LocatedFault> faults = faults_of(path);
-        for (const LocatedFault& fault : faults) {
-            print_error(fmt::format("{}\n", to_text(fault)));
+        const std::vector<LocatedError> errors = errors_of(path);
+        for (const LocatedError& error : errors) {
+            print_error(fmt::format("{}\n", to_text(error)));
         }
-        if (faults.empty() && !arguments.as_json) {
+        if (errors.empty() && !arguments.as_json) {
             fmt::print("{}: ok\n", path);
         }
-        all.insert(all.end(), faults.begin(), faults.end());
+        all.insert(all.end(), errors.begin(), errors.end());
     }
     if (arguments.as_json) {
         print_json(all);
@@ -72,13 +72,13 @@ ExitCode run(const CheckArguments& arguments) {
 
 void add_check(CLI::App& program, Action& action) {
     const auto arguments = std::make_shared<CheckArguments>();
-    CLI::App* command = program.add_subcommand("check", "Say whether problem files are sound, and every fault if not");
+    CLI::App* command = program.add_subcommand("check", "Say whether problem files are sound, and every error if not");
     command->add_option("PROBLEM", arguments->problems, "problem files");
     CLI::Option* schema = command->add_option(
         "--schema", arguments->schema,
         "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
     require_one_of(*schema, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
-    command->add_flag("--json", arguments->as_json, "print the faults as JSON on standard output");
+    command->add_flag("--json", arguments->as_json, "print the errors as JSON on standard output");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

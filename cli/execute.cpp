@@ -16,7 +16,7 @@
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "downwash/problems/solution_file.hpp"
+#include "downwash/results/solution_file.hpp"
 
 namespace downwash::cli {
 namespace {

@@ -27,7 +27,7 @@ constexpr char exit_codes[] =
     "failed;\n"
     "130 after SIGINT, 143 after SIGTERM, with the best solution so far written; a second signal ends at once.";
 
-/// Reads the command line. Help and version are printed and answered like faults of usage: by an exit code.
+/// Reads the command line. Help and version are printed and answered like errors of usage: by an exit code.
 std::optional<ExitCode> parse(CLI::App& program, int argc, char** argv) {
     try {
         program.parse(argc, argv);
@@ -38,7 +38,7 @@ std::optional<ExitCode> parse(CLI::App& program, int argc, char** argv) {
 }
 
 /// What is wrong with a command line, and where help is.
-std::string usage_fault(const CLI::App* program, const CLI::Error& error) {
+std::string usage_error(const CLI::App* program, const CLI::Error& error) {
     std::string command = program->get_name();
     for (auto given = program->get_subcommands(); !given.empty(); given = given.front()->get_subcommands()) {
         command += " " + given.front()->get_name();
@@ -80,7 +80,7 @@ ExitCode run(int argc, char** argv) {
     program.set_version_flag("--version", "downwash " + std::string(version()));
     program.require_subcommand(1);
     program.footer(exit_codes);
-    program.failure_message(usage_fault);
+    program.failure_message(usage_error);
     Action action;
     add_init(program, action);
     add_check(program, action);
@@ -101,11 +101,11 @@ ExitCode run(int argc, char** argv) {
 }
 
 /// Says what is wrong, each line of it as this program's.
-void print_faults(std::string_view faults) {
-    while (!faults.empty()) {
-        const std::size_t end = std::min(faults.find('\n'), faults.size());
-        print_error(fmt::format("downwash: {}\n", faults.substr(0, end)));
-        faults.remove_prefix(std::min(end + 1, faults.size()));
+void print_errors(std::string_view errors) {
+    while (!errors.empty()) {
+        const std::size_t end = std::min(errors.find('\n'), errors.size());
+        print_error(fmt::format("downwash: {}\n", errors.substr(0, end)));
+        errors.remove_prefix(std::min(end + 1, errors.size()));
     }
 }
 
@@ -126,11 +126,11 @@ int main(int argc, char** argv) {
             fmt::format("downwash: this is a bug in downwash, please report it: {}\n", error.what()));
         std::abort();
     } catch (const std::bad_alloc&) {
-        downwash::cli::print_faults(
+        downwash::cli::print_errors(
             "memory ran out: ask for less, by a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer "
             "obstacles or a search that ends sooner");
     } catch (const std::exception& error) {
-        downwash::cli::print_faults(error.what());
+        downwash::cli::print_errors(error.what());
     }
     return static_cast<int>(code);
 }

@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 void write_result(const fs::path& file, std::string_view content) {
     try {
         write_file(file, content);
-    } catch (const FileError& fault) {
-        throw UsageError(file.string() + " " + fault.what());
+    } catch (const FileError& error) {
+        throw UsageError(file.string() + " " + error.what());
     }
 }
 
@@ -27,8 +27,8 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
     const fs::path trial = path_ / "solution.json";
     try {
         require_writable(trial);
-    } catch (const FileError& fault) {
-        throw UsageError(trial.string() + " " + fault.what() + "; choose another folder with --out");
+    } catch (const FileError& error) {
+        throw UsageError(trial.string() + " " + error.what() + "; choose another folder with --out");
     }
 }
 

@@ -4,10 +4,10 @@
 
 #include <array>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
@@ -38,14 +38,14 @@ std::string description(const OptionOfKey& option) {
     return fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key);
 }
 
-/// A fault in the words of the command line, where its key was given there.
-std::string in_options(const Fault& fault, const std::map<std::string, std::string>& given) {
+/// A error in the words of the command line, where its key was given there.
+std::string in_options(const KeyError& error, const std::map<std::string, std::string>& given) {
     for (const OptionOfKey& option : options) {
-        if (fault.key == option.key && given.contains(std::string(option.option))) {
-            return fmt::format("{} {}", option.option, fault.message);
+        if (error.key == option.key && given.contains(std::string(option.option))) {
+            return fmt::format("{} {}", option.option, error.message);
         }
     }
-    return fmt::format("{} {}", fault.key, fault.message);
+    return fmt::format("{} {}", error.key, error.message);
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ void PlannerOptions::add_to(CLI::App& command) {
 
 void PlannerOptions::apply(Problem& problem) const {
     std::string refused;
-    const auto refuse = [&](const std::vector<Fault>& faults) {
-        for (const Fault& fault : faults) {
-            refused += (refused.empty() ? "" : "\ndownwash: ") + in_options(fault, given_);
+    const auto refuse = [&](const std::vector<KeyError>& errors) {
+        for (const KeyError& error : errors) {
+            refused += (refused.empty() ? "" : "\ndownwash: ") + in_options(error, given_);
         }
     };
     if (given_.contains("--max-iterations") && !given_.contains("--time-limit")) {
@@ -78,7 +78,7 @@ void PlannerOptions::apply(Problem& problem) const {
         try {
             set_parameter(problem, option.key, text->second);
         } catch (const InputError& error) {
-            refuse(error.faults());
+            refuse(error.errors());
         }
     }
     if (!refused.empty()) {

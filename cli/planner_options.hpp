@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::cli {
 

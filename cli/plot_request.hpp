@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/report/curve_figure.hpp"
 #include "downwash/report/field_figure.hpp"
 

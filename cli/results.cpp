@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "downwash/problems/problem_writer.hpp"
-#include "downwash/problems/solution_file.hpp"
-#include "downwash/problems/trajectory_csv.hpp"
-#include "downwash/problems/tree_csv.hpp"
+#include "downwash/results/solution_file.hpp"
+#include "downwash/results/trajectory_csv.hpp"
+#include "downwash/results/tree_csv.hpp"
 
 namespace downwash::cli {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "downwash/cli/exit_code.hpp"
 #include "downwash/cli/output_folder.hpp"
-#include "downwash/planner/problem.hpp"
 #include "downwash/planner/solution.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::cli {

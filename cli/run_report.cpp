@@ -48,10 +48,10 @@ void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, 
     constexpr char name[] = "report.html";
     try {
         folder.write(name, page_of(shown_run(folder.path(), std::move(map), cache, is_quiet)));
-    } catch (const std::runtime_error& fault) {
+    } catch (const std::runtime_error& error) {
         std::error_code ignored;
         std::filesystem::remove(folder.path() / name, ignored);
-        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", name, fault.what()));
+        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", name, error.what()));
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/cli/output_folder.hpp"
-#include "downwash/problems/run_record.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::cli {

@@ -88,7 +88,7 @@ void add_solve(CLI::App& program, Action& action) {
     command->add_flag("--stop-at-first", arguments->stop_at_first, "end with the first plan that is accepted");
     command->add_flag("--no-cache", arguments->no_cache,
                       "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
-    command->add_flag("--quiet", arguments->is_quiet, "only faults on standard error, no progress");
+    command->add_flag("--quiet", arguments->is_quiet, "only errors on standard error, no progress");
     command->add_flag("--json", arguments->as_json, "print solution.json on standard output instead of a summary");
     command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/report/field_figure.hpp"
 #include "downwash/simulation/flight_model.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::cli {

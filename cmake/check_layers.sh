@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that the house stands: a folder includes headers only from the folders below it, and the headers that are
+# Checks the layering: a folder includes headers only from the folders below it, and the headers that are
 # installed show neither Eigen, OMPL, FCL nor any other library of ours.
 # Usage: cmake/check_layers.sh [root of the tree]
 set -euo pipefail
@@ -16,10 +16,13 @@ grids:       base scene
 aeromap:     base scene effects grids
 controllers: base dynamics
 simulation:  base scene dynamics effects grids aeromap controllers
-planner:     base scene dynamics effects grids aeromap controllers simulation
-problems:    base scene dynamics effects grids aeromap controllers simulation planner
-exports:     base scene dynamics effects grids aeromap controllers simulation planner problems
-report:      base scene dynamics effects grids aeromap controllers simulation planner problems
+problems:    base scene dynamics effects grids aeromap controllers simulation
+search:      base scene dynamics effects grids aeromap controllers simulation problems
+rivals:      base scene dynamics effects grids aeromap controllers simulation problems search
+planner:     base scene dynamics effects grids aeromap controllers simulation problems search rivals
+results:     base scene dynamics effects grids aeromap controllers simulation problems search planner
+exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
+report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
 cli:         *
 bench:       *
 docs:        *
@@ -27,17 +30,20 @@ tests:       *
 examples:    *
 '
 
-# The headers that a room keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
+# These modules are parts of one library and share their private headers.
+one_library='search rivals planner'
+
+# The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
 private_headers() {
     local list
     for list in */CMakeLists.txt; do
-        awk -v room="${list%%/*}" '
+        awk -v module="${list%%/*}" '
             { sub(/#.*/, ""); gsub(/[()]/, " & ") }
             {
                 for (i = 1; i <= NF; ++i) {
                     if ($i == "PRIVATE_HEADERS") inside = 1
                     else if ($i == ")" || $i ~ /^[A-Z_]+$/) inside = 0
-                    else if (inside) print room "/" $i
+                    else if (inside) print module "/" $i
                 }
             }' "$list"
     done
@@ -51,8 +57,8 @@ if [[ ${#files[@]} -eq 0 ]]; then
     exit 2
 fi
 
-awk -v layers="$layers" -v private_list="$(private_headers)" '
-    function fault(text) { print FILENAME ":" FNR ": " text; ++faults }
+awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private_headers)" '
+    function error(text) { print FILENAME ":" FNR ": " text; ++errors }
     BEGIN {
         n = split(layers, lines, "\n")
         for (i = 1; i <= n; ++i) {
@@ -63,13 +69,15 @@ awk -v layers="$layers" -v private_list="$(private_headers)" '
         }
         n = split(private_list, words, "\n")
         for (i = 1; i <= n; ++i) kept[words[i]] = 1
+        n = split(one_library, words, " ")
+        for (i = 1; i <= n; ++i) together[words[i]] = 1
     }
     FNR == 1 {
-        room = FILENAME
-        sub(/\/.*/, "", room)
-        everything = (room, "*") in may
+        module = FILENAME
+        sub(/\/.*/, "", module)
+        everything = (module, "*") in may
         shown = FILENAME ~ /\.hpp$/ && !(FILENAME in kept) && !everything
-        if (!(room in known)) fault("the folder \"" room "\" has no place in the house; give it one in cmake/check_layers.sh")
+        if (!(module in known)) error("the folder \"" module "\" has no place in the layering; give it one in cmake/check_layers.sh")
     }
     /^[ \t]*#[ \t]*include[ \t]*[<"]/ {
         header = $0
@@ -80,19 +88,19 @@ awk -v layers="$layers" -v private_list="$(private_headers)" '
             sub(/^downwash\//, "", target)
             used = target
             sub(/\/.*/, "", used)
-            if (used != room && !everything && !((room, used) in may))
-                fault(room "/ may not use " used "/ (" header ")")
-            if (target in kept && used != room && room != "tests")
-                fault(header " is private to " used "/")
+            if (used != module && !everything && !((module, used) in may))
+                error(module "/ may not use " used "/ (" header ")")
+            if (target in kept && used != module && module != "tests" && !(used in together && module in together))
+                error(header " is private to " used "/")
             if (shown && target in kept)
-                fault("an installed header includes " header ", which is not installed")
+                error("an installed header includes " header ", which is not installed")
         } else if ($0 ~ /include[ \t]*"/ && !everything) {
-            fault("write \"downwash/room/header.hpp\" instead of \"" header "\"")
+            error("write \"downwash/module/header.hpp\" instead of \"" header "\"")
         } else if (shown && header ~ /\// && header !~ /^sys\//) {
-            fault("an installed header shows <" header ">; only the standard library may be seen from outside")
+            error("an installed header shows <" header ">; only the standard library may be seen from outside")
         }
     }
     END {
-        if (faults) { print faults " fault(s) in the layering"; exit 1 }
+        if (errors) { print errors " error(s) in the layering"; exit 1 }
         print "layering holds in " ARGC - 1 " files"
     }' "${files[@]}"

@@ -15,20 +15,20 @@ install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
   FILES_MATCHING PATTERN "*.yaml" PATTERN "*.stl" PATTERN "*.bt")
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# What stands behind the rooms (Eigen, OMPL, FCL, yaml-cpp) is hidden in shared libraries and so no business of those who
+# What stands behind the modules (Eigen, OMPL, FCL, yaml-cpp) is hidden in shared libraries and so no business of those who
 # link them. Static libraries would pass it all on: they serve this build only.
 if(NOT BUILD_SHARED_LIBS)
-  message(STATUS "Static rooms: only the program and its problems will be installed, no libraries and headers")
+  message(STATUS "Static modules: only the program and its problems will be installed, no libraries and headers")
   return()
 endif()
 
-get_property(rooms GLOBAL PROPERTY DOWNWASH_ROOMS)
+get_property(modules GLOBAL PROPERTY DOWNWASH_MODULES)
 set(DOWNWASH_PKGCONFIG_LIBS "")
-foreach(room IN LISTS rooms)
-  install(TARGETS downwash_${room} EXPORT downwash_targets
+foreach(module IN LISTS modules)
+  install(TARGETS downwash_${module} EXPORT downwash_targets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${room})
-  string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${room} ")
+    PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${module})
+  string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${module} ")
 endforeach()
 string(STRIP "${DOWNWASH_PKGCONFIG_LIBS}" DOWNWASH_PKGCONFIG_LIBS)
 

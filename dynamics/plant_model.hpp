@@ -36,7 +36,7 @@ struct PlantModel {
 };
 
 /// Prepares a plant.
-/// @pre the parameters are sound (robot_faults() finds nothing) and no more than max_rotors rotors are given
+/// @pre the parameters are sound (robot_errors() finds nothing) and no more than max_rotors rotors are given
 [[nodiscard]] DOWNWASH_EXPORT PlantModel make_plant_model(const MultirotorParameters& multirotor,
                                                           const ArmParameters& arm, const RotorParameters& rotors,
                                                           bool has_fountain = false);

@@ -15,7 +15,7 @@ constexpr std::size_t most_rows = 100'000;
 constexpr std::size_t most_columns = 32;
 
 /// What keeps a line from being the header; empty when nothing does.
-std::string header_fault(const std::vector<std::string>& columns) {
+std::string header_error(const std::vector<std::string>& columns) {
     if (columns.size() > most_columns) {
         return "more than " + std::to_string(most_columns) + " columns";
     }
@@ -31,9 +31,9 @@ std::string header_fault(const std::vector<std::string>& columns) {
     return {};
 }
 
-void add_line(CsvTable& table, const CsvLines& line, LineFaults& faults) {
+void add_line(CsvTable& table, const CsvLines& line, LineErrors& errors) {
     if (line.text().find('"') != std::string_view::npos) {
-        faults.add(line.number(), "holds a quotation mark; expected plain cells, separated by commas");
+        errors.add(line.number(), "holds a quotation mark; expected plain cells, separated by commas");
         return;
     }
     std::vector<std::string> cells;
@@ -43,14 +43,14 @@ void add_line(CsvTable& table, const CsvLines& line, LineFaults& faults) {
         }
     });
     if (table.columns.empty()) {
-        if (const std::string fault = header_fault(cells); !fault.empty()) {
-            faults.add(line.number(), fault + "; expected the names of the columns, separated by commas");
-            faults.throw_any();
+        if (const std::string error = header_error(cells); !error.empty()) {
+            errors.add(line.number(), error + "; expected the names of the columns, separated by commas");
+            errors.throw_any();
         }
         table.columns = std::move(cells);
         table.header_line = line.number();
     } else if (cells.size() != table.columns.size()) {
-        faults.add(line.number(), "holds " + std::to_string(cells.size()) + (cells.size() == 1 ? " cell" : " cells") +
+        errors.add(line.number(), "holds " + std::to_string(cells.size()) + (cells.size() == 1 ? " cell" : " cells") +
                                       "; expected " + std::to_string(table.columns.size()) +
                                       ", one for each column of line " + std::to_string(table.header_line));
     } else {
@@ -66,21 +66,21 @@ std::optional<std::size_t> CsvTable::find(std::string_view column) const {
 }
 
 std::string read_csv_text(const std::filesystem::path& file) {
-    LineFaults faults{file.string()};
+    LineErrors errors{file.string()};
     std::string text;
     try {
         text = read_file(file, most_bytes + 1);
     } catch (const FileError& error) {
-        faults.add(0, error.what());
+        errors.add(0, error.what());
     }
     if (text.size() > most_bytes) {
-        faults.add(0, "has more than " + std::to_string(most_bytes / 1'000'000) + " MB; expected a short table");
+        errors.add(0, "has more than " + std::to_string(most_bytes / 1'000'000) + " MB; expected a short table");
     }
-    faults.throw_any();
+    errors.throw_any();
     return text;
 }
 
-CsvTable parse_csv(std::string_view text, LineFaults& faults) {
+CsvTable parse_csv(std::string_view text, LineErrors& errors) {
     CsvTable table;
     CsvLines line(text);
     while (line.next()) {
@@ -88,27 +88,27 @@ CsvTable parse_csv(std::string_view text, LineFaults& faults) {
             continue;
         }
         if (table.rows.size() == most_rows) {
-            faults.add(line.number(),
+            errors.add(line.number(),
                        "is row " + std::to_string(most_rows + 1) + "; expected at most " + std::to_string(most_rows));
             break;
         }
-        add_line(table, line, faults);
+        add_line(table, line, errors);
     }
     if (table.columns.empty()) {
-        faults.add(0, "holds no table; expected a line with the names of the columns, then rows");
-        faults.throw_any();
+        errors.add(0, "holds no table; expected a line with the names of the columns, then rows");
+        errors.throw_any();
     }
     return table;
 }
 
 std::optional<double> number_in(const CsvTable& table, const CsvTable::Row& row, std::size_t column, double low,
-                                double high, LineFaults& faults) {
+                                double high, LineErrors& errors) {
     const std::string& cell = row.cells[column];
     const std::optional<double> value = parse_number<double>(cell);
     if (value && *value >= low && *value <= high) {
         return value;
     }
-    faults.add(row.line, table.columns[column] + " is '" + excerpt(cell) + "'; expected a number from " + to_text(low) +
+    errors.add(row.line, table.columns[column] + " is '" + excerpt(cell) + "'; expected a number from " + to_text(low) +
                              " to " + to_text(high));
     return std::nullopt;
 }

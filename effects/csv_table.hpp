@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "downwash/base/line_faults.hpp"
+#include "downwash/base/line_errors.hpp"
 
 namespace downwash {
 
@@ -28,11 +28,11 @@ struct CsvTable {
 /// The text of a regular file. @throws InputError when it cannot be read or has more than 16 MB
 [[nodiscard]] std::string read_csv_text(const std::filesystem::path& file);
 
-/// @throws InputError for text that is no table, through `faults`
-[[nodiscard]] CsvTable parse_csv(std::string_view text, LineFaults& faults);
+/// @throws InputError for text that is no table, through `errors`
+[[nodiscard]] CsvTable parse_csv(std::string_view text, LineErrors& errors);
 
-/// A number in [low, high]; a fault of the row's line when the cell holds none.
+/// A number in [low, high]; an error of the row's line when the cell holds none.
 [[nodiscard]] std::optional<double> number_in(const CsvTable& table, const CsvTable::Row& row, std::size_t column,
-                                              double low, double high, LineFaults& faults);
+                                              double low, double high, LineErrors& errors);
 
 }  // namespace downwash

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"

@@ -10,7 +10,7 @@
 #include <set>
 #include <span>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {

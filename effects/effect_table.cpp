@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/effects/csv_table.hpp"
@@ -27,13 +27,13 @@ bool is_in(double value, double low, double high) {
     return value >= low && value <= high;
 }
 
-void check_axis(const std::vector<double>& axis, const char* name, double most, std::vector<Fault>& faults) {
+void check_axis(const std::vector<double>& axis, const char* name, double most, std::vector<KeyError>& errors) {
     bool is_sound = axis.size() >= 2;
     for (std::size_t i = 0; i < axis.size(); ++i) {
         is_sound = is_sound && is_in(axis[i], 0, most) && (i == 0 || axis[i] - axis[i - 1] >= least_step);
     }
     if (!is_sound) {
-        faults.push_back({name, "expected two or more numbers from 0 to " + to_text(most) +
+        errors.push_back({name, "expected two or more numbers from 0 to " + to_text(most) +
                                     ", each at least 1e-6 above the one before"});
     }
 }
@@ -63,17 +63,17 @@ void fill_slopes(const std::vector<double>& axis, const double* values, double* 
 EffectTable::EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors)
     : z_over_r_(std::move(z_over_r)), d_over_r_(std::move(d_over_r)), factors_(std::move(factors)) {
     const std::size_t columns = depends_on_d() ? d_over_r_.size() : 1;
-    std::vector<Fault> faults;
-    check_axis(z_over_r_, "z_over_r", most_z_over_r, faults);
+    std::vector<KeyError> errors;
+    check_axis(z_over_r_, "z_over_r", most_z_over_r, errors);
     if (depends_on_d()) {
-        check_axis(d_over_r_, "d_over_r", most_d_over_r, faults);
+        check_axis(d_over_r_, "d_over_r", most_d_over_r, errors);
     }
     if (factors_.size() != z_over_r_.size() * columns ||
         !std::all_of(factors_.begin(), factors_.end(), [](double k) { return is_in(k, 0, most_factor); })) {
-        faults.push_back({"factor", "expected a number from 0 to 100 for every combination of distances"});
+        errors.push_back({"factor", "expected a number from 0 to 100 for every combination of distances"});
     }
-    if (!faults.empty()) {
-        throw InputError(faults);
+    if (!errors.empty()) {
+        throw InputError(errors);
     }
 
     if (depends_on_d()) {
@@ -192,9 +192,9 @@ std::string distance_text(const Entry& entry, bool has_d) {
     return "z_over_r " + to_text(entry.z_over_r) + (has_d ? ", d_over_r " + to_text(entry.d_over_r) : "");
 }
 
-/// The distinct values of an axis, sorted; faults for those that can hardly be told apart.
+/// The distinct values of an axis, sorted; errors for those that can hardly be told apart.
 std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*coordinate, const std::string& name,
-                            LineFaults& faults) {
+                            LineErrors& errors) {
     std::vector<std::pair<double, std::size_t>> values;  // with the line of the first row that has it
     values.reserve(entries.size());
     for (const Entry& entry : entries) {
@@ -205,29 +205,29 @@ std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*co
     for (const auto& [value, line] : values) {
         if (axis.empty() || value > axis.back()) {
             if (!axis.empty() && value - axis.back() < least_step) {
-                faults.add(line, name + " " + to_text(value) + " is hardly more than " + to_text(axis.back()) +
+                errors.add(line, name + " " + to_text(value) + " is hardly more than " + to_text(axis.back()) +
                                      "; expected steps of at least 1e-6, or the very same number");
             }
             axis.push_back(value);
         }
     }
     if (axis.size() < 2) {
-        faults.add(0, name + " is " + to_text(axis.front()) + " in every row; expected two or more distances" +
+        errors.add(0, name + " is " + to_text(axis.front()) + " in every row; expected two or more distances" +
                           (name == "d_over_r" ? ", or no such column" : ""));
     }
     return axis;
 }
 
-/// Faults of a grid with rows missing or there twice. Entries are sorted by their distances.
+/// Errors of a grid with rows missing or there twice. Entries are sorted by their distances.
 void check_grid(const std::vector<Entry>& entries, const std::vector<double>& z, const std::vector<double>& d,
-                bool has_d, LineFaults& faults) {
+                bool has_d, LineErrors& errors) {
     for (std::size_t i = 1; i < entries.size(); ++i) {
         if (entries[i].key() == entries[i - 1].key()) {
-            faults.add(entries[i].line, distance_text(entries[i], has_d) + " stands in line " +
+            errors.add(entries[i].line, distance_text(entries[i], has_d) + " stands in line " +
                                             std::to_string(entries[i - 1].line) + " already");
         }
     }
-    faults.throw_any();
+    errors.throw_any();
     std::size_t next = 0;
     for (const double z_over_r : z) {
         for (const double d_over_r : d) {
@@ -235,35 +235,35 @@ void check_grid(const std::vector<Entry>& entries, const std::vector<double>& z,
             if (next < entries.size() && entries[next].key() == expected.key()) {
                 ++next;
             } else {
-                faults.add(0, "has no row for " + distance_text(expected, has_d) +
+                errors.add(0, "has no row for " + distance_text(expected, has_d) +
                                   "; expected one for every combination of distances");
-                faults.throw_any();
+                errors.throw_any();
             }
         }
     }
 }
 
-std::vector<Entry> entries_of(const CsvTable& csv, LineFaults& faults) {
+std::vector<Entry> entries_of(const CsvTable& csv, LineErrors& errors) {
     const auto z = csv.find("z_over_r");
     const auto d = csv.find("d_over_r");
     const auto factor = csv.find("factor") ? csv.find("factor") : csv.find("thrust_ratio");
     if (!z || !factor || csv.columns.size() != (d ? 3U : 2U)) {
-        faults.add(csv.header_line, "expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
-        faults.throw_any();
+        errors.add(csv.header_line, "expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
+        errors.throw_any();
     }
     std::vector<Entry> entries;
     for (const CsvTable::Row& row : csv.rows) {
-        const auto z_over_r = number_in(csv, row, *z, 0, most_z_over_r, faults);
-        const auto d_over_r = d ? number_in(csv, row, *d, 0, most_d_over_r, faults) : std::optional(0.0);
-        const auto k = number_in(csv, row, *factor, 0, most_factor, faults);
+        const auto z_over_r = number_in(csv, row, *z, 0, most_z_over_r, errors);
+        const auto d_over_r = d ? number_in(csv, row, *d, 0, most_d_over_r, errors) : std::optional(0.0);
+        const auto k = number_in(csv, row, *factor, 0, most_factor, errors);
         if (z_over_r && d_over_r && k) {
             entries.push_back({*z_over_r, *d_over_r, *k, row.line});
         }
     }
     if (csv.rows.empty()) {
-        faults.add(csv.header_line, "no rows follow; expected a table of two or more distances");
+        errors.add(csv.header_line, "no rows follow; expected a table of two or more distances");
     }
-    faults.throw_any();
+    errors.throw_any();
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
         return std::tuple(a.z_over_r, a.d_over_r, a.line) < std::tuple(b.z_over_r, b.d_over_r, b.line);
     });
@@ -273,15 +273,15 @@ std::vector<Entry> entries_of(const CsvTable& csv, LineFaults& faults) {
 }  // namespace
 
 std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text, std::string_view name) {
-    LineFaults faults{std::string(name)};
-    const CsvTable csv = parse_csv(text, faults);
-    faults.throw_any();
-    const std::vector<Entry> entries = entries_of(csv, faults);
+    LineErrors errors{std::string(name)};
+    const CsvTable csv = parse_csv(text, errors);
+    errors.throw_any();
+    const std::vector<Entry> entries = entries_of(csv, errors);
     const bool has_d = csv.find("d_over_r").has_value();
-    std::vector<double> z = axis_of(entries, &Entry::z_over_r, "z_over_r", faults);
-    std::vector<double> d = has_d ? axis_of(entries, &Entry::d_over_r, "d_over_r", faults) : std::vector<double>{0};
-    faults.throw_any();
-    check_grid(entries, z, d, has_d, faults);
+    std::vector<double> z = axis_of(entries, &Entry::z_over_r, "z_over_r", errors);
+    std::vector<double> d = has_d ? axis_of(entries, &Entry::d_over_r, "d_over_r", errors) : std::vector<double>{0};
+    errors.throw_any();
+    check_grid(entries, z, d, has_d, errors);
     std::vector<double> factors;
     factors.reserve(entries.size());
     for (const Entry& entry : entries) {

@@ -75,10 +75,10 @@ class DOWNWASH_EXPORT EffectTable {
 /// Reads a table from a CSV file: lines that begin with `#` are comments, then a header `z_over_r,factor` or
 /// `z_over_r,d_over_r,factor` (`thrust_ratio` is understood for `factor`), then a row for every combination of
 /// distances, in any order. At most 100000 rows and 16 MB.
-/// @throws InputError with "file:line: what is wrong" for each fault found
+/// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in faults.
+/// The same from text; `name` stands for the file in errors.
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text,
                                                                                     std::string_view name);
 

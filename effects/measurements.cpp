@@ -9,10 +9,10 @@
 namespace downwash {
 namespace {
 
-std::size_t required(const CsvTable& csv, const std::string& column, LineFaults& faults) {
+std::size_t required(const CsvTable& csv, const std::string& column, LineErrors& errors) {
     const auto found = csv.find(column);
     if (!found) {
-        faults.add(csv.header_line, "has no column " + column + "; expected z_over_r and thrust_ratio");
+        errors.add(csv.header_line, "has no column " + column + "; expected z_over_r and thrust_ratio");
     }
     return found.value_or(0);
 }
@@ -50,26 +50,26 @@ Measurements Measurements::with(std::string_view column, std::string_view entry)
 }
 
 Measurements parse_measurements(std::string_view text, std::string_view name) {
-    LineFaults faults{std::string(name)};
-    const CsvTable csv = parse_csv(text, faults);
-    const std::size_t z = required(csv, "z_over_r", faults);
-    const std::size_t ratio = required(csv, "thrust_ratio", faults);
-    faults.throw_any();
+    LineErrors errors{std::string(name)};
+    const CsvTable csv = parse_csv(text, errors);
+    const std::size_t z = required(csv, "z_over_r", errors);
+    const std::size_t ratio = required(csv, "thrust_ratio", errors);
+    errors.throw_any();
     const auto sigma = csv.find("sigma");
     Measurements measurements{csv.columns, {}};
     for (const CsvTable::Row& row : csv.rows) {
         Measurement point{0, 0, std::nullopt, row.line, row.cells};
-        point.z_over_r = number_in(csv, row, z, 1e-6, 1000, faults).value_or(0);
-        point.thrust_ratio = number_in(csv, row, ratio, 0, 100, faults).value_or(0);
+        point.z_over_r = number_in(csv, row, z, 1e-6, 1000, errors).value_or(0);
+        point.thrust_ratio = number_in(csv, row, ratio, 0, 100, errors).value_or(0);
         if (sigma && !row.cells[*sigma].empty()) {
-            point.sigma = number_in(csv, row, *sigma, 1e-9, 100, faults);
+            point.sigma = number_in(csv, row, *sigma, 1e-9, 100, errors);
         }
         measurements.points.push_back(std::move(point));
     }
     if (csv.rows.empty()) {
-        faults.add(csv.header_line, "no rows follow; expected measurements");
+        errors.add(csv.header_line, "no rows follow; expected measurements");
     }
-    faults.throw_any();
+    errors.throw_any();
     return measurements;
 }
 

@@ -36,10 +36,10 @@ struct DOWNWASH_EXPORT Measurements {
 /// Reads measurements from a CSV file: lines that begin with `#` are comments, then a header with `z_over_r` (in
 /// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty), and any others, for
 /// example `surface` and `source`. At most 100000 rows and 16 MB.
-/// @throws InputError with "file:line: what is wrong" for each fault found
+/// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in faults.
+/// The same from text; `name` stands for the file in errors.
 [[nodiscard]] DOWNWASH_EXPORT Measurements parse_measurements(std::string_view text, std::string_view name);
 
 }  // namespace downwash

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "downwash/base/export.hpp"
-#include "downwash/problems/run_record.hpp"
+#include "downwash/results/run_record.hpp"
 
 namespace downwash {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "downwash/base/angles.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/exports/formats.hpp"
 
@@ -90,7 +90,7 @@ Json waypoint_item(int number, double hold_s, double bearing_deg, const Geodetic
 
 /// A corner of the plan, and for how long it is held.
 struct Corner {
-    Waypoint at;
+    Configuration at;
     double hold_s = 0;
 };
 
@@ -98,9 +98,9 @@ struct Corner {
 std::vector<Corner> corners_of(const RunRecord& run) {
     const Plan& plan = *run.plan;
     std::vector<Corner> corners;
-    for (std::size_t i = 0; i < plan.waypoints.size(); ++i) {
-        const Waypoint& at = plan.waypoints[i];
-        if (i > 0 && at.x_m == plan.waypoints[i - 1].x_m && at.z_m == plan.waypoints[i - 1].z_m) {
+    for (std::size_t i = 0; i < plan.reference.size(); ++i) {
+        const Configuration at = configuration_of(plan.reference[i].point);
+        if (i > 0 && at.x_m == corners.back().at.x_m && at.z_m == corners.back().at.z_m) {
             corners.back().hold_s +=
                 static_cast<double>(plan.reference[i].tick - plan.reference[i - 1].tick) * plan.tick_s;
         } else {
@@ -117,11 +117,11 @@ std::vector<Corner> corners_of(const RunRecord& run) {
 std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
     if (!settings.origin) {
         throw InputError(
-            {Fault{"", "a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE"}});
+            {KeyError{"", "a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE"}});
     }
     check(*settings.origin);
     if (!run.plan) {
-        throw InputError({Fault{"", "this run found no plan, so there is nothing to fly"}});
+        throw InputError({KeyError{"", "this run found no plan, so there is nothing to fly"}});
     }
     const OnEarth earth(*settings.origin);
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());

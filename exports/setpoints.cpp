@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/quintic.hpp"
 
@@ -59,13 +59,14 @@ Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
 
 std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, double end_s, double rate_hz) {
     if (!(rate_hz > 0 && rate_hz <= greatest_rate_hz)) {
-        throw InputError({Fault{"", "the rate is " + to_text(rate_hz) + " Hz, expected above 0 and at most 10000 Hz"}});
+        throw InputError(
+            {KeyError{"", "the rate is " + to_text(rate_hz) + " Hz, expected above 0 and at most 10000 Hz"}});
     }
     end_s = std::max(end_s, plan.duration_s());
     if (end_s * rate_hz > most_setpoints) {
-        throw InputError({Fault{"", to_text(end_s, 6) + " s at " + to_text(rate_hz) +
-                                        " Hz are more than a million set-points; "
-                                        "lower the rate"}});
+        throw InputError({KeyError{"", to_text(end_s, 6) + " s at " + to_text(rate_hz) +
+                                           " Hz are more than a million set-points; "
+                                           "lower the rate"}});
     }
     std::vector<double> times_s;
     constexpr double nearly = 1e-9;  // of a period: the end counts once

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/exports/formats.hpp"
 #include "downwash/scene/solid_surface.hpp"
@@ -61,7 +61,7 @@ std::string names_array(const std::vector<Obstacle>& obstacles) {
 std::string vtk_flight(const RunRecord& run, const ExportSettings&) {
     const NumberTable& flight = run.flight;
     if (flight.rows() == 0) {
-        throw InputError({Fault{"", "nothing was flown in this run"}});
+        throw InputError({KeyError{"", "nothing was flown in this run"}});
     }
     std::string points, lines;
     std::size_t count = 0;

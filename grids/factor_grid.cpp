@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -20,33 +20,33 @@ bool is_coordinate(double value) {
     return std::abs(value) <= largest_coordinate_m;  // NaN fails
 }
 
-void check_axis(std::string_view name, const GridAxis& axis, std::vector<Fault>& faults) {
+void check_axis(std::string_view name, const GridAxis& axis, std::vector<KeyError>& errors) {
     const std::string key(name);
     if (axis.count < 2) {
-        faults.push_back({key, "has a single coordinate: expected two or more"});
+        errors.push_back({key, "has a single coordinate: expected two or more"});
     } else if (!is_coordinate(axis.low_m) || !is_coordinate(axis.high_m)) {
-        faults.push_back({key, "runs from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) +
+        errors.push_back({key, "runs from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) +
                                    " m: expected finite coordinates, at most 1e6 m"});
     } else if (!(axis.low_m < axis.high_m)) {
-        faults.push_back({key, "runs from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) +
+        errors.push_back({key, "runs from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) +
                                    " m: expected the lower end first"});
     } else if (!(axis.low_m + axis.step_m() > axis.low_m && axis.high_m - axis.step_m() < axis.high_m)) {
-        faults.push_back({key, "has steps of " + to_text(axis.step_m()) + " m: too fine to tell its nodes apart"});
+        errors.push_back({key, "has steps of " + to_text(axis.step_m()) + " m: too fine to tell its nodes apart"});
     }
 }
 
-void check_offsets(const FactorGridParts& parts, std::vector<Fault>& faults) {
+void check_offsets(const FactorGridParts& parts, std::vector<KeyError>& errors) {
     const std::vector<double>& offsets_m = parts.lateral_offsets_m;
     if (!std::all_of(offsets_m.begin(), offsets_m.end(), is_coordinate)) {
-        faults.push_back({"lateral_offsets_m", "expected finite distances, at most 1e6 m"});
+        errors.push_back({"lateral_offsets_m", "expected finite distances, at most 1e6 m"});
         return;
     }
     const auto is_not_rising = [](double a, double b) { return !(b - a > 2 * layer_slack_m); };
     if (std::adjacent_find(offsets_m.begin(), offsets_m.end(), is_not_rising) != offsets_m.end()) {
-        faults.push_back({"lateral_offsets_m", "expected rising distances, more than 2e-6 m apart"});
+        errors.push_back({"lateral_offsets_m", "expected rising distances, more than 2e-6 m apart"});
     }
     if (parts.y.count > 1 && !offsets_m.empty()) {
-        faults.push_back({"lateral_offsets_m", "belong to planar grids only, this one is a volume"});
+        errors.push_back({"lateral_offsets_m", "belong to planar grids only, this one is a volume"});
     }
 }
 
@@ -63,13 +63,13 @@ std::size_t checked_nodes(const FactorGridParts& parts) {
     return nodes;
 }
 
-void check_field(const GridField& field, std::size_t nodes, std::vector<Fault>& faults) {
+void check_field(const GridField& field, std::size_t nodes, std::vector<KeyError>& errors) {
     if (std::find(field_names.begin(), field_names.end(), field.name) == field_names.end()) {
-        faults.push_back({"fields", "'" + excerpt(field.name) + "' is none: expected " + joined_names(field_names)});
+        errors.push_back({"fields", "'" + excerpt(field.name) + "' is none: expected " + joined_names(field_names)});
         return;
     }
     if (field.values.size() != nodes) {
-        faults.push_back({field.name, "has " + std::to_string(field.values.size()) + " values: expected " +
+        errors.push_back({field.name, "has " + std::to_string(field.values.size()) + " values: expected " +
                                           std::to_string(nodes) + ", one a node"});
         return;
     }
@@ -79,22 +79,22 @@ void check_field(const GridField& field, std::size_t nodes, std::vector<Fault>& 
     };
     const auto bad = std::find_if_not(field.values.begin(), field.values.end(), is_good);
     if (bad != field.values.end()) {
-        faults.push_back({field.name, "value " + std::to_string(bad - field.values.begin() + 1) + " of " +
+        errors.push_back({field.name, "value " + std::to_string(bad - field.values.begin() + 1) + " of " +
                                           std::to_string(nodes) + " is " + to_text(*bad) + ": expected " +
                                           (is_flag ? "0 or 1" : "a finite factor from 0 to 100")});
     }
 }
 
-void check_fields(const FactorGridParts& parts, std::size_t nodes, std::vector<Fault>& faults) {
+void check_fields(const FactorGridParts& parts, std::size_t nodes, std::vector<KeyError>& errors) {
     for (const std::string_view name : field_names) {
         const auto count = std::count_if(parts.fields.begin(), parts.fields.end(),
                                          [name](const GridField& field) { return field.name == name; });
         if (count > 1 || (count == 0 && name == "factor")) {
-            faults.push_back({std::string(name), count == 0 ? "is missing" : "is there twice"});
+            errors.push_back({std::string(name), count == 0 ? "is missing" : "is there twice"});
         }
     }
     for (const GridField& field : parts.fields) {
-        check_field(field, nodes, faults);
+        check_field(field, nodes, errors);
     }
 }
 
@@ -105,15 +105,15 @@ bool is_one_line(std::string_view text) {
            (text.empty() || (!is_blank(text.front()) && !is_blank(text.back())));
 }
 
-void check_provenance(const Provenance& provenance, std::vector<Fault>& faults) {
+void check_provenance(const Provenance& provenance, std::vector<KeyError>& errors) {
     for (const auto& [key, value] : provenance) {
         if (key.empty() || !is_one_line(key) || key.ends_with(':') || key.find(": ") != std::string::npos ||
             key.starts_with("frame_")) {
-            faults.push_back({"provenance", "key '" + excerpt(key) +
+            errors.push_back({"provenance", "key '" + excerpt(key) +
                                                 "': expected a short name without ': ', line break or blanks around "
                                                 "it that does not begin with frame_"});
         } else if (!is_one_line(value)) {
-            faults.push_back({"provenance", excerpt(key) + ": expected one line of text without blanks around it"});
+            errors.push_back({"provenance", excerpt(key) + ": expected one line of text without blanks around it"});
         }
     }
 }
@@ -140,28 +140,28 @@ std::span<const std::string_view> grid_field_names() {
 }
 
 FactorGrid::FactorGrid(FactorGridParts parts) : parts_(std::move(parts)) {
-    std::vector<Fault> faults;
+    std::vector<KeyError> errors;
     const Vector3& origin_m = parts_.frame.origin_m();
     if (!std::all_of(origin_m.begin(), origin_m.end(), is_coordinate) || !is_coordinate(parts_.frame.heading_rad())) {
-        faults.push_back({"frame", "expected a finite origin and heading"});
+        errors.push_back({"frame", "expected a finite origin and heading"});
     }
-    check_axis("x", parts_.x, faults);
-    check_axis("z", parts_.z, faults);
+    check_axis("x", parts_.x, errors);
+    check_axis("z", parts_.z, errors);
     if (parts_.y.count != 1) {
-        check_axis("y", parts_.y, faults);
+        check_axis("y", parts_.y, errors);
     } else if (!(parts_.y == GridAxis{})) {
-        faults.push_back({"y", "of a planar grid is 0: expected the frame's origin in its plane"});
+        errors.push_back({"y", "of a planar grid is 0: expected the frame's origin in its plane"});
     }
-    check_offsets(parts_, faults);
+    check_offsets(parts_, errors);
     const std::size_t nodes = checked_nodes(parts_);
     if (nodes == 0) {
-        faults.push_back({"", "the grid has more than 2^27 nodes"});
+        errors.push_back({"", "the grid has more than 2^27 nodes"});
     } else {
-        check_fields(parts_, nodes, faults);
+        check_fields(parts_, nodes, errors);
     }
-    check_provenance(parts_.provenance, faults);
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    check_provenance(parts_.provenance, errors);
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
     const auto factor = std::find_if(parts_.fields.begin(), parts_.fields.end(),
                                      [](const GridField& field) { return field.name == "factor"; });

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <system_error>
 
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
@@ -13,7 +13,7 @@ namespace downwash {
 namespace {
 
 [[noreturn]] void refuse(const std::string& message) {
-    throw InputError(std::vector<Fault>{{"", message}});
+    throw InputError(std::vector<KeyError>{{"", message}});
 }
 
 /// The ending that says how a grid is written.

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "downwash/base/csv_lines.hpp"
-#include "downwash/base/fault.hpp"
-#include "downwash/base/line_faults.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
@@ -41,8 +41,8 @@ std::string text_number(std::string_view cell) {
 /// Reads lines into columns.
 class CsvReader {
  public:
-    CsvReader(std::string_view text, LineFaults& faults, std::string_view factor_column)
-        : line_(text), faults_(faults) {
+    CsvReader(std::string_view text, LineErrors& errors, std::string_view factor_column)
+        : line_(text), errors_(errors) {
         names_ = column_names;
         names_[first_field] = factor_column;
     }
@@ -53,17 +53,17 @@ class CsvReader {
                 read_comment(line_.comment());
             } else if (roles_.empty()) {
                 read_header();
-                faults_.throw_any();
+                errors_.throw_any();
             } else {
                 read_row();
             }
         }
         if (roles_.empty()) {
-            faults_.add(0, "holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
+            errors_.add(0, "holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
         } else if (csv_.lines.empty()) {
-            faults_.add(0, "holds no row");
+            errors_.add(0, "holds no row");
         }
-        faults_.throw_any();
+        errors_.throw_any();
         return std::move(csv_);
     }
 
@@ -85,7 +85,7 @@ class CsvReader {
         }
     }
 
-    /// Exactly so many finite numbers, or a fault and none.
+    /// Exactly so many finite numbers, or an error and none.
     std::vector<double> numbers_in(std::string_view text, std::size_t count) {
         std::vector<double> numbers;
         std::string_view rest = trimmed(text);
@@ -99,7 +99,7 @@ class CsvReader {
             rest = trimmed(rest.substr(end));
         }
         if (!rest.empty() || numbers.size() != count) {
-            faults_.add(
+            errors_.add(
                 line_.number(), 1,
                 text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
             return {};
@@ -112,7 +112,7 @@ class CsvReader {
             const auto* name = std::find(names_.begin(), names_.end(), cell);
             const auto role = static_cast<std::size_t>(name - names_.begin());
             if (role < names_.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
-                faults_.add(line_.number(), column, "column " + text_number(cell) + " is there twice");
+                errors_.add(line_.number(), column, "column " + text_number(cell) + " is there twice");
             }
             roles_.push_back(role);
         });
@@ -121,16 +121,16 @@ class CsvReader {
         };
         for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{Column::z}, std::size_t{first_field}}) {
             if (!has(needed)) {
-                faults_.add(line_.number(), 1,
+                errors_.add(line_.number(), 1,
                             "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line_.text()) +
                                 "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart by commas");
             }
         }
         if (has(lateral) && has(y)) {
-            faults_.add(line_.number(), 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
+            errors_.add(line_.number(), 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
         }
         if (roles_.size() > most_columns) {
-            faults_.add(line_.number(), 1, "has more than 256 columns");
+            errors_.add(line_.number(), 1, "has more than 256 columns");
         }
     }
 
@@ -143,14 +143,14 @@ class CsvReader {
             ++index;
         });
         if (index != roles_.size()) {
-            faults_.add(line_.number(), 1,
+            errors_.add(line_.number(), 1,
                         "has " + std::to_string(index) + " cells: expected " + std::to_string(roles_.size()) +
                             " as in the line of column names");
         }
         csv_.lines.push_back(static_cast<std::uint32_t>(line_.number()));
         if (csv_.lines.size() > most_rows) {
-            faults_.add(line_.number(), 1, "more than 2^24 rows: expected a larger grid as .vti");
-            faults_.throw_any();
+            errors_.add(line_.number(), 1, "more than 2^24 rows: expected a larger grid as .vti");
+            errors_.throw_any();
         }
     }
 
@@ -160,10 +160,10 @@ class CsvReader {
         const double least = is_coordinate ? -1e6 : 0;
         const double most = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
         if (!number) {
-            faults_.add(line_.number(), column,
+            errors_.add(line_.number(), column,
                         std::string(names_[role]) + " is " + text_number(cell) + ": expected a number");
         } else if (!(*number >= least && *number <= most)) {
-            faults_.add(line_.number(), column,
+            errors_.add(line_.number(), column,
                         std::string(names_[role]) + " is " + text_number(cell) + ": expected a number from " +
                             to_text(least) + " to " + to_text(most));
         }
@@ -171,7 +171,7 @@ class CsvReader {
     }
 
     CsvLines line_;
-    LineFaults& faults_;
+    LineErrors& errors_;
     std::array<std::string_view, column_names.size()> names_;
     std::vector<std::size_t> roles_;  ///< of each column; past the names for columns that are not ours
     GridCsv csv_;
@@ -193,7 +193,7 @@ std::vector<double> distinct_values(std::vector<double> values) {
 /// Puts rows to their nodes.
 class NodeFinder {
  public:
-    NodeFinder(const GridCsv& csv, LineFaults& faults) : csv_(csv), faults_(faults) {}
+    NodeFinder(const GridCsv& csv, LineErrors& errors) : csv_(csv), errors_(errors) {}
 
     void fill(FactorGridParts& parts) {
         parts.x = axis(Column::x);
@@ -204,24 +204,24 @@ class NodeFinder {
         if (csv_.has(lateral)) {
             parts.lateral_offsets_m = distinct_values(csv_.columns[lateral]);
         }
-        faults_.throw_any();
+        errors_.throw_any();
         const std::size_t layers = std::max<std::size_t>(1, parts.lateral_offsets_m.size());
         const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                              static_cast<double>(parts.z.count) * static_cast<double>(layers);
         if (nodes > static_cast<double>(most_rows)) {
-            faults_.add(0, "has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
+            errors_.add(0, "has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
                                " combinations of its coordinates: expected one each");
-            faults_.throw_any();
+            errors_.throw_any();
         }
         std::vector<std::uint32_t> row_of(static_cast<std::size_t>(nodes), no_row);
         for (std::size_t row = 0; row < csv_.lines.size(); ++row) {
             std::uint32_t& place = row_of[node_of(parts, row)];
             if (place != no_row) {
-                faults_.add(csv_.lines[row], 1, "repeats the position of line " + std::to_string(csv_.lines[place]));
+                errors_.add(csv_.lines[row], 1, "repeats the position of line " + std::to_string(csv_.lines[place]));
             }
             place = static_cast<std::uint32_t>(row);
         }
-        faults_.throw_any();
+        errors_.throw_any();
         require_whole(parts, row_of);
         for (std::size_t column = first_field; column < column_names.size(); ++column) {
             if (csv_.has(column)) {
@@ -241,7 +241,7 @@ class NodeFinder {
     GridAxis axis(std::size_t column) {
         const std::vector<double> values = distinct_values(csv_.columns[column]);
         if (values.size() < 2) {
-            faults_.add(0, "column " + std::string(column_names[column]) + " holds " + to_text(values[0]) +
+            errors_.add(0, "column " + std::string(column_names[column]) + " holds " + to_text(values[0]) +
                                " only: expected two or more coordinates" +
                                (column == y ? ", or no such column for a planar grid" : ""));
         }
@@ -254,7 +254,7 @@ class NodeFinder {
         const double steps = std::round((value - axis.low_m) / axis.step_m());
         const auto index = std::min(static_cast<std::size_t>(std::max(0.0, steps)), axis.count - 1);
         if (!(std::abs(value - axis.at(index)) <= spacing_slack * axis.step_m())) {
-            faults_.add(csv_.lines[row], 1,
+            errors_.add(csv_.lines[row], 1,
                         std::string(column_names[column]) + " is " + to_text(value) + ": expected " +
                             to_text(axis.at(index), 9) + ", as the " + std::to_string(axis.count) +
                             " coordinates from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) + " stand " +
@@ -292,36 +292,36 @@ class NodeFinder {
         place += csv_.has(y) ? ", y_m " + to_text(parts.y.at(j)) : "";
         place += ", z_m " + to_text(parts.z.at(take(parts.z.count)));
         place += csv_.has(lateral) ? ", lateral_m " + to_text(parts.lateral_offsets_m[rest]) : "";
-        faults_.add(0, "no row stands at " + place + ", the first of " +
+        errors_.add(0, "no row stands at " + place + ", the first of " +
                            std::to_string(std::count(row_of.begin(), row_of.end(), no_row)) +
                            " holes: expected every combination of the coordinates");
-        faults_.throw_any();
+        errors_.throw_any();
     }
 
     const GridCsv& csv_;
-    LineFaults& faults_;
+    LineErrors& errors_;
 };
 
 }  // namespace
 
 FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const GridReading& reading) {
-    LineFaults faults(name);
-    GridCsv csv = CsvReader(bytes, faults, reading.array).read();
+    LineErrors errors(name);
+    GridCsv csv = CsvReader(bytes, errors, reading.array).read();
     FactorGridParts parts;
-    NodeFinder(csv, faults).fill(parts);
+    NodeFinder(csv, errors).fill(parts);
     parts.provenance = std::move(csv.provenance);
     const PlaneOfMotion otherwise = csv.has(y) ? PlaneOfMotion() : reading.plane;
     parts.frame = PlaneOfMotion(csv.frame_origin_m.value_or(otherwise.origin_m()),
                                 csv.frame_heading_rad.value_or(otherwise.heading_rad()));
     try {
         return FactorGrid(std::move(parts));
-    } catch (const InputError& error) {
-        for (const Fault& fault : error.faults()) {
-            faults.add(0, fault.key + (fault.key.empty() ? "" : " ") + fault.message);
+    } catch (const InputError& invalid) {
+        for (const KeyError& error : invalid.errors()) {
+            errors.add(0, error.key + (error.key.empty() ? "" : " ") + error.message);
         }
     }
-    faults.throw_any();
-    throw std::logic_error("a refused grid has a fault");
+    errors.throw_any();
+    throw std::logic_error("a refused grid has an error");
 }
 
 }  // namespace downwash

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
@@ -255,12 +255,12 @@ FactorGrid parse_vti(std::string_view bytes, const std::string& name, const Grid
     FactorGridParts parts = VtiReader(file, reading).read();
     try {
         return FactorGrid(std::move(parts));
-    } catch (const InputError& error) {
-        std::vector<Fault> faults = error.faults();
-        for (Fault& fault : faults) {
-            fault = {"", name + ": " + fault.key + (fault.key.empty() ? "" : " ") + fault.message};
+    } catch (const InputError& invalid) {
+        std::vector<KeyError> errors = invalid.errors();
+        for (KeyError& error : errors) {
+            error = {"", name + ": " + error.key + (error.key.empty() ? "" : " ") + error.message};
         }
-        throw InputError(std::move(faults));
+        throw InputError(std::move(errors));
     }
 }
 

@@ -56,7 +56,7 @@ class Source {
     [[nodiscard]] std::string peek(std::size_t bytes) const {
         const std::size_t letters = is_base64_ ? base64_letters(bytes) : bytes;
         if (letters > rest_.size()) {
-            throw VtkDataFault("ends early: expected " + std::to_string(letters) + " bytes, found " +
+            throw VtkDataError("ends early: expected " + std::to_string(letters) + " bytes, found " +
                                std::to_string(rest_.size()));
         }
         if (!is_base64_) {
@@ -64,7 +64,7 @@ class Source {
         }
         auto decoded = base64_bytes(rest_.substr(0, letters));
         if (!decoded || decoded->size() < bytes) {
-            throw VtkDataFault("is no base64 text of " + std::to_string(bytes) + " bytes");
+            throw VtkDataError("is no base64 text of " + std::to_string(bytes) + " bytes");
         }
         decoded->resize(bytes);
         return *std::move(decoded);
@@ -90,7 +90,7 @@ std::size_t word_at(std::string_view header, std::size_t index, const VtkEncodin
 void require_size(std::size_t size, std::size_t least, std::size_t most) {
     if (size < least || size > most) {
         const std::string expected = least == most ? std::to_string(most) : "at most " + std::to_string(most);
-        throw VtkDataFault("announces " + std::to_string(size) + " bytes: expected " + expected +
+        throw VtkDataError("announces " + std::to_string(size) + " bytes: expected " + expected +
                            "; is the byte_order or header_type wrong?");
     }
 }
@@ -107,7 +107,7 @@ void inflate_block(std::string_view block, char* to, std::size_t size) {
     const int code =
         uncompress(reinterpret_cast<Bytef*>(to), &written, reinterpret_cast<const Bytef*>(block.data()), block.size());
     if (code != Z_OK || written != size) {
-        throw VtkDataFault("holds a block that zlib cannot turn into " + std::to_string(size) + " bytes");
+        throw VtkDataError("holds a block that zlib cannot turn into " + std::to_string(size) + " bytes");
     }
 }
 
@@ -129,7 +129,7 @@ BlockSizes take_block_sizes(Source& source, const VtkEncoding& encoding, std::si
     const std::size_t count = word_at(head, 0, encoding);
     BlockSizes sizes{word_at(head, 1, encoding), word_at(head, 2, encoding), {}};
     if (count > source.size() / encoding.header_bytes || sizes.block > largest_block || sizes.last > sizes.block) {
-        throw VtkDataFault("announces " + std::to_string(count) + " blocks of " + std::to_string(sizes.block) +
+        throw VtkDataError("announces " + std::to_string(count) + " blocks of " + std::to_string(sizes.block) +
                            " bytes and a last one of " + std::to_string(sizes.last) +
                            "; is the byte_order or header_type wrong?");
     }
@@ -148,7 +148,7 @@ std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::siz
     std::size_t compressed_size = 0;
     for (std::size_t block = 0; block < sizes.compressed.size(); ++block) {
         if (sizes.compressed[block] > source.size() - compressed_size) {
-            throw VtkDataFault("ends early: block " + std::to_string(block + 1) + " of " +
+            throw VtkDataError("ends early: block " + std::to_string(block + 1) + " of " +
                                std::to_string(sizes.compressed.size()) + " should have " +
                                std::to_string(sizes.compressed[block]) + " bytes");
         }
@@ -156,7 +156,7 @@ std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::siz
         size += sizes.of(block);
     }
     if (size / greatest_ratio > compressed_size) {
-        throw VtkDataFault("announces " + std::to_string(size) + " bytes out of " + std::to_string(compressed_size) +
+        throw VtkDataError("announces " + std::to_string(size) + " bytes out of " + std::to_string(compressed_size) +
                            " compressed ones: more than zlib can");
     }
     const std::string compressed = source.take(compressed_size);
@@ -190,7 +190,7 @@ std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& 
     std::string bytes = encoding.is_compressed ? inflated_bytes(source, encoding, least, most)
                                                : plain_bytes(source, encoding, least, most);
     if (!std::all_of(source.rest().begin(), source.rest().end(), is_blank)) {
-        throw VtkDataFault("goes on for " + std::to_string(source.rest().size()) +
+        throw VtkDataError("goes on for " + std::to_string(source.rest().size()) +
                            " bytes behind its end; is the header_type wrong?");
     }
     return bytes;
@@ -198,7 +198,7 @@ std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& 
 
 std::vector<double> vtk_ascii_numbers(std::string_view text, std::size_t count) {
     if (text.size() < 2 * count - std::min<std::size_t>(1, count)) {  // a digit and a blank each, the last blank aside
-        throw VtkDataFault("ends early: expected " + std::to_string(count) + " numbers, found " +
+        throw VtkDataError("ends early: expected " + std::to_string(count) + " numbers, found " +
                            std::to_string(text.size()) + " letters");
     }
     std::vector<double> numbers;
@@ -214,17 +214,17 @@ std::vector<double> vtk_ascii_numbers(std::string_view text, std::size_t count) 
         double value = 0;
         const auto [parsed, error] = std::from_chars(at, word_end, value);
         if (error != std::errc() || parsed != word_end) {
-            throw VtkDataFault("number " + std::to_string(numbers.size() + 1) + " is '" +
+            throw VtkDataError("number " + std::to_string(numbers.size() + 1) + " is '" +
                                excerpt({at, static_cast<std::size_t>(word_end - at)}) + "': expected a number");
         }
         if (numbers.size() == count) {
-            throw VtkDataFault("holds more than " + std::to_string(count) + " numbers");
+            throw VtkDataError("holds more than " + std::to_string(count) + " numbers");
         }
         numbers.push_back(value);
         at = word_end;
     }
     if (numbers.size() != count) {
-        throw VtkDataFault("holds " + std::to_string(numbers.size()) + " numbers: expected " + std::to_string(count));
+        throw VtkDataError("holds " + std::to_string(numbers.size()) + " numbers: expected " + std::to_string(count));
     }
     return numbers;
 }

@@ -13,7 +13,7 @@
 namespace downwash {
 
 /// An array cannot be read: what was found and what was expected.
-struct VtkDataFault : std::runtime_error {
+struct VtkDataError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -37,12 +37,12 @@ struct VtkNumberType {
 /// The bytes of an array behind its header, uncompressed.
 /// @param data of the array alone; blanks may follow
 /// @param least, most how many bytes the array may have; nothing is allocated before the header was checked for that
-/// @throws VtkDataFault when they are others, or `data` ends before or later
+/// @throws VtkDataError when they are others, or `data` ends before or later
 [[nodiscard]] std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& encoding,
                                     std::size_t least, std::size_t most);
 
 /// Numbers apart from each other by blanks.
-/// @throws VtkDataFault when there are not exactly so many
+/// @throws VtkDataError when there are not exactly so many
 [[nodiscard]] std::vector<double> vtk_ascii_numbers(std::string_view text, std::size_t count);
 
 /// @pre bytes.size() is a multiple of type.bytes

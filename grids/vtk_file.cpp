@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 
@@ -44,7 +44,7 @@ std::string letters_of(const std::vector<double>& codes) {
     std::string letters;
     for (const double code : codes) {
         if (!(code >= -128 && code <= 255)) {
-            throw VtkDataFault("holds " + to_text(code) + ": expected codes of letters, -128 to 255");
+            throw VtkDataError("holds " + to_text(code) + ": expected codes of letters, -128 to 255");
         }
         letters += static_cast<char>(static_cast<int>(code));
     }
@@ -75,7 +75,7 @@ void VtkFile::refuse(pugi::xml_node node, const std::string& message) const {
 }
 
 void VtkFile::refuse_whole(const std::string& message) const {
-    throw InputError(std::vector<Fault>{{"", name_ + ": " + message}});
+    throw InputError(std::vector<KeyError>{{"", name_ + ": " + message}});
 }
 
 std::string VtkFile::title(pugi::xml_node array) {
@@ -107,8 +107,8 @@ std::vector<double> VtkFile::numbers(pugi::xml_node array, std::size_t count) co
     }
     try {
         return vtk_ascii_numbers(text_of(array), count);
-    } catch (const VtkDataFault& fault) {
-        refuse(array, title(array) + " " + fault.what());
+    } catch (const VtkDataError& error) {
+        refuse(array, title(array) + " " + error.what());
     }
 }
 
@@ -122,8 +122,8 @@ std::vector<std::string> VtkFile::texts(pugi::xml_node array) const {
         }
         try {
             letters = letters_of(vtk_ascii_numbers(codes, count));
-        } catch (const VtkDataFault& fault) {
-            refuse(array, title(array) + " " + fault.what());
+        } catch (const VtkDataError& error) {
+            refuse(array, title(array) + " " + error.what());
         }
     } else {
         letters = bytes_of(array, 0, most_text);
@@ -206,8 +206,8 @@ std::string VtkFile::bytes_of(pugi::xml_node array, std::size_t least, std::size
     }
     try {
         return vtk_bytes(text_of(array), true, encoding_, least, most);
-    } catch (const VtkDataFault& fault) {
-        refuse(array, title(array) + " " + fault.what());
+    } catch (const VtkDataError& error) {
+        refuse(array, title(array) + " " + error.what());
     }
 }
 
@@ -222,8 +222,8 @@ std::string VtkFile::appended_bytes(pugi::xml_node array, std::size_t least, std
     const std::size_t data_end = next == offsets_.end() ? data_.size() : std::min(*next, data_.size());
     try {
         return vtk_bytes(data_.substr(offset, data_end - offset), is_base64_, encoding_, least, most);
-    } catch (const VtkDataFault& fault) {
-        refuse_whole("byte " + std::to_string(cut_begin_ + 1 + offset) + ": " + title(array) + " " + fault.what());
+    } catch (const VtkDataError& error) {
+        refuse_whole("byte " + std::to_string(cut_begin_ + 1 + offset) + ": " + title(array) + " " + error.what());
     }
 }
 
@@ -236,8 +236,8 @@ void VtkFile::refuse_at(std::ptrdiff_t offset, const std::string& message) const
     const std::string_view before = bytes_.substr(0, place);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t column = place - (before.rfind('\n') + 1) + 1;  // without a line break before: npos + 1 = 0
-    throw InputError(
-        std::vector<Fault>{{"", name_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message}});
+    throw InputError(std::vector<KeyError>{
+        {"", name_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message}});
 }
 
 }  // namespace downwash

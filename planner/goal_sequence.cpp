@@ -62,14 +62,13 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
     ReferenceKnot held = plan.reference.back();
     held.tick += hold_ticks(goal, model, held.point);
     plan.reference.push_back(held);
-    plan.waypoints.push_back(plan.waypoints.back());
     const std::size_t known = course.plan.reference.empty() ? 1 : course.plan.reference.size();
     for (std::size_t i = known; i < plan.reference.size(); ++i) {
         const ReferenceKnot& from = plan.reference[i - 1];
         const ReferenceKnot& to = plan.reference[i];
         const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, tick_s);
-        const FlightFault fault = fly(model, map, no_rules(), segment, course.vehicle).fault;
-        if (fault != FlightFault::none && plans_flights) {
+        const Rejection rejection = fly(model, map, no_rules(), segment, course.vehicle).rejection;
+        if (rejection != Rejection::none && plans_flights) {
             throw std::logic_error("a part of a plan does not fly as it was planned");
         }
     }
@@ -83,8 +82,8 @@ Problem part_of(const Problem& problem, const Goal& goal, const Course& before) 
     Problem part = problem;
     part.stops.clear();
     part.goal = goal;
-    if (!before.plan.waypoints.empty()) {
-        const Waypoint& end = before.plan.waypoints.back();
+    if (!before.plan.reference.empty()) {
+        const Configuration end = before.plan.last();
         part.start = {};
         part.start.x_m = end.x_m;
         part.start.z_m = end.z_m;
@@ -158,7 +157,6 @@ Plan Course::continued_by(const Plan& next) const {
     const std::int64_t begin = plan.reference.back().tick;
     for (std::size_t i = 1; i < next.reference.size(); ++i) {
         whole.reference.push_back({begin + next.reference[i].tick, next.reference[i].point});
-        whole.waypoints.push_back(next.waypoints[i]);
     }
     return whole;
 }
@@ -190,7 +188,7 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
         if (!is_solved) {
             return;
         }
-        if (solution.plan->reference.back().tick > most_plan_ticks) {
+        if (solution.plan->reference.back().tick > max_plan_ticks) {
             ++solution.planning.rejected["too_long"];
             solution.planning.improvements.clear();
             solution.planning.first_solution_wall_s.reset();

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "downwash/planner/problem.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::planning {
 

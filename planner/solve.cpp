@@ -6,13 +6,13 @@
 #include <span>
 #include <utility>
 
-#include "downwash/planner/control_planners.hpp"
-#include "downwash/planner/flight_tree_planner.hpp"
 #include "downwash/planner/goal_sequence.hpp"
-#include "downwash/planner/mp_arm.hpp"
-#include "downwash/planner/ompl_space.hpp"
-#include "downwash/planner/quiet_ompl.hpp"
-#include "downwash/planner/search_tree.hpp"
+#include "downwash/rivals/control_planners.hpp"
+#include "downwash/rivals/mp_arm.hpp"
+#include "downwash/search/flight_tree_planner.hpp"
+#include "downwash/search/ompl_space.hpp"
+#include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/search_tree.hpp"
 
 namespace downwash {
 namespace {
@@ -123,7 +123,7 @@ void search_geometrically(const Problem& problem, const FlightModel& model, cons
     if (result.status != Status::solved) {
         record.nearest_approach_m = result.nearest_approach_m;
     }
-    if (result.plan && result.plan->reference.back().tick > most_plan_ticks) {
+    if (result.plan && result.plan->reference.back().tick > max_plan_ticks) {
         record.rejected["too_long"] = 1;
         record.improvements.clear();
         record.first_solution_wall_s.reset();
@@ -292,23 +292,12 @@ void search_by_flights(FlightSearch& common) {
 
 }  // namespace
 
-std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
-    return std::make_shared<const FlightModel>(problem.robot, problem.plane,
-                                               std::make_shared<const Scene>(problem.obstacles), problem.aero);
-}
-
-FlightState start_state(const FlightModel& model, const Start& start) {
-    const double q[4] = {start.x_m, start.z_m, start.pitch_rad, start.arm_rad};
-    const double u[4] = {start.vx_m_s, start.vz_m_s, start.pitch_rate_rad_s, start.arm_rate_rad_s};
-    return model.state_at(q, u);
-}
-
 Solution solve(const Problem& problem, const SolveOptions& asked) {
     const Stopwatch since_call;
     SolveOptions options = asked;
     options.threads = std::max(1, options.threads);
-    if (std::vector<Fault> faults = problem_faults(problem); !faults.empty()) {
-        throw InputError(std::move(faults));
+    if (std::vector<KeyError> errors = problem_errors(problem); !errors.empty()) {
+        throw InputError(std::move(errors));
     }
     const auto model = make_flight_model(problem);
     Solution solution;

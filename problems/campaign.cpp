@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "downwash/base/parameter_factories.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/algorithms.hpp"
+#include "downwash/problems/problem_model.hpp"
 
 namespace downwash {
 namespace {

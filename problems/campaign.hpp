@@ -7,7 +7,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/base/parameter_table.hpp"
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "downwash/planner/solution.hpp"
+#include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/tree_reader.hpp"
 
@@ -24,71 +24,71 @@ std::uint64_t run_count(const Campaign& c) {
 
 /// Rules over several values of a campaign.
 /// What a bar asks for that the campaign cannot tell.
-void add_faults_of(const Campaign& c, std::size_t i, std::vector<Fault>& faults) {
+void add_errors_of(const Campaign& c, std::size_t i, std::vector<KeyError>& errors) {
     const CampaignExpectation& bar = c.expect[i];
     const std::string path = "expect[" + std::to_string(i) + "].";
     for (const auto& [key, algorithm] : {std::pair{"algorithm", bar.algorithm}, {"cheaper_than", bar.cheaper_than}}) {
         if (algorithm && std::find(c.algorithms.begin(), c.algorithms.end(), *algorithm) == c.algorithms.end()) {
-            faults.push_back(
+            errors.push_back(
                 {path + key, "is " + *algorithm + ", which is not run: expected one of the campaign's algorithms"});
         }
     }
     if ((bar.cost_to_best || bar.cheaper_than) && !bar.cost_after_s) {
-        faults.push_back({path + (bar.cost_to_best ? "cost_to_best" : "cheaper_than"),
+        errors.push_back({path + (bar.cost_to_best ? "cost_to_best" : "cheaper_than"),
                           "does not say when: expected cost_after_s beside it"});
     }
     if (bar.cheaper_than.has_value() != bar.cheaper_than_after_s.has_value()) {
-        faults.push_back({path + (bar.cheaper_than ? "cheaper_than" : "cheaper_than_after_s"),
+        errors.push_back({path + (bar.cheaper_than ? "cheaper_than" : "cheaper_than_after_s"),
                           "is half of a comparison: expected cheaper_than and cheaper_than_after_s together"});
     }
     if (bar.cost_after_s && c.stop_at_first_solution) {
-        faults.push_back({path + "cost_after_s",
+        errors.push_back({path + "cost_after_s",
                           "asks for costs, but searches stop at their first solution: expected stop_at_first_solution: "
                           "false"});
     }
 }
 
-std::vector<Fault> campaign_faults(const Campaign& c) {
-    std::vector<Fault> faults;
+std::vector<KeyError> campaign_errors(const Campaign& c) {
+    std::vector<KeyError> errors;
     if (c.seeds.list.empty() && c.seeds.first + c.seeds.count - 1 > std::numeric_limits<std::uint32_t>::max()) {
-        faults.push_back({"seeds", "go beyond 4294967295, the highest seed: expected a smaller first or count"});
+        errors.push_back({"seeds", "go beyond 4294967295, the highest seed: expected a smaller first or count"});
     }
     if (run_count(c) > most_campaign_runs) {
-        faults.push_back(
+        errors.push_back(
             {"seeds", "make more than " + std::to_string(most_campaign_runs) +
                           " runs with all problems, variants, algorithms, objectives and margins: expected "
                           "fewer of one of them"});
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
-        add_faults_of(c, i, faults);
+        add_errors_of(c, i, errors);
         if (std::find(c.variants.begin(), c.variants.end(), c.expect[i].variant) == c.variants.end()) {
-            faults.push_back({"expect[" + std::to_string(i) + "].variant",
+            errors.push_back({"expect[" + std::to_string(i) + "].variant",
                               "is " + std::string(name_of(c.expect[i].variant)) +
                                   ", which is not run: expected one of the campaign's variants"});
         }
     }
-    return faults;
+    return errors;
 }
 
 /// Reads the problems; two of one name could not be told apart in results.
-/// @param located collects faults that have their place in a problem's file
-std::vector<Fault> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
-                                 std::vector<LocatedFault>& located) {
-    std::vector<Fault> faults;
+/// @param located collects errors that have their place in a problem's file
+std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
+                                    std::vector<LocatedError>& located) {
+    std::vector<KeyError> errors;
     for (const std::string& path : campaign.problems) {
         try {
             Problem problem = read_problem(path);
             if (std::any_of(problems.begin(), problems.end(),
                             [&](const Problem& other) { return other.name == problem.name; })) {
-                faults.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
+                errors.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
                                                   ": expected every problem once, with a name of its own"});
             }
             problems.push_back(std::move(problem));
         } catch (const ProblemFileError& error) {
-            located.insert(located.end(), error.faults().begin(), error.faults().end());
+            located.insert(located.end(), error.errors().begin(), error.errors().end());
         }
     }
-    return faults;
+    return errors;
 }
 
 }  // namespace
@@ -97,15 +97,15 @@ ReadCampaign read_campaign(const std::filesystem::path& file) {
     problems::TreeReader<Campaign> reader(campaign_parameters());
     reader.read(file);
     ReadCampaign read{reader.model(), {}};
-    std::vector<LocatedFault> in_problems;
-    if (reader.faults().empty()) {
-        reader.add(campaign_faults(read.campaign));
+    std::vector<LocatedError> in_problems;
+    if (reader.errors().empty()) {
+        reader.add(campaign_errors(read.campaign));
         reader.add(read_problems(read.campaign, read.problems, in_problems));
     }
-    std::vector<LocatedFault> faults = reader.faults();
-    faults.insert(faults.end(), in_problems.begin(), in_problems.end());
-    if (!faults.empty()) {
-        throw ProblemFileError(std::move(faults));
+    std::vector<LocatedError> errors = reader.errors();
+    errors.insert(errors.end(), in_problems.begin(), in_problems.end());
+    if (!errors.empty()) {
+        throw ProblemFileError(std::move(errors));
     }
     return read;
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/planner/problem.hpp"
 #include "downwash/problems/campaign.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash {
 
@@ -17,7 +17,7 @@ struct ReadCampaign {
 
 /// Reads a campaign file and its problems, whose paths are relative to it. The result is sound: problems have names of
 /// their own, and what is expected is run.
-/// @throws ProblemFileError with every fault that can be found in one reading, those of the problems included
+/// @throws ProblemFileError with every error that can be found in one reading, those of the problems included
 [[nodiscard]] DOWNWASH_EXPORT ReadCampaign read_campaign(const std::filesystem::path& file);
 
 }  // namespace downwash

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "downwash/base/angles.hpp"
-#include "downwash/planner/problem_parameters.hpp"
 #include "downwash/problems/campaign.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 
 namespace downwash {

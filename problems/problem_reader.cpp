@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -10,30 +10,30 @@
 namespace downwash {
 namespace {
 
-std::string joined(const std::vector<LocatedFault>& faults) {
+std::string joined(const std::vector<LocatedError>& errors) {
     std::string text;
-    for (const LocatedFault& fault : faults) {
-        text += (text.empty() ? "" : "\n") + to_text(fault);
+    for (const LocatedError& error : errors) {
+        text += (text.empty() ? "" : "\n") + to_text(error);
     }
     return text;
 }
 
 using ProblemTreeReader = problems::TreeReader<Problem>;
 
-void throw_faults(const ProblemTreeReader& reader) {
-    if (auto faults = reader.faults(); !faults.empty()) {
-        throw ProblemFileError(std::move(faults));
+void throw_errors(const ProblemTreeReader& reader) {
+    if (auto errors = reader.errors(); !errors.empty()) {
+        throw ProblemFileError(std::move(errors));
     }
 }
 
 }  // namespace
 
-std::string to_text(const LocatedFault& fault) {
-    return fault.file + ":" + std::to_string(fault.line) + ":" + std::to_string(fault.column) + ": " + fault.message;
+std::string to_text(const LocatedError& error) {
+    return error.file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) + ": " + error.message;
 }
 
-ProblemFileError::ProblemFileError(std::vector<LocatedFault> faults)
-    : std::runtime_error(joined(faults)), faults_(std::move(faults)) {}
+ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
+    : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
 
 Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust) {
     ProblemTreeReader reader(problem_parameters());
@@ -42,9 +42,9 @@ Problem read_problem(const std::filesystem::path& file, const std::function<void
         reader.adjust(adjust);
     }
     if (!reader.is_full()) {
-        reader.add(further_problem_faults(reader.model(), reader.faulty_keys()));
+        reader.add(further_problem_errors(reader.model(), reader.wrong_keys()));
     }
-    throw_faults(reader);
+    throw_errors(reader);
     return reader.model();
 }
 
@@ -52,10 +52,10 @@ Robot read_robot(const std::filesystem::path& file) {
     ProblemTreeReader reader(problem_parameters());
     reader.read(file, "robot");
     if (!reader.is_full()) {
-        FaultyKeys faulty = reader.faulty_keys();
-        reader.add(further_robot_faults(reader.model().robot, faulty, "robot."));
+        WrongKeys wrong = reader.wrong_keys();
+        reader.add(further_robot_errors(reader.model().robot, wrong, "robot."));
     }
-    throw_faults(reader);
+    throw_errors(reader);
     return reader.model().robot;
 }
 

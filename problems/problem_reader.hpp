@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash {
 
 /// Something wrong in a problem or robot file.
-struct LocatedFault {
+struct LocatedError {
     std::string file;     ///< as the caller or the problem file names it
     int line = 1;         ///< counted from 1
     int column = 1;       ///< in bytes, counted from 1
@@ -21,23 +21,23 @@ struct LocatedFault {
 };
 
 /// "file:line:column: message"
-[[nodiscard]] DOWNWASH_EXPORT std::string to_text(const LocatedFault& fault);
+[[nodiscard]] DOWNWASH_EXPORT std::string to_text(const LocatedError& error);
 
-/// A problem or robot file cannot be used; what() has one line for every fault.
+/// A problem or robot file cannot be used; what() has one line for every error.
 class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
  public:
-    /// @pre there is at least one fault
-    explicit ProblemFileError(std::vector<LocatedFault> faults);
-    [[nodiscard]] const std::vector<LocatedFault>& faults() const noexcept { return faults_; }
+    /// @pre there is at least one error
+    explicit ProblemFileError(std::vector<LocatedError> errors);
+    [[nodiscard]] const std::vector<LocatedError>& errors() const noexcept { return errors_; }
 
  private:
-    std::vector<LocatedFault> faults_;
+    std::vector<LocatedError> errors_;
 };
 
 /// Reads a problem and the robot that it refers to, whose path is relative to the problem's file.
-/// The result is complete and sound: problem_faults() finds nothing in it.
+/// The result is complete and sound: problem_errors() finds nothing in it.
 /// @param adjust changes values before the problem is checked as a whole, for example with set_parameter()
-/// @throws ProblemFileError with every fault that can be found in one reading (a hundred at most), and what adjust does
+/// @throws ProblemFileError with every error that can be found in one reading (a hundred at most), and what adjust does
 [[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file,
                                                    const std::function<void(Problem&)>& adjust = {});
 

@@ -9,8 +9,8 @@
 
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/planner/problem_parameters.hpp"
 #include "downwash/problems/number_text.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 
 namespace downwash {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "downwash/base/export.hpp"
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash {
 
@@ -12,7 +12,7 @@ namespace downwash {
 /// problem; reading them gives the very same problem, to the last bit of every number in use (parameters of models
 /// that are switched off are not written).
 /// @param folder in which the document will stand: paths of the files that it refers to are relative to it
-/// @pre problem_faults(problem) is empty, and every mesh and octree was read from a file
+/// @pre problem_errors(problem) is empty, and every mesh and octree was read from a file
 [[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem, const std::filesystem::path& folder);
 
 /// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits. Of files that it refers to, what was read

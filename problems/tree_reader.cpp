@@ -12,7 +12,7 @@
 namespace downwash::problems {
 namespace {
 
-constexpr std::size_t most_faults = 100;
+constexpr std::size_t most_errors = 100;
 
 std::string joined(const std::string& key, std::string_view name) {
     return key.empty() ? std::string(name) : key + "." + std::string(name);
@@ -22,7 +22,7 @@ std::string joined(const std::string& key, std::string_view name) {
 
 template <class Model>
 bool TreeReader<Model>::is_full() const noexcept {
-    return found_.size() >= most_faults;
+    return found_.size() >= most_errors;
 }
 
 /// Reads a file as the group `path`; what keeps it from being read at all is reported where it was referred from.
@@ -36,9 +36,9 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
     } catch (const FileError& error) {
         if (files_.empty()) {
             files_.push_back({file, path});
-            fault(path, {}, error.what());
+            report(path, {}, error.what());
         } else {
-            fault(path, referred_from, "'" + file.string() + "' " + error.what());
+            report(path, referred_from, "'" + file.string() + "' " + error.what());
         }
         return;
     }
@@ -48,12 +48,12 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
     try {
         const YamlNode::Pointer root = parse_yaml(text);
         if (root->kind != YamlNode::Kind::map) {
-            fault(path, root->mark, found_text(*root) + ": expected a file of keys and values");
+            report(path, root->mark, found_text(*root) + ": expected a file of keys and values");
         } else if (has_supported_schema(*root, path)) {
             read_keys({path, path, 0, {}, *root, {}, {}});
         }
     } catch (const YamlError& error) {
-        fault(path, error.mark, error.what());
+        report(path, error.mark, error.what());
     }
     file_ = referring_file;
 }
@@ -70,11 +70,11 @@ bool TreeReader<Model>::has_supported_schema(const YamlNode& root, const std::st
         if (value->kind == YamlNode::Kind::scalar && value->text == expected) {
             return true;
         }
-        fault(path, value->mark, "schema " + found_text(*value) + ": expected " + expected + ", no other is read");
+        report(path, value->mark, "schema " + found_text(*value) + ": expected " + expected + ", no other is read");
         return false;
     }
     if (!schema.required) {
-        fault(schema.path, {}, "is missing: expected 'schema: " + expected + "' at the top");
+        report(schema.path, {}, "is missing: expected 'schema: " + expected + "' at the top");
     }
     return true;
 }
@@ -84,7 +84,7 @@ void TreeReader<Model>::read_keys(Group group) {
     find_entries(group);
     for (const std::string& name : group.meant) {
         if (!group.entries.contains(name)) {
-            faulty_.add(joined(group.key, name));
+            wrong_.add(joined(group.key, name));
         }
     }
     check_alternatives(group);
@@ -93,7 +93,7 @@ void TreeReader<Model>::read_keys(Group group) {
         if (group.entries.contains(name)) {
             read_parameter(group, *parameter);
         } else if (parameter->required && std::count(group.meant.begin(), group.meant.end(), name) == 0) {
-            fault(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
+            report(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
         }
     }
 }
@@ -113,8 +113,8 @@ void TreeReader<Model>::find_entries(Group& group) {
         const auto [first, is_new] = group.entries.emplace(key.text, i);
         if (!is_new) {
             const int line = group.node.entries[first->second].first->mark.line;
-            fault(joined(group.key, key.text), key.mark,
-                  "is written twice: expected once, as in line " + std::to_string(line));
+            report(joined(group.key, key.text), key.mark,
+                   "is written twice: expected once, as in line " + std::to_string(line));
         }
     }
 }
@@ -150,14 +150,14 @@ void TreeReader<Model>::check_alternatives(const Group& group) {
     }
     std::sort(given.begin(), given.end());
     if (given.empty() && group.meant.empty()) {
-        fault(group.key, group.mark, "needs exactly one of " + joined_names(names));
+        report(group.key, group.mark, "needs exactly one of " + joined_names(names));
     } else if (given.size() > 1) {
         const YamlNode& first = *group.node.entries[given[0]].first;
         const YamlNode& second = *group.node.entries[given[1]].first;
-        fault(group.key, second.mark,
-              "has both " + first.text + " and " + second.text + ": expected exactly one of " + joined_names(names));
+        report(group.key, second.mark,
+               "has both " + first.text + " and " + second.text + ": expected exactly one of " + joined_names(names));
     } else if (given.empty()) {
-        faulty_.add(group.key);
+        wrong_.add(group.key);
     }
 }
 
@@ -170,7 +170,7 @@ void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model
         return;
     }
     if (parameter.applies && !parameter.applies(model_, group.index)) {
-        fault(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
         return;
     }
     switch (parameter.kind) {
@@ -208,7 +208,7 @@ void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const Yaml
     } else if (node.kind == YamlNode::Kind::list && parameter.can_be_integers) {
         read_single(parameter, node, key, index);
     } else {
-        fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter));
+        report(key, node.mark, found_text(node) + ": expected " + expectation(parameter));
     }
 }
 
@@ -216,11 +216,11 @@ template <class Model>
 void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key) {
     if (node.kind != YamlNode::Kind::list) {
         const std::string remedy = node.kind == YamlNode::Kind::null ? "; write [] for none" : "";
-        fault(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
+        report(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
         return;
     }
     if (node.items.empty() && (parameter.can_be_list || parameter.exclusive)) {
-        fault(key, node.mark, "is empty: expected one element at least");
+        report(key, node.mark, "is empty: expected one element at least");
         return;
     }
     parameter.resize(model_, 0, node.items.size());
@@ -231,7 +231,7 @@ void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlN
         if (item.kind == YamlNode::Kind::map) {
             read_keys({parameter.path + "[]", item_key, i, item.mark, item, {}, {}});
         } else {
-            fault(item_key, item.mark, found_text(item) + ": expected a group of keys");
+            report(item_key, item.mark, found_text(item) + ": expected a group of keys");
         }
     }
 }
@@ -250,10 +250,10 @@ void TreeReader<Model>::read_single(const Parameter<Model>& parameter, const Yam
         }
         parameter.set(model_, index, value);
     } catch (const YamlError& error) {
-        fault(key, error.mark, error.what());
+        report(key, error.mark, error.what());
     } catch (const InputError& error) {
-        for (const Fault& found : error.faults()) {
-            fault(key, node.mark, found.message);
+        for (const KeyError& found : error.errors()) {
+            report(key, node.mark, found.message);
         }
     }
 }
@@ -265,11 +265,11 @@ std::filesystem::path TreeReader<Model>::path_from_here(const std::string& path)
 }
 
 template <class Model>
-void TreeReader<Model>::fault(const std::string& key, const Mark& mark, const std::string& message) {
+void TreeReader<Model>::report(const std::string& key, const Mark& mark, const std::string& message) {
     if (is_full()) {
         return;
     }
-    faulty_.add(key);
+    wrong_.add(key);
     const std::string subject = shown(key);
     report(mark, subject.empty() ? message : subject + " " + message);
 }
@@ -305,23 +305,23 @@ typename TreeReader<Model>::Place TreeReader<Model>::place_of(std::string_view k
 }
 
 template <class Model>
-void TreeReader<Model>::add(const std::vector<Fault>& faults) {
-    for (const Fault& later : faults) {
+void TreeReader<Model>::add(const std::vector<KeyError>& errors) {
+    for (const KeyError& later : errors) {
         const Place place = place_of(later.key);
         file_ = place.file;
-        fault(later.key, place.mark, later.message);
+        report(later.key, place.mark, later.message);
     }
     file_ = 0;
 }
 
 template <class Model>
-std::vector<LocatedFault> TreeReader<Model>::faults() const {
+std::vector<LocatedError> TreeReader<Model>::errors() const {
     std::vector<Found> ordered = found_;
     std::stable_sort(ordered.begin(), ordered.end(), [](const Found& a, const Found& b) {
         return std::tie(a.place.file, a.place.mark.line, a.place.mark.column) <
                std::tie(b.place.file, b.place.mark.line, b.place.mark.column);
     });
-    std::vector<LocatedFault> located;
+    std::vector<LocatedError> located;
     located.reserve(ordered.size());
     for (const Found& found : ordered) {
         located.push_back(

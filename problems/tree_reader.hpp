@@ -21,20 +21,20 @@ class TreeReader {
     /// @pre the table outlives this reader
     explicit TreeReader(const ParameterTable<Model>& table) : table_(table) {}
 
-    /// Reads a file, and those that it refers to. Faults are collected, never thrown.
+    /// Reads a file, and those that it refers to. Errors are collected, never thrown.
     /// @param group key of the group that the file holds ("robot"); empty for the whole model
     void read(const std::filesystem::path& file, const std::string& group = "") { read_document(file, group, {}); }
 
     [[nodiscard]] const Model& model() const noexcept { return model_; }
     void adjust(const std::function<void(Model&)>& change) { change(model_); }
     /// Keys of which the model has no trustworthy value.
-    [[nodiscard]] const FaultyKeys& faulty_keys() const noexcept { return faulty_; }
-    /// More faults are not worth reading.
+    [[nodiscard]] const WrongKeys& wrong_keys() const noexcept { return wrong_; }
+    /// More errors are not worth reading.
     [[nodiscard]] bool is_full() const noexcept;
-    /// Adds faults that were found later, each at its key or the nearest key around it.
-    void add(const std::vector<Fault>& faults);
-    /// All faults, ordered by file and place; every call gives the same.
-    [[nodiscard]] std::vector<LocatedFault> faults() const;
+    /// Adds errors that were found later, each at its key or the nearest key around it.
+    void add(const std::vector<KeyError>& errors);
+    /// All errors, ordered by file and place; every call gives the same.
+    [[nodiscard]] std::vector<LocatedError> errors() const;
 
  private:
     struct Place {
@@ -66,15 +66,15 @@ class TreeReader {
                      std::size_t index);
 
     [[nodiscard]] std::filesystem::path path_from_here(const std::string& path) const;
-    /// Records a fault of a key; its value is not trusted from now on.
-    void fault(const std::string& key, const Mark& mark, const std::string& message);
+    /// Records an error of a key; its value is not trusted from now on.
+    void report(const std::string& key, const Mark& mark, const std::string& message);
     void report(const Mark& mark, const std::string& message);
     [[nodiscard]] std::string shown(const std::string& key) const;
     [[nodiscard]] Place place_of(std::string_view key) const;
 
     const ParameterTable<Model>& table_;
     Model model_;
-    FaultyKeys faulty_;
+    WrongKeys wrong_;
     struct File {
         std::filesystem::path path;
         std::string root;  ///< key of the group that the file is

@@ -158,8 +158,8 @@ std::string found_text(const YamlNode& node) {
 
 Value read_value(const ParameterInfo& info, const YamlNode& node) {
     Value value = read_typed(info, node);
-    if (const auto fault = value_fault(info, value)) {
-        throw YamlError(node.mark, *fault);
+    if (const auto error = value_error(info, value)) {
+        throw YamlError(node.mark, *error);
     }
     return value;
 }

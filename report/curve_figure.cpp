@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/report/gnuplot_script.hpp"
 #include "downwash/report/legend.hpp"
@@ -34,7 +34,7 @@ bool is_finite(const DiagramPoint& p) {
 }
 
 void require_drawable(const CurveFigure& figure, const std::string& key) {
-    std::vector<Fault> faults;
+    std::vector<KeyError> errors;
     std::size_t points = 0;
     for (const Curve& curve : figure.curves) {
         points += static_cast<std::size_t>(std::count_if(curve.points.begin(), curve.points.end(), is_finite));
@@ -42,21 +42,21 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
     for (const MeasuredPoints& measured : figure.measurements) {
         points += static_cast<std::size_t>(std::count_if(measured.points.begin(), measured.points.end(), is_finite));
         if (!measured.errors.empty() && measured.errors.size() != measured.points.size()) {
-            faults.push_back({key + ".measurements", fmt::format("{} points have {} errors: expected one each, or none",
+            errors.push_back({key + ".measurements", fmt::format("{} points have {} errors: expected one each, or none",
                                                                  measured.points.size(), measured.errors.size())});
         }
     }
     if (points == 0) {
-        faults.push_back({key, "there is nothing to draw: expected a curve or measurements with finite points"});
+        errors.push_back({key, "there is nothing to draw: expected a curve or measurements with finite points"});
     }
     for (const auto* range : {&figure.x_range, &figure.y_range}) {
         if (*range && !((*range)->low < (*range)->high && std::isfinite((*range)->high - (*range)->low))) {
-            faults.push_back({key + ".range", fmt::format("{} to {} is empty: expected finite numbers, the lower first",
+            errors.push_back({key + ".range", fmt::format("{} to {} is empty: expected finite numbers, the lower first",
                                                           to_text((*range)->low), to_text((*range)->high))});
         }
     }
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
 }
 
@@ -214,7 +214,7 @@ class Panel {
 std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings) {
     constexpr double left_px = 84, right_px = 24;
     if (figures.empty()) {
-        throw InputError({Fault{"figures", "there is no figure to draw: expected one at least"}});
+        throw InputError({KeyError{"figures", "there is no figure to draw: expected one at least"}});
     }
     const double width_px = settings.width_px - left_px - right_px;
     std::vector<Panel> panels;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {

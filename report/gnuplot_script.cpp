@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/report/gnuplot.hpp"
 #include "downwash/report/picture_text.hpp"
 

@@ -41,7 +41,7 @@ std::string PackedNumbers::text() const {
     std::string packed(size, '\0');
     if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes_.data()),
                   static_cast<uLong>(bytes_.size()), Z_BEST_COMPRESSION) != Z_OK) {
-        throw std::bad_alloc();  // the only fault left when the buffer is large enough
+        throw std::bad_alloc();  // the only error left when the buffer is large enough
     }
     packed.resize(size);
     return base64_text(packed);

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash {

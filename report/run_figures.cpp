@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "downwash/base/angles.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/report/robot_outline.hpp"
 
@@ -23,8 +23,8 @@ constexpr Color flown_color{0xd5, 0x5e, 0x00}, planned_color{0x55, 0x55, 0x55}, 
 
 void require_flight(const RunRecord& run) {
     if (run.flight.rows() < 2) {
-        throw InputError({Fault{"", run.flight.rows() == 0 ? "nothing was flown in this run"
-                                                           : "the flight has one row only, too little to draw"}});
+        throw InputError({KeyError{"", run.flight.rows() == 0 ? "nothing was flown in this run"
+                                                              : "the flight has one row only, too little to draw"}});
     }
 }
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "downwash/problems/run_record.hpp"
 #include "downwash/report/curve_figure.hpp"
 #include "downwash/report/field_figure.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "downwash/base/export.hpp"
-#include "downwash/problems/run_record.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash {

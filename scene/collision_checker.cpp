@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
 #include "downwash/scene/fcl_contact.hpp"
@@ -70,19 +70,19 @@ struct Piece {
 };
 
 void require_valid(const RobotShape& robot) {
-    std::vector<Fault> faults;
+    std::vector<KeyError> errors;
     for (std::size_t i = 0; i < robot.bodies.size(); ++i) {
-        inspect(robot.bodies[i].shape, "bodies[" + std::to_string(i) + "]", faults);
+        inspect(robot.bodies[i].shape, "bodies[" + std::to_string(i) + "]", errors);
     }
     const auto inspect_length = [&](double length_m, const char* key) {
         if (!(std::isfinite(length_m) && length_m > 0)) {
-            faults.push_back({key, "must be a finite length above 0 in metres"});
+            errors.push_back({key, "must be a finite length above 0 in metres"});
         }
     };
     inspect_length(robot.arm_length_m, "arm_length_m");
     inspect_length(robot.arm_radius_m, "arm_radius_m");
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
 }
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <system_error>
 
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash::foreign {

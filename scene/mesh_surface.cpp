@@ -34,10 +34,10 @@ bool has_area(const Corners& t) {
 
 }  // namespace
 
-void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& faults) {
+void inspect(const Mesh& mesh, const std::string& key, std::vector<KeyError>& errors) {
     const auto require = [&](bool holds, const std::string& name, const std::string& message) {
         if (!holds) {
-            faults.push_back({key + name, message});
+            errors.push_back({key + name, message});
         }
         return holds;
     };

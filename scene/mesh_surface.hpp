@@ -4,13 +4,13 @@
 
 #include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/shapes.hpp"
 
 namespace downwash {
 
 /// Adds what is wrong with a mesh, under keys such as `key`.mesh.file.
-void inspect(const Mesh& mesh, const std::string& key, std::vector<Fault>& faults);
+void inspect(const Mesh& mesh, const std::string& key, std::vector<KeyError>& errors);
 
 /// The triangles that have an area, corners scaled, in the local frame.
 /// @param is_turned for each triangle whether two of its corners change places; empty for none

@@ -71,8 +71,8 @@ LocalBox box_of(const Block& block) {
 
 }  // namespace
 
-void inspect(const Octomap& octomap, const std::string& key, std::vector<Fault>& faults) {
-    const auto add = [&](const std::string& message) { faults.push_back({key + ".octomap.file", message}); };
+void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyError>& errors) {
+    const auto add = [&](const std::string& message) { errors.push_back({key + ".octomap.file", message}); };
     if (octomap.tree == nullptr) {
         add("must have been read: there is no octree");
         return;

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/shapes.hpp"
 
 namespace downwash {
 
 /// Adds what is wrong with an octree, under keys such as `key`.octomap.file.
-void inspect(const Octomap& octomap, const std::string& key, std::vector<Fault>& faults);
+void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyError>& errors);
 
 /// A box in the local frame.
 struct LocalBox {

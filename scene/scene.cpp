@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "downwash/scene/mesh_surface.hpp"
@@ -26,10 +26,10 @@ bool is_length(double x) {
     return std::isfinite(x) && x > 0;
 }
 
-/// Adds the faults of a shape's sizes to a list, under the shape's key.
+/// Adds the errors of a shape's sizes to a list, under the shape's key.
 struct SizeInspector {
     const std::string& key;
-    std::vector<Fault>& faults;
+    std::vector<KeyError>& errors;
 
     void operator()(const Box& box) const {
         const auto& [x, y, z] = box.size_m;
@@ -47,40 +47,40 @@ struct SizeInspector {
     }
     void require(bool holds, const char* name, const char* message) const {
         if (!holds) {
-            faults.push_back({key + name, message});
+            errors.push_back({key + name, message});
         }
     }
 };
 
-void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<Fault>& faults) {
+void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<KeyError>& errors) {
     if (!is_finite(obstacle.center_m)) {
-        faults.push_back({key + ".center_m", "must be three finite numbers, the position in the world in metres"});
+        errors.push_back({key + ".center_m", "must be three finite numbers, the position in the world in metres"});
     }
     const auto is_small = [](double angle_rad) { return std::abs(angle_rad) <= greatest_angle_rad; };
     if (!std::all_of(obstacle.rpy_rad.begin(), obstacle.rpy_rad.end(), is_small)) {
-        faults.push_back({key + ".rpy_rad", "must be three angles of at most 1e5 rad; leave out whole turns"});
+        errors.push_back({key + ".rpy_rad", "must be three angles of at most 1e5 rad; leave out whole turns"});
     }
 }
 
-/// Adds the faults of any shape.
+/// Adds the errors of any shape.
 struct ShapeInspector {
     const std::string& key;
-    std::vector<Fault>& faults;
+    std::vector<KeyError>& errors;
 
-    void operator()(const Mesh& mesh) const { inspect(mesh, key, faults); }
-    void operator()(const Octomap& octomap) const { inspect(octomap, key, faults); }
-    void operator()(const Primitive& primitive) const { inspect(primitive, key, faults); }
+    void operator()(const Mesh& mesh) const { inspect(mesh, key, errors); }
+    void operator()(const Octomap& octomap) const { inspect(octomap, key, errors); }
+    void operator()(const Primitive& primitive) const { inspect(primitive, key, errors); }
 };
 
 void require_valid(const std::vector<Obstacle>& obstacles) {
-    std::vector<Fault> faults;
+    std::vector<KeyError> errors;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
-        std::visit(ShapeInspector{key, faults}, obstacles[i].shape);
-        inspect_pose(obstacles[i], key, faults);
+        std::visit(ShapeInspector{key, errors}, obstacles[i].shape);
+        inspect_pose(obstacles[i], key, errors);
     }
-    if (!faults.empty()) {
-        throw InputError(std::move(faults));
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
     }
 }
 
@@ -184,8 +184,8 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
 
 }  // namespace
 
-void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults) {
-    std::visit(SizeInspector{key, faults}, shape);
+void inspect(const Primitive& shape, const std::string& key, std::vector<KeyError>& errors) {
+    std::visit(SizeInspector{key, errors}, shape);
 }
 
 bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {

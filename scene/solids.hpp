@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/parts.hpp"
 #include "downwash/scene/scene.hpp"
 
@@ -34,6 +34,6 @@ struct Scene::Solids {
 };
 
 /// Adds what is wrong with the sizes of a shape, under keys such as `key`.box.size_m.
-void inspect(const Primitive& shape, const std::string& key, std::vector<Fault>& faults);
+void inspect(const Primitive& shape, const std::string& key, std::vector<KeyError>& errors);
 
 }  // namespace downwash

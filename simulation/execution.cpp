@@ -17,13 +17,13 @@ using simulation::TickRecord;
 
 constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
 
-Outcome outcome_of(FlightFault fault) {
-    switch (fault) {
-        case FlightFault::collision:
+Outcome outcome_of(Rejection rejection) {
+    switch (rejection) {
+        case Rejection::collision:
             return Outcome::collision;
-        case FlightFault::flyable_area:
+        case Rejection::flyable_area:
             return Outcome::left_flyable_area;
-        case FlightFault::none:
+        case Rejection::none:
             return Outcome::ok;
         default:
             return Outcome::unstable;
@@ -69,38 +69,38 @@ class Recorder {
 
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
     /// @param before one tick ago; nullptr at the start
-    FlightFault judge(const FlightState& state, const ReferencePoint& reference, const FlightState* before = nullptr) {
+    Rejection judge(const FlightState& state, const ReferencePoint& reference, const FlightState* before = nullptr) {
         const double clearance_before_m = clearance_m_;
         clearance_m_ = model_.collisions().clearance_m(pose_of(state));
         execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
         execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
         if (!is_stable(state, reference)) {
-            return FlightFault::unstable;
+            return Rejection::unstable;
         }
         if (clearance_m_ <= 0) {
-            return FlightFault::collision;
+            return Rejection::collision;
         }
         if (before != nullptr) {
             const double between_m = simulation::least_clearance_between_m(model_, pose_of(*before), clearance_before_m,
                                                                            pose_of(state), clearance_m_);
             if (between_m <= 0) {
                 execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
-                return FlightFault::collision;
+                return Rejection::collision;
             }
         }
         if (execution_.aero && !is_flyable(state)) {
-            return FlightFault::flyable_area;
+            return Rejection::flyable_area;
         }
-        return FlightFault::none;
+        return Rejection::none;
     }
 
-    FlightFault after_tick(const FlightState& before, const ReferencePoint& reference, const TickRecord<double>& record,
-                           const FlightState& next, const ReferencePoint& next_reference) {
+    Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const TickRecord<double>& record,
+                         const FlightState& next, const ReferencePoint& next_reference) {
         add_row(before, reference, record);
         execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
-        const FlightFault fault = judge(next, next_reference, &before);
+        const Rejection rejection = judge(next, next_reference, &before);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
-        return fault;
+        return rejection;
     }
 
  private:
@@ -204,13 +204,13 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     Recorder<Factor> recorder(model, factor, execution);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
-    FlightFault fault = recorder.judge(state, reference);
+    Rejection rejection = recorder.judge(state, reference);
     const std::int64_t hold = hold_ticks(goals.back(), model, knots.back().point);
     for (const ReferenceSegment& segment : segments_with_hold(knots, hold, model.tick().tick_s)) {
-        if (fault != FlightFault::none) {
+        if (rejection != Rejection::none) {
             break;
         }
-        fault = simulation::fly_ticks(
+        rejection = simulation::fly_ticks(
             model.tick(), segment, factor, dynamics::RefinedStep{}, state,
             [&](const FlightState& before, const ReferencePoint& at, const TickRecord<double>& record,
                 const FlightState& next, const ReferencePoint& next_reference) {
@@ -224,7 +224,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
                                           simulation::setpoint(reference), record));
     recorder.add_row(state, reference, record);
 
-    execution.outcome = outcome_of(fault);
+    execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
     judge_goals(model, goals, hold_ends(model, knots, goals), execution);

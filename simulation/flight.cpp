@@ -20,21 +20,21 @@ bool is_flyable(const FlightModel& model, const AeroMap& map, const FlightState&
 }
 
 /// The rules, cheapest first.
-FlightFault broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                        const simulation::RuleLimits& limits, const TickRecord<double>& record,
-                        const FlightState& before, const FlightState& state, const ReferencePoint& reference) {
+Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
+                      const simulation::RuleLimits& limits, const TickRecord<double>& record, const FlightState& before,
+                      const FlightState& state, const ReferencePoint& reference) {
     const double broken = simulation::broken_rule(limits, record.saturation, state, simulation::setpoint(reference));
     if (broken > 0) {
-        return static_cast<FlightFault>(static_cast<int>(broken));
+        return static_cast<Rejection>(static_cast<int>(broken));
     }
     if (map != nullptr && !is_flyable(model, *map, state)) {
-        return FlightFault::flyable_area;
+        return Rejection::flyable_area;
     }
     if (model.collisions().is_nearer_than(pose_of(state), rules.margin_m) ||
         simulation::comes_nearer_between(model, pose_of(before), pose_of(state), rules.margin_m)) {
-        return FlightFault::collision;
+        return Rejection::collision;
     }
-    return FlightFault::none;
+    return Rejection::none;
 }
 
 template <class Factor>
@@ -42,21 +42,21 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
                        const ReferenceSegment& segment, FlightState& state, const Factor& factor) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     SegmentFlight flight;
-    flight.fault = simulation::fly_ticks(
+    flight.rejection = simulation::fly_ticks(
         model.tick(), segment, factor, dynamics::OneStep{}, state,
         [&](const FlightState& before, const ReferencePoint&, const TickRecord<double>& record, const FlightState& next,
             const ReferencePoint& next_reference) {
             ++flight.ticks;
             if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
-                return FlightFault::interrupted;
+                return Rejection::interrupted;
             }
             flight.length_m += std::sqrt(simulation::squared_step_m2(model.tick().plant, before, next));
-            const FlightFault fault = broken_rule(model, map, rules, limits, record, before, next, next_reference);
-            if (fault == FlightFault::none && rules.measures_clearance) {
+            const Rejection rejection = broken_rule(model, map, rules, limits, record, before, next, next_reference);
+            if (rejection == Rejection::none && rules.measures_clearance) {
                 flight.clearance_integral +=
                     model.tick().tick_s * simulation::clearance_density(model.collisions().clearance_m(pose_of(next)));
             }
-            return fault;
+            return rejection;
         });
     return flight;
 }

@@ -12,7 +12,7 @@
 namespace downwash {
 
 /// Why a flight was refused or ended early.
-enum class FlightFault : std::uint8_t {
+enum class Rejection : std::uint8_t {
     none,
     collision,     ///< nearer to an obstacle than allowed
     flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (model 4.4)
@@ -48,7 +48,7 @@ struct FlightRules {
 
 /// What a flight along one segment came to.
 struct SegmentFlight {
-    FlightFault fault = FlightFault::none;
+    Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< flown, the refused one included
     double length_m = 0;            ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2), w = half the arm's length
     double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured

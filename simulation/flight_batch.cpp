@@ -88,7 +88,7 @@ FlightKernelModel make_kernel_model(const FlightWorld& world) {
 
 const FlightLeg* FlightJob::refused_leg() const noexcept {
     const auto refused = std::find_if(legs.begin(), legs.end(),
-                                      [](const FlightLeg& leg) { return leg.flight.fault != FlightFault::none; });
+                                      [](const FlightLeg& leg) { return leg.flight.rejection != Rejection::none; });
     return refused != legs.end() ? &*refused : nullptr;
 }
 

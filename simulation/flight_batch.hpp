@@ -28,8 +28,8 @@ struct FlightJob {
     /// The leg on which the flight ended early; nullptr when it did not.
     [[nodiscard]] DOWNWASH_EXPORT const FlightLeg* refused_leg() const noexcept;
     /// Why the flight ended early.
-    [[nodiscard]] FlightFault fault() const noexcept {
-        return refused_leg() != nullptr ? refused_leg()->flight.fault : FlightFault::none;
+    [[nodiscard]] Rejection rejection() const noexcept {
+        return refused_leg() != nullptr ? refused_leg()->flight.rejection : Rejection::none;
     }
     /// The vehicle at the end of an accepted flight.
     [[nodiscard]] const FlightState& end() const noexcept { return legs.back().end; }

@@ -36,7 +36,7 @@ struct alignas(64) FlightLanes {
 
     // What a call found at its last tick.
     double before[4][lane_count];  ///< the pose at the tick before
-    double fault[lane_count];      ///< number of a FlightFault
+    double rejection[lane_count];  ///< number of a Rejection
     /// 1 where a closer look is due: the flyable area, motion beyond free_motion_m, look_tick or max_speed_m_s ask for
     /// it.
     double is_unclear[lane_count];

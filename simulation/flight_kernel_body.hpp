@@ -217,7 +217,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     group.load(reference.acceleration, lanes.reference[2]);
     Pack tick_count = group.load(lanes.tick);
     Pack length_m = group.load(lanes.length_m);
-    Pack fault(0);
+    Pack rejection(0);
     Pack unclear(0);
     Pack anchor[4];
     group.load(anchor, lanes.anchor);
@@ -240,7 +240,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
         }
         state = next;
         motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
-        fault = broken_rule(model.limits, record.saturation, state, reference);
+        rejection = broken_rule(model.limits, record.saturation, state, reference);
         const Pack* u = state.plant.u;
         const PackMask is_slow = lane::sqrt(u[0] * u[0] + u[1] * u[1]) < max_speed_m_s;
         const PackMask is_due = (motion_bound_m(model, state, anchor) > free_motion_m) | (tick_count >= look_tick);
@@ -248,7 +248,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
         if (model.has_map) {
             unclear = lane::max(unclear, flyable_doubt(model, state, motion.attitude, factor));
         }
-        if (any(is_active & ((fault > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
+        if (any(is_active & ((rejection > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
             break;
         }
     }
@@ -259,7 +259,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     group.store(tick_count, lanes.tick);
     group.store(length_m, lanes.length_m);
     group.store(before, lanes.before);
-    group.store(fault, lanes.fault);
+    group.store(rejection, lanes.rejection);
     group.store(unclear, lanes.is_unclear);
 }
 

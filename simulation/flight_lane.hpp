@@ -71,17 +71,17 @@ class FlightLane {
         leg.flight.length_m = lanes_->length_m[number_];
         const bool is_end = leg.flight.ticks >= leg.segment.ticks();
         const bool is_unclear = lanes_->is_unclear[number_] > 0;
-        FlightFault fault = static_cast<FlightFault>(static_cast<int>(lanes_->fault[number_]));
-        if (fault == FlightFault::none && is_unclear) {
-            fault = fault_nearby();
+        Rejection rejection = static_cast<Rejection>(static_cast<int>(lanes_->rejection[number_]));
+        if (rejection == Rejection::none && is_unclear) {
+            rejection = rejection_nearby();
         }
-        if (fault == FlightFault::none && (is_unclear || is_end) && is_judged()) {
-            fault = goal_fault();
+        if (rejection == Rejection::none && (is_unclear || is_end) && is_judged()) {
+            rejection = goal_rejection();
         }
-        if (fault != FlightFault::none || is_end) {
-            end_with(fault);
+        if (rejection != Rejection::none || is_end) {
+            end_with(rejection);
         } else if (is_interrupted) {
-            end_with(FlightFault::interrupted);
+            end_with(Rejection::interrupted);
         }
     }
 
@@ -121,8 +121,8 @@ class FlightLane {
             is_judged_leg() ? static_cast<double>(segment.ticks() - job_->judged_ticks) : HUGE_VAL;
         lanes_->max_speed_m_s[number_] = HUGE_VAL;
         if (is_judged()) {
-            if (const FlightFault fault = goal_fault(); fault != FlightFault::none) {
-                end_with(fault);
+            if (const Rejection rejection = goal_rejection(); rejection != Rejection::none) {
+                end_with(rejection);
                 return;
             }
             look_after_every_tick();
@@ -139,46 +139,46 @@ class FlightLane {
 
     /// Whether the goal is met now; if so, the robot may move no farther and no faster without a look than it surely
     /// stays so.
-    FlightFault goal_fault() {
+    Rejection goal_rejection() {
         const FlightState now = state();
         if (!meets_goal(*world_->goal, plant(), now)) {
-            return FlightFault::goal_missed;
+            return Rejection::goal_missed;
         }
         const double motion_m =
             motion_within_goal_m(*world_->goal, plant(), now.plant.q, world_->model.collisions().body_reach_m());
         lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
         lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;
-        return FlightFault::none;
+        return Rejection::none;
     }
 
     void look_after_every_tick() { lanes_->free_motion_m[number_] = -1; }
 
     /// Flyable area and collision at the state of now; how far the robot may move until the next look.
-    FlightFault fault_nearby() {
+    Rejection rejection_nearby() {
         const FlightState now = state();
         if (world_->map != nullptr && !all_rotors(world_->model, now, [&](int rotor, double x_m, double z_m) {
                 return world_->map->is_flyable(world_->model.rotor_layer(rotor), x_m, z_m);
             })) {
-            return FlightFault::flyable_area;
+            return Rejection::flyable_area;
         }
         const PlanarPose pose = pose_of(now);
         const CollisionChecker& collisions = world_->model.collisions();
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
         if (comes_nearer_between(world_->model, pose_before(), pose, world_->rules.margin_m)) {
-            return FlightFault::collision;
+            return Rejection::collision;
         }
         if (world_->rules.measures_clearance || !find_free_motion(pose)) {
             look_after_every_tick();
             if (collisions.is_nearer_than(pose, world_->rules.margin_m)) {
-                return FlightFault::collision;
+                return Rejection::collision;
             }
         }
         if (world_->rules.measures_clearance) {
             SegmentFlight& flight = job_->legs[leg_].flight;
             flight.clearance_integral += world_->model.tick().tick_s * clearance_density(collisions.clearance_m(pose));
         }
-        return FlightFault::none;
+        return Rejection::none;
     }
 
     bool find_free_motion(const PlanarPose& pose) {
@@ -202,11 +202,11 @@ class FlightLane {
         return {before[0][number_], before[1][number_], before[2][number_], before[3][number_]};
     }
 
-    void end_with(FlightFault fault) {
+    void end_with(Rejection rejection) {
         FlightLeg& leg = job_->legs[leg_];
-        leg.flight.fault = fault;
+        leg.flight.rejection = rejection;
         leg.end = state();
-        if (fault == FlightFault::none && ++leg_ < job_->legs.size()) {
+        if (rejection == Rejection::none && ++leg_ < job_->legs.size()) {
             begin_leg();
             return;
         }

@@ -106,24 +106,24 @@ bool all_rotors(const FlightModel& model, const FlightState& state, const Predic
     return true;
 }
 
-/// Flies a segment tick by tick until `after` finds a fault.
-/// @param integrate see tick()   @param after callable (before, reference, record, next, next_reference) -> FlightFault
+/// Flies a segment tick by tick until `after` finds a rejection.
+/// @param integrate see tick()   @param after callable (before, reference, record, next, next_reference) -> Rejection
 template <class Factor, class Integrate, class After>
-FlightFault fly_ticks(const TickModel& model, const ReferenceSegment& segment, const Factor& factor,
-                      const Integrate& integrate, FlightState& state, After&& after) {
+Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, const Factor& factor,
+                    const Integrate& integrate, FlightState& state, After&& after) {
     ReferencePoint reference = segment.from();
     for (std::int64_t t = 0; t < segment.ticks(); ++t) {
         TickRecord<double> record{};
         const FlightState next = tick(model, state, setpoint(reference), factor, record, integrate);
         const ReferencePoint next_reference = segment.at_tick(t + 1);
-        const FlightFault fault = after(state, reference, record, next, next_reference);
+        const Rejection rejection = after(state, reference, record, next, next_reference);
         state = next;
         reference = next_reference;
-        if (fault != FlightFault::none) {
-            return fault;
+        if (rejection != Rejection::none) {
+            return rejection;
         }
     }
-    return FlightFault::none;
+    return Rejection::none;
 }
 
 }  // namespace downwash::simulation

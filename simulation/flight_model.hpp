@@ -20,7 +20,7 @@ using FlightState = simulation::State<double>;
 /// A robot in its world: everything that a flight needs and never changes. Safe to share between threads.
 class DOWNWASH_EXPORT FlightModel {
  public:
-    /// @pre robot_faults(robot) is empty
+    /// @pre robot_errors(robot) is empty
     FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::shared_ptr<const Scene> scene,
                 const AeroSettings& aero);
 

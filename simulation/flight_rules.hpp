@@ -51,12 +51,12 @@ T instability(const State<T>& state, T tracking_error_m) {
 }
 
 /// The first of the rules unstable, saturation, tracking and bounds that the end of a tick breaks, as the number of its
-/// FlightFault; 0 for none.
+/// Rejection; 0 for none.
 /// @param saturation of the tick   @param state,reference at its end
 template <class T>
 T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
               const controllers::Setpoint<T>& reference) {
-    const auto number_of = [](FlightFault fault) { return T(static_cast<double>(fault)); };
+    const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);
     const T beyond_bounds = lane::max(lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
@@ -64,10 +64,10 @@ T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
                                       lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad)));
     const T beyond_tracking = lane::max(error_m - T(limits.max_tracking_error_m),
                                         lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
-    T fault = lane::select(beyond_bounds > T(0), number_of(FlightFault::bounds), T(0));
-    fault = lane::select(beyond_tracking > T(0), number_of(FlightFault::tracking), fault);
-    fault = lane::select(saturation > T(1), number_of(FlightFault::saturation), fault);
-    return lane::select(instability(state, error_m) > T(0), number_of(FlightFault::unstable), fault);
+    T rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), T(0));
+    rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
+    rejection = lane::select(saturation > T(1), number_of(Rejection::saturation), rejection);
+    return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
 }
 
 /// Squared path length of one step in the metric of the objective `length` [m2].

@@ -18,17 +18,17 @@ double nodes_between(double low_m, double high_m, double step_m) {
 
 HoldMap empty_map(const Bounds& bounds, double step_m, double arm_rad) {
     if (!(bounds.x_high_m > bounds.x_low_m && bounds.z_high_m > bounds.z_low_m)) {
-        throw InputError({Fault{"bounds", "are empty: expected x and z to have a low end below the high one"}});
+        throw InputError({KeyError{"bounds", "are empty: expected x and z to have a low end below the high one"}});
     }
     if (!(step_m > 0 && std::isfinite(step_m))) {
-        throw InputError({Fault{"step_m", "is " + to_text(step_m) + ": expected a distance above 0 m"}});
+        throw InputError({KeyError{"step_m", "is " + to_text(step_m) + ": expected a distance above 0 m"}});
     }
     const double columns = nodes_between(bounds.x_low_m, bounds.x_high_m, step_m);
     const double rows = nodes_between(bounds.z_low_m, bounds.z_high_m, step_m);
     if (!(columns * rows <= most_hold_nodes)) {
         throw InputError(
-            {Fault{"step_m", "is " + to_text(step_m) + ", which would give " + to_text(columns * rows, 3) +
-                                 " nodes: expected a step that gives at most " + to_text(most_hold_nodes)}});
+            {KeyError{"step_m", "is " + to_text(step_m) + ", which would give " + to_text(columns * rows, 3) +
+                                    " nodes: expected a step that gives at most " + to_text(most_hold_nodes)}});
     }
     HoldMap map{arm_rad,
                 bounds.x_low_m,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/controllers/gains.hpp"
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/scene/shapes.hpp"
@@ -28,6 +28,6 @@ struct Robot {
 
 /// What makes a robot impossible to fly: numbers out of range, a rotor layout of lower rank, rotors that cannot lift
 /// the weight. Keys are relative to the robot ("rotors.positions_m"). Empty when the robot is sound.
-[[nodiscard]] DOWNWASH_EXPORT std::vector<Fault> robot_faults(const Robot& robot);
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> robot_errors(const Robot& robot);
 
 }  // namespace downwash

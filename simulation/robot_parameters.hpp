@@ -10,13 +10,13 @@
 
 namespace downwash {
 
-/// Every parameter of a robot with key, unit, default and range: the one table behind files, faults and documentation.
+/// Every parameter of a robot with key, unit, default and range: the one table behind files, errors and documentation.
 [[nodiscard]] DOWNWASH_EXPORT const ParameterTable<Robot>& robot_parameters();
 
-/// As robot_faults, for a robot that is part of something larger and of which some values are already known to be wrong
+/// As robot_errors, for a robot that is part of something larger and of which some values are already known to be wrong
 /// or missing: neither they nor anything that depends on them is reported again.
-/// @param prefix of the robot's keys, for example "robot."; the faults' keys begin with it too
-[[nodiscard]] DOWNWASH_EXPORT std::vector<Fault> further_robot_faults(const Robot& robot, FaultyKeys& faulty,
-                                                                      std::string_view prefix);
+/// @param prefix of the robot's keys, for example "robot."; the errors' keys begin with it too
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> further_robot_errors(const Robot& robot, WrongKeys& wrong,
+                                                                         std::string_view prefix);
 
 }  // namespace downwash

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::bench {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::bench {
 

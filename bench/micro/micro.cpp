@@ -50,7 +50,7 @@ void fly_ticks(benchmark::State& state, const Factor& factor) {
     for ([[maybe_unused]] auto _ : state) {
         FlightState vehicle = slot_start(bridge);
         simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, dynamics::OneStep{}, vehicle,
-                              [](const auto&...) { return FlightFault::none; });
+                              [](const auto&...) { return Rejection::none; });
         benchmark::DoNotOptimize(vehicle);
         ticks += slot_segment().ticks();
     }
@@ -304,7 +304,7 @@ void edge(benchmark::State& state, bool is_aware) {
         FlightState vehicle = slot_start(bridge);
         const SegmentFlight flight =
             fly(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, slot_segment(), vehicle);
-        if (flight.fault != FlightFault::none) {
+        if (flight.rejection != Rejection::none) {
             state.SkipWithError("the edge was refused");
             break;
         }

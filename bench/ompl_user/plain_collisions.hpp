@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::bench {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "closed_loop_ode.hpp"
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::bench {
 

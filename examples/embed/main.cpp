@@ -38,7 +38,7 @@ int main() {
     }
     const Execution& flight = *solution.execution;
     const FlightRow& end = flight.rows.back();
-    std::printf("%zu corners, %.1f s, %.0f J, end effector at (%.2f, %.2f) m: %s\n", solution.plan->waypoints.size(),
+    std::printf("%zu knots, %.1f s, %.0f J, end effector at (%.2f, %.2f) m: %s\n", solution.plan->reference.size(),
                 flight.duration_s, flight.energy_j, end.end_effector_x_m, end.end_effector_z_m,
                 flight.outcome == Outcome::ok ? "held at the goal" : "failed");
     return flight.outcome == Outcome::ok ? 0 : 3;

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "downwash/aeromap/aero_map.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "downwash/grids/factor_grid.hpp"
@@ -159,7 +159,7 @@ TEST_CASE("A position that is not finite has the factor 1") {
     }
 }
 
-TEST_CASE("Settings out of their range are refused with every fault") {
+TEST_CASE("Settings out of their range are refused with every error") {
     AeroSettings settings;
     settings.max_factor = 0.5;
     settings.min_distance_radii = -1;
@@ -170,7 +170,7 @@ TEST_CASE("Settings out of their range are refused with every fault") {
         const DirectEffect effect(scene_of({}), settings, 0);
         FAIL("nothing was thrown");
     } catch (const InputError& error) {
-        CHECK(error.faults().size() == 5);
+        CHECK(error.errors().size() == 5);
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include "../support/meshes.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "scenes.hpp"
 

@@ -7,7 +7,7 @@
 #include "../support/hard_places.hpp"
 #include "downwash/aeromap/triquadratic.hpp"
 #include "downwash/aeromap/volume_map.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "downwash/base/csv_lines.hpp"
-#include "downwash/base/line_faults.hpp"
+#include "downwash/base/line_errors.hpp"
 
 using namespace downwash;
 
@@ -38,23 +38,23 @@ TEST_CASE("comma separated text is read line by line, whatever ends the lines") 
     CHECK_FALSE(CsvLines("\n \n").next());
 }
 
-TEST_CASE("faults of a file name their lines, and the twentieth ends the reading") {
-    LineFaults faults("a.csv");
-    faults.throw_any();
-    faults.add(0, "is empty");
-    faults.add(3, "is short");
-    faults.add(4, 7, "is no number");
+TEST_CASE("errors of a file name their lines, and the twentieth ends the reading") {
+    LineErrors errors("a.csv");
+    errors.throw_any();
+    errors.add(0, "is empty");
+    errors.add(3, "is short");
+    errors.add(4, 7, "is no number");
     try {
-        faults.throw_any();
+        errors.throw_any();
         FAIL("nothing was thrown");
     } catch (const InputError& error) {
-        REQUIRE(error.faults().size() == 3);
-        CHECK(error.faults()[0].message == "a.csv: is empty");
-        CHECK(error.faults()[1].message == "a.csv:3: is short");
-        CHECK(error.faults()[2].message == "a.csv:4:7: is no number");
+        REQUIRE(error.errors().size() == 3);
+        CHECK(error.errors()[0].message == "a.csv: is empty");
+        CHECK(error.errors()[1].message == "a.csv:3: is short");
+        CHECK(error.errors()[2].message == "a.csv:4:7: is no number");
     }
     for (std::size_t line = 4; line < 20; ++line) {
-        faults.add(line, "is wrong");
+        errors.add(line, "is wrong");
     }
-    CHECK_THROWS_AS(faults.add(20, "is wrong"), InputError);
+    CHECK_THROWS_AS(errors.add(20, "is wrong"), InputError);
 }

@@ -79,7 +79,7 @@ TEST_CASE("costs over time are those of the best plan so far, as far as the limi
 TEST_CASE("failures are listed by cause with their seeds") {
     CampaignResults results = some_results();
     results.runs[5].status = RunStatus::impossible;
-    results.runs[5].fault = "start: is in collision";
+    results.runs[5].error = "start: is in collision";
     const CampaignReport report = report_of(results);
     REQUIRE(report.failures.size() == 2);
     CHECK(report.failures[0].cause == "impossible: start: is in collision");

@@ -113,7 +113,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     written.improvements = {{0.25, 3, 12.5, {}}, {0.5, 9, 1.0 / 7, 2.0 / 7}};
     written.refusals = {{"collision", 11}, {"bounds", 12}};
     written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
-    written.fault = "a 'quoted'; fault";
+    written.error = "a 'quoted'; error";
     {
         CampaignStore store(folder.path() / "results", plan, false);
         store.add(written);
@@ -142,7 +142,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->outcome == Outcome::left_flyable_area);
     CHECK(read.flight->min_clearance_m == HUGE_VAL);
-    CHECK(read.fault == written.fault);
+    CHECK(read.error == written.error);
 }
 
 TEST_CASE("the file has the tables and columns that Planner Arena reads") {
@@ -249,7 +249,7 @@ TEST_CASE("a margin that makes a problem impossible is a run that failed, with t
     for (const Run& run : results_in(folder).runs) {
         const bool is_wide = run.planner == 1;
         CHECK(run.status == (is_wide ? RunStatus::impossible : RunStatus::solved));
-        CHECK((run.fault.find("nearer than planner.safety_margin_m, 3") != std::string::npos) == is_wide);
+        CHECK((run.error.find("nearer than planner.safety_margin_m, 3") != std::string::npos) == is_wide);
     }
 }
 

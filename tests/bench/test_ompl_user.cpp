@@ -36,7 +36,8 @@ void step(const ClosedLoopOde& ode, const double velocity[3], double dt_s, std::
 
 /// Worst difference in (x, z, pitch, arm) between the ODE and our ticks along the same reference, and the greatest K
 /// on the way.
-double worst_difference(const FlightModel& model, const AeroMap* map, const Waypoint& from, double& greatest_factor) {
+double worst_difference(const FlightModel& model, const AeroMap* map, const Configuration& from,
+                        double& greatest_factor) {
     const ClosedLoopOde ode(model, map);
     std::vector<double> state = Ode::resting_at(from.x_m, from.z_m, from.arm_rad);
     const double q[4] = {from.x_m, from.z_m, 0, from.arm_rad};

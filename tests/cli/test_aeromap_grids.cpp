@@ -101,19 +101,19 @@ TEST_CASE("The whole vehicle is written over place and pitch as its formulas say
 
 TEST_CASE("A table of the vehicle that cannot be is refused before it is built") {
     const ScratchFolder folder;
-    const auto fault = [&](const std::vector<std::string>& more) {
+    const auto error = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"aeromap", "build", problem_file("open_air")};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Result result = run(folder, arguments);
         CHECK(result.code == 2);
         return result.err;
     };
-    CHECK_THAT(fault({"-o", "v.vti", "--pitch-deg", "0"}), Contains("expected a name that ends in .csv"));
-    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "90"}),
+    CHECK_THAT(error({"-o", "v.vti", "--pitch-deg", "0"}), Contains("expected a name that ends in .csv"));
+    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "90"}),
                Contains("--pitch-deg 90: expected degrees, at most 80"));
-    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "--step", "0.0001"}), Contains("choose it coarser"));
-    CHECK_THAT(fault({"-o", "no/such/v.csv", "--pitch-deg", "0"}), Contains("no/such/v.csv"));
-    CHECK_THAT(fault({"-o", "v.csv", "--pitch-deg", "0", "--rotor", "1"}), Contains("--rotor"));
+    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "--step", "0.0001"}), Contains("choose it coarser"));
+    CHECK_THAT(error({"-o", "no/such/v.csv", "--pitch-deg", "0"}), Contains("no/such/v.csv"));
+    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "--rotor", "1"}), Contains("--rotor"));
     CHECK(files_in(folder.path() / "run").empty());
 }
 

@@ -123,7 +123,7 @@ TEST_CASE("A signal ends a campaign at once, with what is finished") {
     CHECK(result.out == "0 of 200 runs are in out; --resume goes on with the others\n");
 }
 
-TEST_CASE("Faults of a campaign file are reported with their place") {
+TEST_CASE("Errors of a campaign file are reported with their place") {
     const ScratchFolder folder;
     write_campaign(folder, "seads: 3");
     const Result result = run(folder, {"bench", "run", "campaign.yaml", "--out", "out"});

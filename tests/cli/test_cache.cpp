@@ -70,7 +70,7 @@ TEST_CASE("Solve keeps its map, uses it again and does not trust a damaged one")
     }
 }
 
-TEST_CASE("A cache that cannot be written is no cache and no fault") {
+TEST_CASE("A cache that cannot be written is no cache and no error") {
     const ScratchFolder folder;
     const std::string without = trajectory_of(folder, {"--no-cache"});
     write_file(folder / "file", "in the way");

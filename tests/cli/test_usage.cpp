@@ -100,7 +100,7 @@ TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
     CHECK(std::filesystem::is_empty(folder.path() / "run"));
 }
 
-TEST_CASE("A fault in an option names the option and a remedy") {
+TEST_CASE("A error in an option names the option and a remedy") {
     const ScratchFolder folder;
     const Result result = run(folder, {"solve", problem_file("open_air"), "--variant", "mp-arm-adda", "--seed", "-1"});
     CHECK(result.err.find("--variant is 'mp-arm-adda'") != std::string::npos);
@@ -108,7 +108,7 @@ TEST_CASE("A fault in an option names the option and a remedy") {
     CHECK(result.err.find("--seed is '-1'") != std::string::npos);
 }
 
-TEST_CASE("Check tells of every fault with file and line and column") {
+TEST_CASE("Check tells of every error with file and line and column") {
     const ScratchFolder folder;
     const std::string bad = folder / "bad.yaml";
     write_file(bad, "schema: downwash/problem/v1\nname: b a d\nrobot: nowhere.yaml\ngaol: {}\n");
@@ -122,13 +122,13 @@ TEST_CASE("Check tells of every fault with file and line and column") {
 
     const Result programs = run(folder, {"check", good, bad, "--json"});
     CHECK(programs.code == 2);
-    const auto faults = programs.json().at("faults");
-    REQUIRE(faults.size() >= 2);
-    for (const auto& fault : faults) {
-        CHECK(fault.at("file") == bad);
-        CHECK(fault.at("line").get<int>() >= 1);
-        CHECK(fault.at("column").get<int>() >= 1);
-        CHECK_FALSE(fault.at("message").get<std::string>().empty());
+    const auto errors = programs.json().at("faults");
+    REQUIRE(errors.size() >= 2);
+    for (const auto& error : errors) {
+        CHECK(error.at("file") == bad);
+        CHECK(error.at("line").get<int>() >= 1);
+        CHECK(error.at("column").get<int>() >= 1);
+        CHECK_FALSE(error.at("message").get<std::string>().empty());
     }
     CHECK(run(folder, {"check", good, "--json"}).json() == nlohmann::json{{"faults", nlohmann::json::array()}});
 }

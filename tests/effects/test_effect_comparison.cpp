@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_comparison.hpp"
 #include "downwash/effects/effect_fit.hpp"
 

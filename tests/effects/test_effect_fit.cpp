@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../support/random.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_fit.hpp"
 
 using namespace downwash;
@@ -88,7 +88,7 @@ std::vector<Measurement> shipped(const std::string& source, const std::string& s
     return read_measurements(DOWNWASH_MEASUREMENTS).with("source", source).with("surface", surface).points;
 }
 
-std::string fault_of(EffectModel model, const std::vector<Measurement>& points, const FitOptions& options = {}) {
+std::string error_of(EffectModel model, const std::vector<Measurement>& points, const FitOptions& options = {}) {
     try {
         static_cast<void>(fit_effect(model, points, options));
     } catch (const InputError& error) {
@@ -306,7 +306,7 @@ TEST_CASE("A weighted fit believes each point by its sigma") {
     CHECK(std::abs(fit_effect(EffectModel::he, points).parameters[0].value - 0.4) > 0.05);
     points[4].sigma.reset();
     points[4].line = 12;
-    CHECK(fault_of(EffectModel::he, points, weighted) ==
+    CHECK(error_of(EffectModel::he, points, weighted) ==
           "line 12 has no sigma; expected one for every measurement of a weighted fit");
 }
 
@@ -330,17 +330,17 @@ TEST_CASE("Multirotor models are fitted with their neighbours") {
 
 TEST_CASE("Fits that make no sense are refused") {
     const std::vector<Measurement> one = points_of({{1, 1.1}, {1, 1.12}});
-    CHECK(fault_of(EffectModel::he, one) ==
+    CHECK(error_of(EffectModel::he, one) ==
           "the measurements have 1 different z_over_r; expected at least 2, one for each parameter of the model");
-    CHECK(fault_of(EffectModel::he, one, fixing("b", 2)) == "none");
-    CHECK(fault_of(EffectModel::he, {}) == "there are no measurements to fit");
-    CHECK(fault_of(EffectModel::table, one) == "a table has no parameters to fit; expected the name of a formula");
-    CHECK(fault_of(EffectModel::he, one, fixing("k1", 2)) == "the model he has no parameter 'k1' to be fixed");
-    CHECK(fault_of(EffectModel::he, one, fixing("b", 0)) ==
+    CHECK(error_of(EffectModel::he, one, fixing("b", 2)) == "none");
+    CHECK(error_of(EffectModel::he, {}) == "there are no measurements to fit");
+    CHECK(error_of(EffectModel::table, one) == "a table has no parameters to fit; expected the name of a formula");
+    CHECK(error_of(EffectModel::he, one, fixing("k1", 2)) == "the model he has no parameter 'k1' to be fixed");
+    CHECK(error_of(EffectModel::he, one, fixing("b", 0)) ==
           "the parameter b cannot be fixed at 0; expected a number above 0 up to 100");
-    CHECK(fault_of(EffectModel::he, one, fixing("a", std::nan(""))) ==
+    CHECK(error_of(EffectModel::he, one, fixing("a", std::nan(""))) ==
           "the parameter a cannot be fixed at nan; expected a number from 0 up to 100");
-    CHECK(fault_of(EffectModel::cheeseman_bennett, points_of({{0.2, 1.5}})) ==
+    CHECK(error_of(EffectModel::cheeseman_bennett, points_of({{0.2, 1.5}})) ==
           "the formula of cheeseman-bennett has a pole where there are measurements; leave out those nearest to the "
           "surface");
 }
@@ -370,7 +370,7 @@ TEST_CASE("Measurements keep all their columns and can be chosen by them") {
 }
 
 TEST_CASE("Measurements that cannot be used are refused with their line") {
-    const auto fault = [](const std::string& text) -> std::string {
+    const auto error = [](const std::string& text) -> std::string {
         try {
             static_cast<void>(parse_measurements(text, "m.csv"));
         } catch (const InputError& error) {
@@ -378,13 +378,13 @@ TEST_CASE("Measurements that cannot be used are refused with their line") {
         }
         return "none";
     };
-    CHECK(fault("z_over_r,ratio\n1,2\n") == "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
-    CHECK(fault("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
-    CHECK(fault("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
+    CHECK(error("z_over_r,ratio\n1,2\n") == "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
+    CHECK(error("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
+    CHECK(error("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
           "m.csv:2: z_over_r is '0'; expected a number from 1e-06 to 1000\n"
           "m.csv:3: thrust_ratio is '-1'; expected a number from 0 to 100\n"
           "m.csv:4: z_over_r is 'nan'; expected a number from 1e-06 to 1000");
-    CHECK(fault("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
+    CHECK(error("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
           "m.csv:4: sigma is '0'; expected a number from 1e-09 to 100");
     CHECK_THROWS_WITH(read_measurements("/nowhere.csv"), "/nowhere.csv: cannot be read: there is no such file");
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../support/random.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 using namespace downwash;
@@ -38,7 +38,7 @@ double boost_pchip(std::vector<double> x, std::vector<double> y, double at) {
     return boost::math::interpolators::pchip(std::move(x), std::move(y))(at);
 }
 
-std::string fault_of(const std::string& text) {
+std::string error_of(const std::string& text) {
     try {
         static_cast<void>(parse_effect_table(text, "t.csv"));
     } catch (const InputError& error) {
@@ -207,56 +207,56 @@ TEST_CASE("A table is read from rows in any order") {
 
 TEST_CASE("Tables that cannot be used are refused with their line") {
     const std::string head = "z_over_r,factor\n";
-    CHECK(fault_of("") == "t.csv: holds no table; expected a line with the names of the columns, then rows");
-    CHECK(fault_of("# nothing\n") == fault_of(""));
-    CHECK(fault_of(head) == "t.csv:1: no rows follow; expected a table of two or more distances");
-    CHECK(fault_of("#\nz_over_r;factor\n1;2\n") ==
+    CHECK(error_of("") == "t.csv: holds no table; expected a line with the names of the columns, then rows");
+    CHECK(error_of("# nothing\n") == error_of(""));
+    CHECK(error_of(head) == "t.csv:1: no rows follow; expected a table of two or more distances");
+    CHECK(error_of("#\nz_over_r;factor\n1;2\n") ==
           "t.csv:2: expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
-    CHECK(fault_of("z_over_r,factor,rpm\n1,2,3\n") ==
+    CHECK(error_of("z_over_r,factor,rpm\n1,2,3\n") ==
           "t.csv:1: expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
-    CHECK(fault_of("z_over_r,z_over_r\n") ==
+    CHECK(error_of("z_over_r,z_over_r\n") ==
           "t.csv:1: the column 'z_over_r' stands there twice; expected the names of "
           "the columns, separated by commas");
-    CHECK(fault_of(head + "1,1.2,3\n") == "t.csv:2: holds 3 cells; expected 2, one for each column of line 1");
-    CHECK(fault_of(head + "1,1.2\n\n2,\n") == "t.csv:4: factor is ''; expected a number from 0 to 100");
-    CHECK(fault_of(head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n") ==
+    CHECK(error_of(head + "1,1.2,3\n") == "t.csv:2: holds 3 cells; expected 2, one for each column of line 1");
+    CHECK(error_of(head + "1,1.2\n\n2,\n") == "t.csv:4: factor is ''; expected a number from 0 to 100");
+    CHECK(error_of(head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n") ==
           "t.csv:2: factor is 'nan'; expected a number from 0 to 100\n"
           "t.csv:3: factor is 'inf'; expected a number from 0 to 100\n"
           "t.csv:4: factor is '-0.1'; expected a number from 0 to 100\n"
           "t.csv:5: factor is '101'; expected a number from 0 to 100\n"
           "t.csv:6: factor is '1.2x'; expected a number from 0 to 100");
-    CHECK(fault_of(head + "-1,1.2\n2,1\n") == "t.csv:2: z_over_r is '-1'; expected a number from 0 to 1000");
-    CHECK(fault_of(head + "\"1\",1.2\n") ==
+    CHECK(error_of(head + "-1,1.2\n2,1\n") == "t.csv:2: z_over_r is '-1'; expected a number from 0 to 1000");
+    CHECK(error_of(head + "\"1\",1.2\n") ==
           "t.csv:2: holds a quotation mark; expected plain cells, separated by commas");
-    CHECK(fault_of(head + "1,1.2\n1.0,1.1\n") == "t.csv: z_over_r is 1 in every row; expected two or more distances");
-    CHECK(fault_of(head + "1,1.2\n2,1.1\n1.0,1.3\n") == "t.csv:4: z_over_r 1 stands in line 2 already");
+    CHECK(error_of(head + "1,1.2\n1.0,1.1\n") == "t.csv: z_over_r is 1 in every row; expected two or more distances");
+    CHECK(error_of(head + "1,1.2\n2,1.1\n1.0,1.3\n") == "t.csv:4: z_over_r 1 stands in line 2 already");
     CHECK(
-        fault_of(head + "1,1.2\n1.0000001,1.1\n") ==
+        error_of(head + "1,1.2\n1.0000001,1.1\n") ==
         "t.csv:3: z_over_r 1.0000001 is hardly more than 1; expected steps of at least 1e-6, or the very same number");
-    CHECK(fault_of("z_over_r,d_over_r,factor\n1,1,1\n1,2,1\n2,1,1\n") ==
+    CHECK(error_of("z_over_r,d_over_r,factor\n1,1,1\n1,2,1\n2,1,1\n") ==
           "t.csv: has no row for z_over_r 2, d_over_r 2; expected one for every combination of distances");
-    CHECK(fault_of("z_over_r,d_over_r,factor\n1,1,1\n2,1,1\n") ==
+    CHECK(error_of("z_over_r,d_over_r,factor\n1,1,1\n2,1,1\n") ==
           "t.csv: d_over_r is 1 in every row; expected two or more distances, or no such column");
 }
 
-TEST_CASE("Long files are refused before they fill the memory, and not every fault is told") {
+TEST_CASE("Long files are refused before they fill the memory, and not every error is told") {
     std::string text = "z_over_r,factor\n";
     for (int i = 0; i < 100'001; ++i) {
         text += "1,1\n";
     }
-    CHECK(fault_of(text) == "t.csv:100002: is row 100001; expected at most 100000");
-    std::string faulty = "z_over_r,factor\n";
+    CHECK(error_of(text) == "t.csv:100002: is row 100001; expected at most 100000");
+    std::string wrong = "z_over_r,factor\n";
     for (int i = 0; i < 1000; ++i) {
-        faulty += "x,1\n";
+        wrong += "x,1\n";
     }
-    const std::string faults = fault_of(faulty);
-    CHECK(std::count(faults.begin(), faults.end(), '\n') == 19);
+    const std::string errors = error_of(wrong);
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 19);
     // Distances that make a grid of 2.5e9 nodes where there are 50000 rows.
     std::string sparse = "z_over_r,d_over_r,factor\n";
     for (int i = 0; i < 50'000; ++i) {
         sparse += std::to_string(i * 0.01) + "," + std::to_string(i * 0.1) + ",1\n";
     }
-    CHECK_THAT(fault_of(sparse), Catch::Contains("has no row for z_over_r 0, d_over_r 0.1;"));
+    CHECK_THAT(error_of(sparse), Catch::Contains("has no row for z_over_r 0, d_over_r 0.1;"));
 }
 
 TEST_CASE("Tables made in a program are checked too") {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "../support/solved_run.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/exports/export_format.hpp"
 #include "downwash/exports/setpoints.hpp"
 
@@ -77,10 +77,10 @@ TEST_CASE("a mission lies where the scene does") {
     const json plan = json::parse(written("qgc", record(), at(47, 8, bearing_deg)));
     CHECK(plan["fileType"] == "Plan");
     const json& items = plan["mission"]["items"];
-    REQUIRE(items.size() == record().plan->waypoints.size());
+    REQUIRE(items.size() == record().plan->reference.size());
     CHECK(items[0]["command"] == 22);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const Waypoint& corner = record().plan->waypoints[i];
+        const Configuration corner = configuration_of(record().plan->reference[i].point);
         const json& params = items[i]["params"];
         const double angle_rad = bearing_deg / 57.295779513082320877;
         CHECK((params[4].get<double>() - 47) * latitude_m == Approx(corner.x_m * std::cos(angle_rad)).margin(0.01));
@@ -102,10 +102,9 @@ TEST_CASE("a mission holds where the plan does") {
         run.plan->reference[i].tick += 700;
     }
     run.plan->reference.insert(run.plan->reference.begin() + 2, held);
-    run.plan->waypoints.insert(run.plan->waypoints.begin() + 2, run.plan->waypoints[1]);
     const json plan = json::parse(written("qgc", run, at(47, 8, 0)));
     const json& items = plan["mission"]["items"];
-    REQUIRE(items.size() == record().plan->waypoints.size());
+    REQUIRE(items.size() == record().plan->reference.size());
     CHECK(items[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 
 using namespace downwash;
 

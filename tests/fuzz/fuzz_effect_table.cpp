@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 /// Whatever is read as a table gives factors within its range at every distance.

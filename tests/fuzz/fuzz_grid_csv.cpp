@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "../grids/grids.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 
 /// Whatever is read as a grid can be written and read again, the same to the bit.

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_comparison.hpp"
 #include "downwash/effects/measurements.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/mesh_file.hpp"
 
 /// The bytes as STL and as OBJ; whatever is read has no corner but its own vertices.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/octomap_file.hpp"
 
 /// Whatever is read lies within the space that a tree can span.

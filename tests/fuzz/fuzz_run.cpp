@@ -4,12 +4,12 @@
 #include <string_view>
 
 #include "../support/scratch_folder.hpp"
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/exports/export_format.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
-#include "downwash/problems/run_record.hpp"
+#include "downwash/results/run_record.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include "../support/scratch_folder.hpp"
 #include "downwash/base/files.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "downwash/problems/solution_file.hpp"
+#include "downwash/results/solution_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const downwash::Problem problem = downwash::read_problem(DOWNWASH_PROBLEMS "/open_air.yaml");

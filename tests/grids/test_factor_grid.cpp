@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "grids.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::string fault_of(const FactorGridParts& parts) {
+std::string error_of(const FactorGridParts& parts) {
     try {
         const FactorGrid grid(parts);
     } catch (const InputError& error) {
@@ -155,13 +155,13 @@ TEST_CASE("what is no grid is refused by its part") {
     for (const auto& [change, message] : cases) {
         FactorGridParts parts = two_by_two();
         change(parts);
-        CHECK(fault_of(parts) == message);
+        CHECK(error_of(parts) == message);
     }
     FactorGridParts twice = two_by_two();
     twice.lateral_offsets_m = {0.5, 0.5};
     twice.fields[0].values.resize(8, 1);
-    CHECK(fault_of(twice) == "lateral_offsets_m: expected rising distances, more than 2e-6 m apart");
-    CHECK(fault_of(two_by_two()) == "none");
+    CHECK(error_of(twice) == "lateral_offsets_m: expected rising distances, more than 2e-6 m apart");
+    CHECK(error_of(two_by_two()) == "none");
 }
 
 TEST_CASE("one may fly where all corners of the cell are flagged") {

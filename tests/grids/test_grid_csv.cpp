@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "../support/scratch_folder.hpp"
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "grids.hpp"
 
@@ -11,7 +11,7 @@ using namespace downwash;
 
 namespace {
 
-std::string fault_of(const std::string& text) {
+std::string error_of(const std::string& text) {
     try {
         static_cast<void>(parse_factor_grid(text, "g.csv"));
     } catch (const InputError& error) {
@@ -77,7 +77,7 @@ TEST_CASE("a grid survives CSV to the bit, and its text to the byte") {
     }
 }
 
-TEST_CASE("every fault of a CSV grid is told with its line") {
+TEST_CASE("every error of a CSV grid is told with its line") {
     const std::string head = "x_m,z_m,factor\n";
     const std::vector<std::pair<std::string, std::string>> cases{
         {"", "g.csv: holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor"},
@@ -119,32 +119,32 @@ TEST_CASE("every fault of a CSV grid is told with its line") {
         {"# frame_heading_rad: inf\n" + head, "g.csv:1:1: 'inf': expected 1 finite number"},
     };
     for (const auto& [text, message] : cases) {
-        CHECK(fault_of(text).substr(0, message.size()) == message);
+        CHECK(error_of(text).substr(0, message.size()) == message);
     }
-    CHECK(fault_of(head + "0,0,1\n1,0,1\n0,1,1\n1,1,1\n") == "none");
+    CHECK(error_of(head + "0,0,1\n1,0,1\n0,1,1\n1,1,1\n") == "none");
 }
 
 TEST_CASE("coordinates may be off their nodes by a millionth of a step, not more") {
     const auto with_middle = [](const std::string& x) {
         return "x_m,z_m,factor\n0,0,1\n" + x + ",0,1\n2,0,1\n0,1,1\n" + x + ",1,1\n2,1,1\n";
     };
-    CHECK(fault_of(with_middle("1.0000009")) == "none");
-    CHECK(fault_of(with_middle("1.0000011")).starts_with("g.csv:3:1: x_m is 1.0000011"));
+    CHECK(error_of(with_middle("1.0000009")) == "none");
+    CHECK(error_of(with_middle("1.0000011")).starts_with("g.csv:3:1: x_m is 1.0000011"));
 }
 
-TEST_CASE("many faults do not make an endless message, many coordinates no large grid") {
+TEST_CASE("many errors do not make an endless message, many coordinates no large grid") {
     std::string text = "x_m,z_m,factor\n";
     for (int i = 0; i < 1000; ++i) {
         text += "a,b,c\n";
     }
-    const std::string message = fault_of(text);
+    const std::string message = error_of(text);
     CHECK(std::count(message.begin(), message.end(), '\n') == 19);
 
     text = "x_m,z_m,factor\n";
     for (int i = 0; i < 10000; ++i) {
         text += std::to_string(i) + "," + std::to_string(i) + ",1\n";
     }
-    CHECK(fault_of(text) == "g.csv: has 10000 rows for 100000000 combinations of its coordinates: expected one each");
+    CHECK(error_of(text) == "g.csv: has 10000 rows for 100000000 combinations of its coordinates: expected one each");
 }
 
 TEST_CASE("a file of a byte more than two GiB is refused by its size, whatever it is called") {

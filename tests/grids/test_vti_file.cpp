@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "grids.hpp"
 
@@ -20,7 +20,7 @@ std::string foreign_text(const std::string& name) {
     return read_file(std::filesystem::path(DOWNWASH_TEST_VTI) / (name + ".vti"), 1000000);
 }
 
-std::string fault_of(const std::string& text) {
+std::string error_of(const std::string& text) {
     try {
         static_cast<void>(parse_factor_grid(text, "g.vti"));
     } catch (const InputError& error) {
@@ -101,7 +101,7 @@ TEST_CASE("another array can be asked for") {
     reading.array = "K";
     const std::string text = with(foreign_text("ascii"), "Name=\"factor\"", "Name=\"K\"");
     CHECK(parse_factor_grid(text, "g.vti", reading).nodes() == 6);
-    CHECK(fault_of(text) == "g.vti:4:4: PointData holds no array 'factor'; it holds K");
+    CHECK(error_of(text) == "g.vti:4:4: PointData holds no array 'factor'; it holds K");
 }
 
 TEST_CASE("a grid that another program cut out of ours stands where that program says") {
@@ -116,7 +116,7 @@ TEST_CASE("a grid that another program cut out of ours stands where that program
 
 TEST_CASE("what is no image of thrust factors is refused with its place") {
     const std::string ascii = foreign_text("ascii");
-    CHECK(fault_of(ascii) == "none");
+    CHECK(error_of(ascii) == "none");
     const std::vector<std::pair<std::string, std::string>> cases{
         {"<", "g.vti:1:1: is no XML: Could not determine tag type"},
         {"<a>", "g.vti:1:3: is no XML: Start-end tags mismatch"},
@@ -162,25 +162,25 @@ TEST_CASE("what is no image of thrust factors is refused with its place") {
          "g.vti:9:6: array 'factor' is there twice"},
     };
     for (const auto& [text, message] : cases) {
-        CHECK(fault_of(text) == message);
+        CHECK(error_of(text) == message);
     }
 }
 
 TEST_CASE("a wrong byte order or header type does not pass for data") {
     for (const char* name : {"appended_raw", "appended_base64_zlib_blocks", "binary_zlib", "uint8"}) {
         INFO(name);
-        CHECK(fault_of(with(foreign_text(name), "LittleEndian", "BigEndian"))
+        CHECK(error_of(with(foreign_text(name), "LittleEndian", "BigEndian"))
                   .find("is the byte_order or header_type wrong?") != std::string::npos);
-        CHECK(fault_of(with(foreign_text(name), "UInt64", "UInt32")) != "none");
+        CHECK(error_of(with(foreign_text(name), "UInt64", "UInt32")) != "none");
     }
     for (const char* name : {"appended_raw_big_endian", "appended_base64_big_endian"}) {
-        CHECK(fault_of(with(foreign_text(name), "BigEndian", "LittleEndian"))
+        CHECK(error_of(with(foreign_text(name), "BigEndian", "LittleEndian"))
                   .find("is the byte_order or header_type wrong?") != std::string::npos);
     }
     // Numbers alone, without a header of counts: absurd values.
     const std::string text = with(foreign_text("ascii"), "Float64\" Name=\"factor\" format=\"ascii\"",
                                   "Int16\" Name=\"factor\" format=\"ascii\"");
-    CHECK(fault_of(with(text, "1.625", "256")) ==
+    CHECK(error_of(with(text, "1.625", "256")) ==
           "g.vti: factor value 5 of 6 is 256: expected a finite factor from 0 to 100");
 }
 
@@ -190,7 +190,7 @@ TEST_CASE("no truncated file passes for a whole one") {
         const std::size_t whole = text.find("</VTKFile>") + std::string("</VTKFile>").size();
         for (std::size_t length = 0; length < whole; ++length) {
             INFO(name << " cut to " << length << " bytes");
-            REQUIRE(fault_of(text.substr(0, length)) != "none");
+            REQUIRE(error_of(text.substr(0, length)) != "none");
         }
     }
 }
@@ -204,7 +204,7 @@ TEST_CASE("no damaged byte makes a reader crash") {
             std::string damaged = text;
             const auto at = static_cast<std::size_t>(random.integer(0, static_cast<int>(text.size()) - 1));
             damaged[at] = static_cast<char>(random.integer(0, 255));
-            static_cast<void>(fault_of(damaged));
+            static_cast<void>(error_of(damaged));
         }
     }
     SUCCEED();

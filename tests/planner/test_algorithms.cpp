@@ -50,8 +50,7 @@ TEST_CASE("every algorithm solves an easy problem, twice with the same bytes") {
         CHECK(a.execution_cost == b.execution_cost);
         CHECK(a.planning.first_solution_wall_s);
         CHECK(a.planning.improvements.back().cost == Approx(a.cost));
-        CHECK(a.plan->waypoints.size() == a.plan->reference.size());
-        CHECK(a.plan->waypoints.front().x_m == problem.start.x_m);
+        CHECK(a.plan->first().x_m == problem.start.x_m);
         if (variant == Variant::mp_arm_ada) {
             CHECK(a.execution->outcome == Outcome::ok);
             CHECK(a.execution_cost == Approx(a.cost).epsilon(0.01));
@@ -131,7 +130,7 @@ TEST_CASE("where hardly any sample of the goal is clear, what is called solved e
             const Solution solution = solve(problem);
             if (solution.status == Status::solved) {
                 ++solved;
-                const Waypoint& end = solution.plan->waypoints.back();
+                const Configuration end = solution.plan->last();
                 CHECK(std::hypot(end.x_m + arm_m * std::cos(end.arm_rad) - goal.x_m,
                                  end.z_m - arm_m * std::sin(end.arm_rad) - goal.z_m) <= goal.tolerance_m);
             }
@@ -195,23 +194,23 @@ TEST_CASE("every algorithm comes to a good end when its time is over") {
 }
 
 TEST_CASE("an algorithm that does not plan for the variant is refused, and another is named") {
-    const auto fault_of = [](Variant variant, std::string_view algorithm) {
-        const std::vector<Fault> faults = problem_faults(with(variant, algorithm));
-        REQUIRE(faults.size() == 1);
-        CHECK(faults.front().key == "planner.algorithm");
-        return faults.front().message;
+    const auto error_of = [](Variant variant, std::string_view algorithm) {
+        const std::vector<KeyError> errors = problem_errors(with(variant, algorithm));
+        REQUIRE(errors.size() == 1);
+        CHECK(errors.front().key == "planner.algorithm");
+        return errors.front().message;
     };
     CHECK(
-        fault_of(Variant::mp_arm, "kpiece1") ==
+        error_of(Variant::mp_arm, "kpiece1") ==
         "is 'kpiece1', which does not plan for mp-arm: expected rrt-star, rrt-connect, informed-rrt-star or bit-star; "
         "did you mean 'rrt-star'?");
-    CHECK(fault_of(Variant::mp_arm_da, "bit-star") ==
+    CHECK(error_of(Variant::mp_arm_da, "bit-star") ==
           "is 'bit-star', which does not plan for mp-arm-da: expected rrt-star, rrt, sst, kpiece1 or est; did you mean "
           "'rrt-star'?");
     int refused = 0;
     for (const Variant variant : variants) {
         for (const AlgorithmInfo& algorithm : algorithms()) {
-            refused += problem_faults(with(variant, algorithm.name)).empty() ? 0 : 1;
+            refused += problem_errors(with(variant, algorithm.name)).empty() ? 0 : 1;
         }
     }
     CHECK(refused == 10);  // four planners over controls for mp-arm, three geometric ones for each of the others

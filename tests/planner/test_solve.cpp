@@ -44,10 +44,9 @@ TEST_CASE("each variant solves an easy problem and its plan starts where the veh
         REQUIRE(solution.status == Status::solved);
         REQUIRE(solution.plan);
         REQUIRE(solution.execution);
-        CHECK(solution.plan->waypoints.front().x_m == problem.start.x_m);
-        CHECK(solution.plan->waypoints.front().z_m == problem.start.z_m);
+        CHECK(solution.plan->first().x_m == problem.start.x_m);
+        CHECK(solution.plan->first().z_m == problem.start.z_m);
         CHECK(solution.plan->reference.front().tick == 0);
-        CHECK(solution.plan->reference.size() == solution.plan->waypoints.size());
         CHECK(solution.cost > 0);
         CHECK(solution.planning.first_solution_wall_s);
         CHECK(solution.planning.iterations <= 1500);
@@ -309,9 +308,9 @@ TEST_CASE("arm limits are kept in the plan and in the flight") {
         problem.planner.max_iterations = variant == Variant::mp_arm ? 1500 : 100;
         const Solution solution = solve(problem);
         REQUIRE(solution.status == Status::solved);
-        for (const Waypoint& waypoint : solution.plan->waypoints) {
-            CHECK(waypoint.arm_rad >= -1.4);
-            CHECK(waypoint.arm_rad <= 1.7);
+        for (const ReferenceKnot& knot : solution.plan->reference) {
+            CHECK(knot.point.position[2] >= -1.4);
+            CHECK(knot.point.position[2] <= 1.7);
         }
     }
 }
@@ -325,7 +324,7 @@ TEST_CASE("a robot with rotor lag is planned for and flown") {
     CHECK(solution.execution->outcome == Outcome::ok);
 }
 
-TEST_CASE("a problem that cannot be planned is refused with every fault") {
+TEST_CASE("a problem that cannot be planned is refused with every error") {
     Problem problem = test::ceiling_problem();
     problem.start.z_m = 5.4;
     problem.robot.rotors.max_thrust_n = 5;
@@ -333,7 +332,7 @@ TEST_CASE("a problem that cannot be planned is refused with every fault") {
         static_cast<void>(solve(problem));
         FAIL("expected an InputError");
     } catch (const InputError& error) {
-        CHECK(error.faults().size() >= 2);
+        CHECK(error.errors().size() >= 2);
     }
 }
 
@@ -418,7 +417,7 @@ TEST_CASE("where a surface saves energy the aware planner flies and holds along 
         CHECK(aware.execution->outcome == Outcome::ok);
         aware_j.push_back(aware.execution->energy_j);
         unaware_j.push_back(unaware.execution->energy_j);
-        below_the_deck += aware.plan->waypoints.back().z_m > 4.4 ? 1 : 0;
+        below_the_deck += aware.plan->last().z_m > 4.4 ? 1 : 0;
     }
     std::sort(aware_j.begin(), aware_j.end());
     std::sort(unaware_j.begin(), unaware_j.end());

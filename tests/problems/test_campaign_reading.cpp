@@ -30,8 +30,8 @@ struct CampaignFolder {
         return read_campaign(folder / "campaign.yaml");
     }
 
-    /// Faults after one change to the sound campaign, without the folder's path.
-    [[nodiscard]] std::string faults_after(std::string_view from, std::string_view to) const {
+    /// Errors after one change to the sound campaign, without the folder's path.
+    [[nodiscard]] std::string errors_after(std::string_view from, std::string_view to) const {
         try {
             static_cast<void>(read(edited(good_campaign, from, to)));
         } catch (const ProblemFileError& error) {
@@ -75,7 +75,7 @@ TEST_CASE("the seeds of a campaign may be a list") {
 
 TEST_CASE("what cannot be run in a campaign is refused with its place and a remedy") {
     struct Edit {
-        std::string_view from, to, faults;
+        std::string_view from, to, errors;
     };
     const Edit edit = GENERATE(
         Edit{"campaign/v1", "campaign/v2",
@@ -122,13 +122,13 @@ TEST_CASE("what cannot be run in a campaign is refused with its place and a reme
         Edit{"[problem.yaml]", "[none.yaml]", "none.yaml:1:1: cannot be read: there is no such file"});
     const CampaignFolder folder;
     CAPTURE(edit.to);
-    CHECK(folder.faults_after(edit.from, edit.to) == edit.faults);
+    CHECK(folder.errors_after(edit.from, edit.to) == edit.errors);
 }
 
-TEST_CASE("faults of a campaign's problems are reported where they stand") {
+TEST_CASE("errors of a campaign's problems are reported where they stand") {
     const CampaignFolder folder;
     folder.folder.write("problem.yaml", edited(good_problem, "seed: 1", "sead: 1"));
-    CHECK(folder.faults_after("trial", "other") ==
+    CHECK(folder.errors_after("trial", "other") ==
           "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?");
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("every parameter of a campaign is described and has a sound default un
         CAPTURE(row.path);
         CHECK_FALSE(row.description.empty());
         if (row.get && !row.required && row.path.find("[]") == std::string::npos) {
-            CHECK_FALSE(value_fault(row, row.get(Campaign{}, 0)).has_value());
+            CHECK_FALSE(value_error(row, row.get(Campaign{}, 0)).has_value());
         }
     }
 }

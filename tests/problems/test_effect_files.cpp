@@ -57,24 +57,24 @@ TEST_CASE("a table that is missing, broken or out of place is refused where it i
     const TestFolder folder;
     folder.write("broken.csv", "z_over_r,factor\n0.5,1.2\n1,-3\n");
     folder.write("good.csv", "z_over_r,factor\n0.5,1.2\n1,1.1\n");
-    CHECK(faults_after(folder, {ground, "{model: table}", ""}) ==
+    CHECK(errors_after(folder, {ground, "{model: table}", ""}) ==
           "problem.yaml:10:3: aero.ground.file is missing: expected the file of the table");
-    const std::string nowhere = faults_after(folder, {ground, "{model: table, file: nowhere.csv}", ""});
+    const std::string nowhere = errors_after(folder, {ground, "{model: table, file: nowhere.csv}", ""});
     CAPTURE(nowhere);
     CHECK(nowhere.find("problem.yaml:10:32: aero.ground.file") == 0);
-    const std::string broken = faults_after(folder, {ground, "{model: table, file: broken.csv}", ""});
+    const std::string broken = errors_after(folder, {ground, "{model: table, file: broken.csv}", ""});
     CAPTURE(broken);
     CHECK(broken.find("problem.yaml:10:32: aero.ground.file") == 0);
     CHECK(broken.find("broken.csv:3") != std::string::npos);
-    CHECK(faults_after(folder, {ground, "{model: he, file: good.csv}", ""}) ==
+    CHECK(errors_after(folder, {ground, "{model: he, file: good.csv}", ""}) ==
           "problem.yaml:10:23: aero.ground.file has a meaning only with the model table: remove it");
-    CHECK(faults_after(folder, {ground, "{model: table, file: good.csv, d_over_r: -1}", ""}) ==
+    CHECK(errors_after(folder, {ground, "{model: table, file: good.csv, d_over_r: -1}", ""}) ==
           "problem.yaml:10:52: aero.ground.d_over_r is -1: expected a number from 0 to 10000, or null");
 }
 
 TEST_CASE("a fountain is refused under a ceiling") {
     const TestFolder folder;
-    CHECK(faults_after(folder, {"{model: sanchez-cuevas, k1: 6.9}", "{model: multirotor-body}", ""})
+    CHECK(errors_after(folder, {"{model: sanchez-cuevas, k1: 6.9}", "{model: multirotor-body}", ""})
               .find("problem.yaml:11:20: aero.ceiling.model is 'multirotor-body': expected one of none, ") == 0);
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("a grid of factors takes the place of the models") {
 TEST_CASE("a grid that does not reach as far as the rotors is refused") {
     const TestFolder folder;
     folder.write("map.csv", grid_csv("-5"));
-    const std::string said = faults_after(folder, {models, "  map: map.csv\n", ""});
+    const std::string said = errors_after(folder, {models, "  map: map.csv\n", ""});
     CAPTURE(said);
     CHECK(said.find("problem.yaml:10:8: aero.map does not reach the world point (-6.3, 0.3, 0.2)") == 0);
     CHECK(said.find("-6.3 to 6.3 m along the plane") != std::string::npos);
@@ -108,40 +108,40 @@ TEST_CASE("a planar grid in another vertical plane is refused") {
     const std::string heading = "# frame_heading_rad: ";
     const std::string sixty_degrees = "1.0471975511965976";
     folder.write("map.csv", heading + sixty_degrees + "\n" + grid_csv("-7"));
-    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) ==
+    CHECK(errors_after(folder, {models, "  map: map.csv\n", ""}) ==
           "problem.yaml:10:8: aero.map stands in another vertical plane (60 deg): expected the heading of "
           "environment.plane (0 deg)");
     // Turned by 180 degrees it is the same plane; sideways it may stand anywhere.
     folder.write("map.csv", heading + "3.141592653589793\n# frame_origin_m: 0 5 0\n" + grid_csv("-7"));
-    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
+    CHECK(errors_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
     // A volume may stand in any way.
     std::string volume = heading + sixty_degrees + "\nx_m,y_m,z_m,factor\n";
     for (const char* node : {"-9,-9,0", "9,-9,0", "-9,9,0", "9,9,0", "-9,-9,6", "9,-9,6", "-9,9,6", "9,9,6"}) {
         volume += std::string(node) + ",1.25\n";
     }
     folder.write("map.csv", volume);
-    CHECK(faults_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
+    CHECK(errors_after(folder, {models, "  map: map.csv\n", ""}) == "sound");
 }
 
 TEST_CASE("a grid of other rotors is refused") {
     const TestFolder folder;
-    const auto faults_with = [&](const std::string& radius) {
+    const auto errors_with = [&](const std::string& radius) {
         folder.write("map.csv", "# rotor_radius_m: " + radius + "\n" + grid_csv("-7"));
-        return faults_after(folder, {models, "  map: map.csv\n", ""});
+        return errors_after(folder, {models, "  map: map.csv\n", ""});
     };
-    CHECK(faults_with("0.2") ==
+    CHECK(errors_with("0.2") ==
           "problem.yaml:10:8: aero.map is of rotors of 0.2 m radius, as its rotor_radius_m says: expected "
           "robot.rotors.radius_m, 0.19 m");
-    CHECK(faults_with("0.190001") != "sound");
-    CHECK(faults_with("0.1900001") == "sound");
-    CHECK(faults_with("0.19") == "sound");
-    CHECK(faults_with("about 8 inches") == "sound");
+    CHECK(errors_with("0.190001") != "sound");
+    CHECK(errors_with("0.1900001") == "sound");
+    CHECK(errors_with("0.19") == "sound");
+    CHECK(errors_with("about 8 inches") == "sound");
 }
 
 TEST_CASE("models beside a grid of factors are refused") {
     const TestFolder folder;
     folder.write("map.csv", grid_csv("-7"));
-    CHECK(faults_after(folder, {ground, "{model: he}\n  map: map.csv", ""}) ==
+    CHECK(errors_after(folder, {ground, "{model: he}\n  map: map.csv", ""}) ==
           "problem.yaml:10:3: aero.ground has a meaning only without aero.map: remove it\n"
           "problem.yaml:12:3: aero.ceiling has a meaning only without aero.map: remove it");
 }

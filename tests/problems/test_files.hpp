@@ -70,8 +70,8 @@ class TestFolder {
         std::ofstream(path_ / name, std::ios::binary) << text;
     }
 
-    /// What reading a file says, without the folder's own path; "sound" when there is no fault.
-    [[nodiscard]] std::string faults_of(std::string_view name) const {
+    /// What reading a file says, without the folder's own path; "sound" when there is no error.
+    [[nodiscard]] std::string errors_of(std::string_view name) const {
         std::string said;
         try {
             (void)read_problem(path_ / name);

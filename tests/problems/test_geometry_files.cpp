@@ -34,9 +34,9 @@ void write_with(const TestFolder& folder, std::string_view shape) {
     folder.write("problem.yaml", edited(good_problem, pole, shape));
 }
 
-std::string faults_with(const TestFolder& folder, std::string_view shape) {
+std::string errors_with(const TestFolder& folder, std::string_view shape) {
     write_with(folder, shape);
-    return folder.faults_of("problem.yaml");
+    return folder.errors_of("problem.yaml");
 }
 
 const std::vector<Triangle>& pole_triangles() {
@@ -90,28 +90,28 @@ TEST_CASE("a file that is placed twice is read once") {
           std::get<Mesh>(problem.obstacles.at(2).shape).surface);
 }
 
-TEST_CASE("faults of a foreign file stand where the problem names it, with their place in it") {
+TEST_CASE("errors of a foreign file stand where the problem names it, with their place in it") {
     const TestFolder folder;
     folder.write("bad.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n");
-    CHECK(faults_with(folder, "mesh: {file: bad.stl}") ==
+    CHECK(errors_with(folder, "mesh: {file: bad.stl}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file 'bad.stl' line 4: found 'nan', expected a finite "
           "number of at most 1e6 in size");
     folder.write("bad.stl", binary_stl(pole_triangles()).substr(0, 600));
-    CHECK(faults_with(folder, "mesh: {scale: 2, file: bad.stl}") ==
+    CHECK(errors_with(folder, "mesh: {scale: 2, file: bad.stl}") ==
           "problem.yaml:8:43: environment.obstacles[1].mesh.file 'bad.stl' byte 80: says 12 triangles, expected 84 + "
           "50 times as many bytes, 684, found 600");
     folder.write("bad.bt", cube_bt + "x");
-    CHECK(faults_with(folder, "octomap: {file: bad.bt}") ==
+    CHECK(errors_with(folder, "octomap: {file: bad.bt}") ==
           "problem.yaml:8:36: environment.obstacles[1].octomap.file 'bad.bt' byte 61: the file goes on after its last "
           "node: expected its end");
-    CHECK(faults_with(folder, "mesh: {file: ''}") ==
+    CHECK(errors_with(folder, "mesh: {file: ''}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file '' cannot be read: it is a directory, expected a "
           "file");
-    CHECK(faults_with(folder, "mesh: {file: [a.stl]}") ==
+    CHECK(errors_with(folder, "mesh: {file: [a.stl]}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file is a list: expected the path of a file");
-    CHECK(faults_with(folder, "mesh: {scale: 2}") ==
+    CHECK(errors_with(folder, "mesh: {scale: 2}") ==
           "problem.yaml:8:20: environment.obstacles[1].mesh.file is missing: expected the path of a file");
-    CHECK(faults_with(folder, "octomap: {file: pole.bt, scale: 2}") ==
+    CHECK(errors_with(folder, "octomap: {file: pole.bt, scale: 2}") ==
           "problem.yaml:8:36: environment.obstacles[1].octomap.file 'pole.bt' cannot be read: there is no such file\n"
           "problem.yaml:8:45: unknown key 'scale' in environment.obstacles[1].octomap: expected file, center_m or "
           "rpy_deg");
@@ -120,14 +120,14 @@ TEST_CASE("faults of a foreign file stand where the problem names it, with their
 TEST_CASE("surfaces that cannot be placed are refused at their obstacle") {
     const TestFolder folder;
     folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    CHECK_THAT(faults_with(folder, "mesh: {file: line.obj}"),
+    CHECK_THAT(errors_with(folder, "mesh: {file: line.obj}"),
                Catch::StartsWith("problem.yaml:8:") && Catch::Contains("area"));
     folder.write("pole.stl", binary_stl(pole_triangles()));
-    CHECK(faults_with(folder, "mesh: {file: pole.stl, scale: 1e6}") ==
+    CHECK(errors_with(folder, "mesh: {file: pole.stl, scale: 1e6}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file has a vertex that is not finite or, once scaled, "
           "farther "
           "than 1e6 m from its origin");
-    CHECK(faults_with(folder, "mesh: {file: pole.stl, scale: 0}") ==
+    CHECK(errors_with(folder, "mesh: {file: pole.stl, scale: 0}") ==
           "problem.yaml:8:50: environment.obstacles[1].mesh.scale is 0: expected a number from 1e-06 to 1000000");
 }
 
@@ -138,14 +138,14 @@ TEST_CASE("more triangles than a scene holds are not even kept") {
         fan += " " + std::to_string(1 + i % 3);
     }
     folder.write("fan.obj", fan);
-    CHECK(faults_with(folder, "mesh: {file: fan.obj}}\n    - {name: other, mesh: {file: fan.obj}") ==
+    CHECK(errors_with(folder, "mesh: {file: fan.obj}}\n    - {name: other, mesh: {file: fan.obj}") ==
           "problem.yaml:9:34: environment.obstacles[2].mesh.file 'fan.obj' makes 2400000 triangles and cubes of all "
           "obstacles: expected at most 2000000");
 }
 
 TEST_CASE("bodies of a robot are no meshes") {
     const TestFolder folder;
-    CHECK(faults_after_robot(folder, {"box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "mesh: {file: a.stl}", ""}) ==
+    CHECK(errors_after_robot(folder, {"box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "mesh: {file: a.stl}", ""}) ==
           "robot.yaml:7:7: unknown key 'mesh' in multirotor.body[0]: expected box, cylinder or sphere\n"
           "robot.yaml:7:7: multirotor.body[0] needs exactly one of box, cylinder or sphere");
 }

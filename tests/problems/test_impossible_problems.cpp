@@ -1,7 +1,7 @@
 #include <limits>
 #include <vector>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
@@ -63,22 +63,22 @@ TEST_CASE("an impossible problem is refused where it is posed") {
     const TestFolder folder;
     for (const Edit& edit : edits) {
         CAPTURE(edit.from, edit.to);
-        CHECK(faults_after(folder, edit) == edit.faults);
+        CHECK(errors_after(folder, edit) == edit.errors);
     }
 }
 
 TEST_CASE("a narrow but possible goal is accepted") {
     const TestFolder folder;
-    CHECK(faults_after(folder, {"tolerance_m: 0.1", "tolerance_m: 0.1, direction_deg: 90, direction_tolerance_deg: 0.1",
+    CHECK(errors_after(folder, {"tolerance_m: 0.1", "tolerance_m: 0.1, direction_deg: 90, direction_tolerance_deg: 0.1",
                                 ""}) == "sound");
-    CHECK(faults_after(folder, {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1", ""}) == "sound");
+    CHECK(errors_after(folder, {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1", ""}) == "sound");
 }
 
 TEST_CASE("without surface effects the flyable area does not matter") {
     const TestFolder folder;
-    CHECK(faults_after(folder, {"  ceiling: {model: sanchez-cuevas, k1: 6.9}\n", "  min_distance_radii: 12\n", ""}) !=
+    CHECK(errors_after(folder, {"  ceiling: {model: sanchez-cuevas, k1: 6.9}\n", "  min_distance_radii: 12\n", ""}) !=
           "sound");
-    CHECK(faults_after(folder, {"aero:\n  ground: {model: cheeseman-bennett}\n  ceiling: {model: sanchez-cuevas, k1: "
+    CHECK(errors_after(folder, {"aero:\n  ground: {model: cheeseman-bennett}\n  ceiling: {model: sanchez-cuevas, k1: "
                                 "6.9}\n",
                                 "aero: none\n", ""}) == "sound");
 }
@@ -88,19 +88,19 @@ TEST_CASE("a problem built in code is judged by the same ranges as a file") {
     folder.write("problem.yaml", good_problem);
     folder.write("robot.yaml", good_robot);
     Problem problem = read_problem(folder / "problem.yaml");
-    CHECK(problem_faults(problem).empty());
+    CHECK(problem_errors(problem).empty());
     problem.start.x_m = std::numeric_limits<double>::quiet_NaN();
     problem.robot.arm.length_m = -1;
     problem.planner.algorithm = "magic";
-    const std::vector<Fault> faults = problem_faults(problem);
-    REQUIRE(faults.size() == 3);
-    CHECK(faults[0].key == "robot.arm.length_m");
-    CHECK(faults[0].message == "is -1: expected a number in m above 0 and at most 100");
-    CHECK(faults[1].key == "start.x_m");
-    CHECK(faults[1].message == "is not finite: expected a number in m from -100000 to 100000");
-    CHECK(faults[2].key == "planner.algorithm");
+    const std::vector<KeyError> errors = problem_errors(problem);
+    REQUIRE(errors.size() == 3);
+    CHECK(errors[0].key == "robot.arm.length_m");
+    CHECK(errors[0].message == "is -1: expected a number in m above 0 and at most 100");
+    CHECK(errors[1].key == "start.x_m");
+    CHECK(errors[1].message == "is not finite: expected a number in m from -100000 to 100000");
+    CHECK(errors[2].key == "planner.algorithm");
 }
 
 TEST_CASE("a robot built in code is judged alone") {
-    CHECK(robot_faults(Robot{}).size() >= 10);
+    CHECK(robot_errors(Robot{}).size() >= 10);
 }

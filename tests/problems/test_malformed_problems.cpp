@@ -211,11 +211,11 @@ TEST_CASE("a malformed problem is refused with place, reason and remedy") {
     const TestFolder folder;
     for (const Edit& edit : edits) {
         CAPTURE(edit.from, edit.to);
-        CHECK(faults_after(folder, edit) == edit.faults);
+        CHECK(errors_after(folder, edit) == edit.errors);
     }
 }
 
 TEST_CASE("the problem that the others are made from is sound") {
     const TestFolder folder;
-    CHECK(faults_after(folder, {"name: test", "name: test", ""}) == "sound");
+    CHECK(errors_after(folder, {"name: test", "name: test", ""}) == "sound");
 }

@@ -88,7 +88,7 @@ TEST_CASE("a malformed robot is refused in its own file") {
     const TestFolder folder;
     for (const Edit& edit : edits) {
         CAPTURE(edit.from, edit.to);
-        CHECK(faults_after_robot(folder, edit) == edit.faults);
+        CHECK(errors_after_robot(folder, edit) == edit.errors);
     }
 }
 
@@ -99,21 +99,21 @@ TEST_CASE("a robot inline is refused in the problem's file") {
         indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
     }
     folder.write("problem.yaml", edited(good_problem, "robot: robot.yaml", indented));
-    CHECK(folder.faults_of("problem.yaml") ==
+    CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:7:14: robot.multirotor.mass_kg is -4.5: expected a number in kg above 0 and at most 10000");
 }
 
-TEST_CASE("a robot file that is read alone names its faults without the problem's prefix") {
+TEST_CASE("a robot file that is read alone names its errors without the problem's prefix") {
     const TestFolder folder;
     folder.write("robot.yaml", edited(good_robot, "mass_kg: 4.5", "mass: 4.5"));
     std::string said;
     try {
         (void)read_robot(folder / "robot.yaml");
     } catch (const ProblemFileError& error) {
-        REQUIRE(error.faults().size() == 1);
-        CHECK(error.faults()[0].line == 4);
-        CHECK(error.faults()[0].column == 3);
-        said = error.faults()[0].message;
+        REQUIRE(error.errors().size() == 1);
+        CHECK(error.errors()[0].line == 4);
+        CHECK(error.errors()[0].column == 3);
+        said = error.errors()[0].message;
     }
     CHECK(said == "unknown key 'mass' in multirotor: its unit is missing; expected mass_kg");
 }

@@ -7,11 +7,11 @@ using namespace downwash::test;
 
 namespace {
 
-std::string faults_of_text(std::string_view text) {
+std::string errors_of_text(std::string_view text) {
     const TestFolder folder;
     folder.write("problem.yaml", text);
     folder.write("robot.yaml", good_robot);
-    return folder.faults_of("problem.yaml");
+    return folder.errors_of("problem.yaml");
 }
 
 std::string repeated(std::string_view text, int times) {
@@ -28,45 +28,45 @@ const std::string no_yaml = "): expected 'key: value' with matching brackets, qu
 
 TEST_CASE("a file that is no single YAML document of keys is refused") {
     const std::string good(good_problem);
-    CHECK(faults_of_text("") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
-    CHECK(faults_of_text("# nothing\n\n") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
-    CHECK(faults_of_text("- schema\n- name\n") == "problem.yaml:1:1: is a list: expected a file of keys and values");
-    CHECK(faults_of_text("a problem\n") == "problem.yaml:1:1: is 'a problem': expected a file of keys and values");
-    CHECK(faults_of_text(good + "---\nname: second\n") ==
+    CHECK(errors_of_text("") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
+    CHECK(errors_of_text("# nothing\n\n") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
+    CHECK(errors_of_text("- schema\n- name\n") == "problem.yaml:1:1: is a list: expected a file of keys and values");
+    CHECK(errors_of_text("a problem\n") == "problem.yaml:1:1: is 'a problem': expected a file of keys and values");
+    CHECK(errors_of_text(good + "---\nname: second\n") ==
           "problem.yaml:18:1: a second document begins: expected only one");
-    CHECK(faults_of_text("name: [1, 2\nstart: 3\n").ends_with(no_yaml));
-    CHECK(faults_of_text(good + "description: \"open\n").ends_with(no_yaml));
-    CHECK(faults_of_text(good + "description: 'open\n").ends_with(no_yaml));
-    CHECK(faults_of_text(good + "description: |\n  several\n  lines\n") == "sound");
-    CHECK(faults_of_text(good + "}\n").ends_with(no_yaml));
+    CHECK(errors_of_text("name: [1, 2\nstart: 3\n").ends_with(no_yaml));
+    CHECK(errors_of_text(good + "description: \"open\n").ends_with(no_yaml));
+    CHECK(errors_of_text(good + "description: 'open\n").ends_with(no_yaml));
+    CHECK(errors_of_text(good + "description: |\n  several\n  lines\n") == "sound");
+    CHECK(errors_of_text(good + "}\n").ends_with(no_yaml));
 }
 
 TEST_CASE("bytes that are no text are refused at their place") {
     using namespace std::string_literals;
-    CHECK(faults_of_text("name: a\nstart: \0x"s) ==
+    CHECK(errors_of_text("name: a\nstart: \0x"s) ==
           "problem.yaml:2:8: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(faults_of_text("name: \xff\xfe\n") ==
+    CHECK(errors_of_text("name: \xff\xfe\n") ==
           "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(faults_of_text("name: \xc0\xaf\n") ==
+    CHECK(errors_of_text("name: \xc0\xaf\n") ==
           "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(faults_of_text("name: \xed\xa0\x80\n") ==
+    CHECK(errors_of_text("name: \xed\xa0\x80\n") ==
           "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(faults_of_text("\x7f"
+    CHECK(errors_of_text("\x7f"
                          "ELF\x02\x01\x01") ==
           "problem.yaml:1:5: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(faults_of_text("start:\n\tx_m: 1\n") == "problem.yaml:2:1: a tab in the indentation: expected spaces");
+    CHECK(errors_of_text("start:\n\tx_m: 1\n") == "problem.yaml:2:1: a tab in the indentation: expected spaces");
 }
 
 TEST_CASE("files that cannot be read are refused") {
     const TestFolder folder;
-    CHECK(folder.faults_of("missing.yaml") == "missing.yaml:1:1: cannot be read: there is no such file");
+    CHECK(folder.errors_of("missing.yaml") == "missing.yaml:1:1: cannot be read: there is no such file");
     std::filesystem::create_directory(folder / "folder.yaml");
-    CHECK(folder.faults_of("folder.yaml") == "folder.yaml:1:1: cannot be read: it is a directory, expected a file");
+    CHECK(folder.errors_of("folder.yaml") == "folder.yaml:1:1: cannot be read: it is a directory, expected a file");
     folder.write("problem.yaml", edited(good_problem, "robot.yaml", "folder.yaml"));
-    CHECK(folder.faults_of("problem.yaml") ==
+    CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:3:8: robot 'folder.yaml' cannot be read: it is a directory, expected a file");
     folder.write("large.yaml", std::string(1100000, ' '));
-    CHECK(folder.faults_of("large.yaml") ==
+    CHECK(folder.errors_of("large.yaml") ==
           "large.yaml:1:1: is larger than 1024 KiB: expected a problem or robot file");
     CHECK_THROWS_AS(read_problem("/dev/zero"), ProblemFileError);
 }
@@ -77,24 +77,24 @@ TEST_CASE("no file makes the reader crash, hang or eat memory") {
          {"[", "{", "- ", "? ", ": ",   ",",    "!",    "&a ",  "*a ",          "\"",    "'",    "|",
           ">", "%", "@",  "`",  "[[],", "{a: ", "a:\n", "- - ", "a: &a [*a]\n", "---\n", "...\n"}) {
         CAPTURE(piece);
-        CHECK(faults_of_text(repeated(piece, 1000000 / static_cast<int>(piece.size()))) != "sound");
+        CHECK(errors_of_text(repeated(piece, 1000000 / static_cast<int>(piece.size()))) != "sound");
     }
     std::string stairs;
     for (int i = 0; i < 1000; ++i) {
         stairs += std::string(static_cast<std::size_t>(i), ' ') + "a:\n";
     }
-    CHECK(faults_of_text(stairs).find("is nested deeper than 32 levels") != std::string::npos);
+    CHECK(errors_of_text(stairs).find("is nested deeper than 32 levels") != std::string::npos);
     CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(60));
 }
 
 TEST_CASE("aliases are understood, but not those that never end or explode") {
     const std::string good(good_problem);
-    CHECK(faults_of_text(edited(edited(good, "[30, 20, 1]", "&size [30, 20, 1]"),
+    CHECK(errors_of_text(edited(edited(good, "[30, 20, 1]", "&size [30, 20, 1]"),
                                 "cylinder: {radius_m: 0.2, length_m: 5, center_m",
                                 "box: {size_m: *size, center_m: [4, 30, -0.5], rpy_deg")) == "sound");
-    CHECK(faults_of_text("start: &loop {x_m: *loop}\n") ==
+    CHECK(errors_of_text("start: &loop {x_m: *loop}\n") ==
           "problem.yaml:1:20: an alias refers to a value that it is part of: write the value out");
-    CHECK(faults_of_text("start: *nowhere\n") ==
+    CHECK(errors_of_text("start: *nowhere\n") ==
           "problem.yaml:1:8: cannot be read as YAML (the referenced anchor is not "
           "defined" +
               no_yaml);
@@ -108,18 +108,18 @@ TEST_CASE("aliases are understood, but not those that never end or explode") {
             bomb.append(begin).append(last).append(", ").append(last).append(", ").append(last).append("]\n");
         }
     }
-    CHECK(faults_of_text(edited(good, "obstacles:\n", "obstacles: *a29\n") + bomb) != "sound");
-    CHECK(faults_of_text(bomb + good) != "sound");
-    CHECK(faults_of_text(chain + good).find("is nested deeper than 32 levels") != std::string::npos);
+    CHECK(errors_of_text(edited(good, "obstacles:\n", "obstacles: *a29\n") + bomb) != "sound");
+    CHECK(errors_of_text(bomb + good) != "sound");
+    CHECK(errors_of_text(chain + good).find("is nested deeper than 32 levels") != std::string::npos);
 }
 
-TEST_CASE("a file full of faults is not read to the end") {
+TEST_CASE("a file full of errors is not read to the end") {
     const TestFolder folder;
     folder.write("problem.yaml", std::string(good_problem) + repeated("wrong: 1\n", 100000));
     try {
         (void)read_problem(folder / "problem.yaml");
         FAIL("was accepted");
     } catch (const ProblemFileError& error) {
-        CHECK(error.faults().size() == 100);
+        CHECK(error.errors().size() == 100);
     }
 }

@@ -1,4 +1,4 @@
-#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
@@ -44,11 +44,11 @@ TEST_CASE("what a file leaves out has the default of its member") {
     CHECK_FALSE(problem.robot.arm.is_limited);
 }
 
-TEST_CASE("faults of several kinds and files are reported in one run, in the order of the files") {
+TEST_CASE("errors of several kinds and files are reported in one run, in the order of the files") {
     const TestFolder folder;
     folder.write("problem.yaml", edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"));
     folder.write("robot.yaml", edited(good_robot, "max_thrust_n: 28", "max_thrust_n: 10"));
-    CHECK(folder.faults_of("problem.yaml") ==
+    CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:12:14: start.x_m is -40, outside the bounds: expected -6 to 6\n"
           "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?\n"
           "robot.yaml:11:17: rotors.max_thrust_n gives 40 N with 4 rotors, which cannot lift the weight of 48.54 N: "
@@ -147,7 +147,7 @@ TEST_CASE("every parameter is described, stands in a group and has a sound defau
         CHECK(problem_parameters().find(row.path) == &row);
         const bool is_always_there = row.get && parent.find("[]") == std::string::npos && !parent.starts_with("goal.");
         if (is_always_there && !row.required) {
-            CHECK_FALSE(value_fault(row, row.get(Problem{}, 0)).has_value());
+            CHECK_FALSE(value_error(row, row.get(Problem{}, 0)).has_value());
         }
     }
 }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "downwash/planner/problem_parameters.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
 
@@ -146,7 +146,7 @@ TEST_CASE("what is written is read again to the last bit") {
         const std::string yaml = effective_yaml(problem, folder / "");
         folder.write("effective.yaml", yaml);
         CAPTURE(seed, yaml);
-        REQUIRE(folder.faults_of("effective.yaml") == "sound");
+        REQUIRE(folder.errors_of("effective.yaml") == "sound");
         const Problem again = read_problem(folder / "effective.yaml");
         REQUIRE(bits(again) == bits(problem));
         REQUIRE(effective_yaml(again, folder / "") == yaml);

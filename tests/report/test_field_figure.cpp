@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/report/field_figure.hpp"
 #include "pictures.hpp"
 

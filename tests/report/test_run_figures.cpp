@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "../support/solved_run.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "pictures.hpp"
 
 using namespace downwash;

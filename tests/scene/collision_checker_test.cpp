@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "reference.hpp"
 
 using namespace downwash;
@@ -106,14 +106,14 @@ TEST_CASE("A pose that is not finite is in contact") {
     }
 }
 
-TEST_CASE("A robot with unusable sizes is refused with every fault") {
+TEST_CASE("A robot with unusable sizes is refused with every error") {
     RobotShape robot{{{Box{{1, 1, -1}}, {}}, {Sphere{0}, {}}}, 0, 0, 0, std::nan("")};
     std::vector<std::string> keys;
     try {
         checker_of({}, robot);
-    } catch (const InputError& error) {
-        for (const Fault& fault : error.faults()) {
-            keys.push_back(fault.key);
+    } catch (const InputError& invalid) {
+        for (const KeyError& error : invalid.errors()) {
+            keys.push_back(error.key);
         }
     }
     CHECK(keys == std::vector<std::string>{"bodies[0].box.size_m", "bodies[1].sphere.radius_m", "arm_length_m",

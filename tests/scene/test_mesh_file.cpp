@@ -4,8 +4,8 @@
 #include "../support/mesh_bytes.hpp"
 #include "../support/random.hpp"
 #include "../support/scratch_folder.hpp"
-#include "downwash/base/fault.hpp"
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/scene/mesh_file.hpp"
 
@@ -112,7 +112,7 @@ TEST_CASE("OBJ corners may name texture and normals, count backwards, and make p
     CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}});
 }
 
-TEST_CASE("Faulty ASCII STL is refused with its line") {
+TEST_CASE("Wrong ASCII STL is refused with its line") {
     const auto [bytes, said] = GENERATE(table<std::string, std::string>({
         {ascii_with("facet normal 0 0 1", "facet normal 0 0"),
          "line 2: found 2 words after 'facet normal', expected 3 numbers"},
@@ -135,7 +135,7 @@ TEST_CASE("Faulty ASCII STL is refused with its line") {
     CHECK(said_of(bytes, "a.stl") == "'a.stl' " + said);
 }
 
-TEST_CASE("Faulty binary STL is refused with its byte") {
+TEST_CASE("Wrong binary STL is refused with its byte") {
     const std::string sound = binary_stl(box_triangles({0, 0, 0}, {1, 1, 1}));
     REQUIRE(said_of(sound, "a.stl") == "sound");
     const auto with = [&sound](std::size_t at, const std::string& bytes) {
@@ -161,7 +161,7 @@ TEST_CASE("Faulty binary STL is refused with its byte") {
     CHECK(said_of(binary_stl({}), "a.stl") == "'a.stl' has no triangles: expected at least one");
 }
 
-TEST_CASE("Faulty OBJ is refused with its line") {
+TEST_CASE("Wrong OBJ is refused with its line") {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     const auto [bytes, said] = GENERATE_COPY(table<std::string, std::string>({
         {"v 1 2\n", "line 1: a vertex of 2 numbers: expected 3"},

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "../support/meshes.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "reference.hpp"
 
@@ -82,7 +82,7 @@ std::string refusal_of(Mesh mesh) {
     try {
         const Scene scene({{"", Sphere{1}, {}, {}}, {"", std::move(mesh), {}, {}}});
     } catch (const InputError& error) {
-        return error.faults().at(0).key + " " + error.faults().at(0).message;
+        return error.errors().at(0).key + " " + error.errors().at(0).message;
     }
     return "";
 }

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "../support/random.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/octomap_file.hpp"
 
 using namespace downwash;
@@ -132,7 +132,7 @@ TEST_CASE("Voxels in the outermost corners are where OctoMap has them") {
           Cubes{{0.25, -8191.875, -8191.875, -8191.875}, {0.25, 8191.875, 8191.875, 8191.875}});
 }
 
-TEST_CASE("Faulty octree headers are refused with their line") {
+TEST_CASE("Wrong octree headers are refused with their line") {
     REQUIRE(said_of(sound()) == "sound");
     CHECK(said_of("") == "'a.bt' line 1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
     CHECK(said_of("solid\n") ==
@@ -153,7 +153,7 @@ TEST_CASE("Faulty octree headers are refused with their line") {
           "'a.bt' line 5: the header ends here: expected a line 'data' of its own");
 }
 
-TEST_CASE("Faulty streams of nodes are refused with their byte") {
+TEST_CASE("Wrong streams of nodes are refused with their byte") {
     const std::size_t data = header.size();
     const std::string at = "'a.bt' byte ";
     CHECK(said_of(header + nodes) ==

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../support/meshes.hpp"
-#include "downwash/base/fault.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/scene/octree_boxes.hpp"
 #include "reference.hpp"
 
@@ -57,7 +57,7 @@ std::string refusal_of(Octomap octomap) {
     try {
         const Scene scene({{"", std::move(octomap), {}, {}}});
     } catch (const InputError& error) {
-        return error.faults().at(0).key + " " + error.faults().at(0).message;
+        return error.errors().at(0).key + " " + error.errors().at(0).message;
     }
     return "";
 }

@@ -70,7 +70,7 @@ SegmentFlight planned(const Problem& problem, double margin_m) {
     std::vector<FlightJob> jobs(3, FlightJob{rising(*model), {{rise(*model)}}});
     FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
-        CHECK(job.legs.front().flight.fault == flight.fault);
+        CHECK(job.legs.front().flight.rejection == flight.rejection);
         CHECK(job.legs.front().flight.ticks == flight.ticks);
         CHECK(std::memcmp(&job.legs.front().end, &one, sizeof one) == 0);
     }
@@ -88,25 +88,25 @@ Execution flown(const Problem& problem) {
 
 TEST_CASE("a rod that the arm passes between two ticks refuses a planned flight") {
     const SegmentFlight hit = planned(past_a_rod(0.9), 0.01);
-    CHECK(hit.fault == FlightFault::collision);
+    CHECK(hit.rejection == Rejection::collision);
     CHECK(hit.ticks == 5);  // from 1.60 m to 1.75 m
-    CHECK(planned(past_a_rod(0.9), 0).fault == FlightFault::collision);
+    CHECK(planned(past_a_rod(0.9), 0).rejection == Rejection::collision);
     // The arm ends at 1.2 m, rounded by 0.03 m: 0.065 m are left to a rod of half a centimetre at 1.3 m.
-    CHECK(planned(past_a_rod(1.3), 0.01).fault == FlightFault::none);
-    CHECK(planned(past_a_rod(1.3), 0.06).fault == FlightFault::none);
-    CHECK(planned(past_a_rod(1.3), 0.07).fault == FlightFault::collision);
+    CHECK(planned(past_a_rod(1.3), 0.01).rejection == Rejection::none);
+    CHECK(planned(past_a_rod(1.3), 0.06).rejection == Rejection::none);
+    CHECK(planned(past_a_rod(1.3), 0.07).rejection == Rejection::collision);
 }
 
 TEST_CASE("with a margin of half the way between two ticks the looks at the ticks are enough") {
     // 0.075 m, and 0.04 m of clearance at both ticks.
     const SegmentFlight hit = planned(past_a_rod(0.9), 0.075);
-    CHECK(hit.fault == FlightFault::collision);
+    CHECK(hit.rejection == Rejection::collision);
     CHECK(hit.ticks == 4);  // at 1.60 m already
 }
 
 TEST_CASE("a planned flight at ten times the rate meets the rod at the same height") {
     const SegmentFlight hit = planned(past_a_rod(0.9, 1.675, 100), 0.012);
-    CHECK(hit.fault == FlightFault::collision);
+    CHECK(hit.rejection == Rejection::collision);
     CHECK(hit.ticks == 42);  // at 1.630 m: from 1.675 - 0.035 - 0.012 = 1.628 m on it is too near
 }
 
@@ -162,11 +162,11 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
             const SegmentFlight flight = fly(*model, nullptr, rules, jobs[i].legs.front().segment, state);
             const FlightLeg& leg = flown[i].legs.front();
             CAPTURE(margin_m, i);
-            REQUIRE(leg.flight.fault == flight.fault);
+            REQUIRE(leg.flight.rejection == flight.rejection);
             REQUIRE(leg.flight.ticks == flight.ticks);
             REQUIRE(std::memcmp(&leg.end, &state, sizeof state) == 0);
-            refused += flight.fault == FlightFault::collision;
-            accepted += flight.fault == FlightFault::none;
+            refused += flight.rejection == Rejection::collision;
+            accepted += flight.rejection == Rejection::none;
         }
     }
     CHECK(refused > 20);

@@ -132,7 +132,7 @@ TEST_CASE("the flight through the map stays beside the flight with direct aerody
     const ReferencePoint from = rest(problem.start.x_m, problem.start.z_m, problem.start.arm_rad);
     const SegmentFlight flight =
         fly(*model, map.get(), rules, ReferenceSegment(from, rest(2, 4.0, 1), 1500, 0.01), state);
-    CHECK(flight.fault == FlightFault::none);
+    CHECK(flight.rejection == Rejection::none);
     CHECK(flight.ticks == 1500);
     const Execution e = flown(problem, from_start(problem, rest(2, 4.0, 1), 1500));
     for (int i = 0; i < 4; ++i) {

@@ -63,7 +63,7 @@ void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRu
         for (FlightLeg& leg : job.legs) {
             leg.flight = fly(model, map, rules, leg.segment, state);
             leg.end = state;
-            if (leg.flight.fault != FlightFault::none) {
+            if (leg.flight.rejection != Rejection::none) {
                 break;
             }
         }
@@ -71,14 +71,14 @@ void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRu
 }
 
 bool is_same(const FlightLeg& a, const FlightLeg& b) {
-    return a.flight.fault == b.flight.fault && a.flight.ticks == b.flight.ticks &&
+    return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
            a.flight.length_m == b.flight.length_m && a.flight.clearance_integral == b.flight.clearance_integral &&
            std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
 }
 
-/// Counts of faults, after every leg was found the same to the last bit.
-std::map<FlightFault, int> faults_of_equal_flights(const Problem& problem, bool is_aware, const FlightRules& rules,
-                                                   int count) {
+/// Counts of rejections, after every leg was found the same to the last bit.
+std::map<Rejection, int> rejections_of_equal_flights(const Problem& problem, bool is_aware, const FlightRules& rules,
+                                                     int count) {
     const auto model = make_flight_model(problem);
     const auto map = is_aware ? model->make_map(problem.bounds) : nullptr;
     const std::vector<FlightJob> jobs = random_jobs(problem, *model, count, 5);
@@ -89,17 +89,17 @@ std::map<FlightFault, int> faults_of_equal_flights(const Problem& problem, bool 
         FlightCrew(*model, map.get(), rules, nullptr, threads, instructions).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             INFO("job " << i << " with instructions " << static_cast<int>(instructions) << ", threads " << threads);
-            REQUIRE(flown[i].fault() == expected[i].fault());
+            REQUIRE(flown[i].rejection() == expected[i].rejection());
             for (std::size_t leg = 0; leg < jobs[i].legs.size(); ++leg) {
                 REQUIRE(is_same(flown[i].legs[leg], expected[i].legs[leg]));
             }
         }
     }
-    std::map<FlightFault, int> faults;
+    std::map<Rejection, int> rejections;
     for (const FlightJob& job : expected) {
-        ++faults[job.fault()];
+        ++rejections[job.rejection()];
     }
-    return faults;
+    return rejections;
 }
 
 FlightRules rules_of(const Problem& problem) {
@@ -113,14 +113,14 @@ FlightRules rules_of(const Problem& problem) {
 
 TEST_CASE("edges that fly side by side come out bit for bit as one by one, whatever ends them") {
     const Problem problem = cluttered_problem();
-    const auto aware = faults_of_equal_flights(problem, true, rules_of(problem), 300);
-    for (const FlightFault fault : {FlightFault::none, FlightFault::collision, FlightFault::flyable_area,
-                                    FlightFault::tracking, FlightFault::bounds}) {
-        INFO("fault " << static_cast<int>(fault));
-        CHECK(aware.count(fault) == 1);  // or the comparison has not seen it
+    const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 300);
+    for (const Rejection rejection :
+         {Rejection::none, Rejection::collision, Rejection::flyable_area, Rejection::tracking, Rejection::bounds}) {
+        INFO("rejection " << static_cast<int>(rejection));
+        CHECK(aware.count(rejection) == 1);  // or the comparison has not seen it
     }
-    const auto unaware = faults_of_equal_flights(problem, false, rules_of(problem), 300);
-    CHECK(unaware.count(FlightFault::flyable_area) == 0);
+    const auto unaware = rejections_of_equal_flights(problem, false, rules_of(problem), 300);
+    CHECK(unaware.count(Rejection::flyable_area) == 0);
 }
 
 TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm limits and unequal rotors") {
@@ -131,21 +131,21 @@ TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm 
     problem.robot.arm.lower_limit_rad = -2;
     problem.robot.arm.upper_limit_rad = 2;
     problem.aero.ground = SurfaceEffect(EffectModel::multirotor_body);
-    const auto faults = faults_of_equal_flights(problem, true, rules_of(problem), 100);
-    CHECK(faults.count(FlightFault::none) == 1);
+    const auto rejections = rejections_of_equal_flights(problem, true, rules_of(problem), 100);
+    CHECK(rejections.count(Rejection::none) == 1);
 }
 
 TEST_CASE("clearance is measured side by side as one by one") {
     const Problem problem = cluttered_problem();
     FlightRules rules = rules_of(problem);
     rules.measures_clearance = true;
-    CHECK(faults_of_equal_flights(problem, false, rules, 30).count(FlightFault::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, false, rules, 30).count(Rejection::none) == 1);
 }
 
 TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as one by one") {
     Problem problem = cluttered_problem();
     problem.robot.rotors.max_thrust_n = 13;
-    CHECK(faults_of_equal_flights(problem, false, rules_of(problem), 60).count(FlightFault::saturation) == 1);
+    CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), 60).count(Rejection::saturation) == 1);
 
     const auto model = make_flight_model(cluttered_problem());
     const double tumbling[4] = {0, 2, 1.5, 0};
@@ -154,7 +154,7 @@ TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as o
     at.position[1] = 2;
     std::vector<FlightJob> jobs{{model->state_at(tumbling, u), {{{at, at, 100, model->tick().tick_s}}}}};
     FlightCrew(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
-    CHECK(jobs[0].fault() == FlightFault::unstable);
+    CHECK(jobs[0].rejection() == Rejection::unstable);
     CHECK(jobs[0].legs[0].flight.ticks == 1);
 }
 
@@ -177,11 +177,11 @@ TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
     std::vector<FlightJob> jobs{held, missed, at_once};
     rules.max_tracking_error_m = 1;
     FlightCrew(*model, nullptr, rules, &problem.goal).fly(jobs);
-    CHECK(jobs[0].fault() == FlightFault::none);
+    CHECK(jobs[0].rejection() == Rejection::none);
     CHECK(jobs[0].legs[0].flight.ticks == 500);
-    CHECK(jobs[1].fault() == FlightFault::goal_missed);
+    CHECK(jobs[1].rejection() == Rejection::goal_missed);
     CHECK(jobs[1].legs[0].flight.ticks == 20);
-    CHECK(jobs[2].fault() == FlightFault::goal_missed);
+    CHECK(jobs[2].rejection() == Rejection::goal_missed);
     CHECK(jobs[2].legs[0].flight.ticks == 0);  // missed before the first tick
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
         for (std::int64_t tick = 0; tick <= segment.ticks() && missed < 0; ++tick) {
             if (tick > 0) {
                 const ReferenceSegment one(segment.from(), segment.from(), 1, tick_s);
-                breaks_rules = breaks_rules || fly(*model, nullptr, rules, one, state).fault != FlightFault::none;
+                breaks_rules = breaks_rules || fly(*model, nullptr, rules, one, state).rejection != Rejection::none;
             }
             if (tick + judged >= segment.ticks() && !meets_goal(goal, model->tick().plant, state)) {
                 missed = tick;
@@ -235,7 +235,7 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
         FlightCrew(*model, nullptr, rules, &goal, threads, instructions).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             CAPTURE(i, static_cast<int>(instructions), missed_at[i]);
-            REQUIRE(flown[i].fault() == (missed_at[i] < 0 ? FlightFault::none : FlightFault::goal_missed));
+            REQUIRE(flown[i].rejection() == (missed_at[i] < 0 ? Rejection::none : Rejection::goal_missed));
             REQUIRE(flown[i].legs[0].flight.ticks ==
                     (missed_at[i] < 0 ? jobs[i].legs[0].segment.ticks() : missed_at[i]));
         }
@@ -272,6 +272,6 @@ TEST_CASE("a batch can be ended from outside") {
     std::vector<FlightJob> jobs(5, FlightJob{model->state_at(q, u), {{{at, at, 100000000, model->tick().tick_s}}}});
     FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
-        CHECK(job.fault() == FlightFault::interrupted);
+        CHECK(job.rejection() == Rejection::interrupted);
     }
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "downwash/planner/problem.hpp"
+#include "downwash/problems/problem.hpp"
 #include "test_robot.hpp"
 
 namespace downwash::test {

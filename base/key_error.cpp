@@ -1,0 +1,23 @@
+#include "downwash/base/key_error.hpp"
+
+#include <utility>
+
+namespace downwash {
+namespace {
+
+std::string joined(const std::vector<KeyError>& errors) {
+    std::string text;
+    for (const KeyError& error : errors) {
+        if (!text.empty()) {
+            text += '\n';
+        }
+        text += error.key.empty() ? error.message : error.key + ": " + error.message;
+    }
+    return text;
+}
+
+}  // namespace
+
+InputError::InputError(std::vector<KeyError> errors) : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
+
+}  // namespace downwash

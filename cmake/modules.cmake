@@ -1,0 +1,90 @@
+# What every module is built with.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+
+include(GNUInstallDirs)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "$ORIGIN")
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 REQUIRED)
+find_package(fcl REQUIRED)
+find_package(ompl REQUIRED)
+find_package(Boost REQUIRED COMPONENTS serialization filesystem system)
+find_package(yaml-cpp REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(SQLite3 REQUIRED)
+list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
+find_package(GeographicLib REQUIRED)
+
+# OMPL 1.5.2 exports no target of its own.
+add_library(downwash_ompl INTERFACE)
+target_include_directories(downwash_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
+target_link_libraries(downwash_ompl INTERFACE ${OMPL_LIBRARIES} Boost::serialization Boost::filesystem Boost::system)
+
+# Headers stand beside their sources and are included as <downwash/module/header.hpp>, here as after installation.
+set(DOWNWASH_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${DOWNWASH_INCLUDE_DIR}/downwash)
+
+add_library(downwash_options INTERFACE)
+target_compile_options(downwash_options INTERFACE
+  -ffp-contract=off # the same bytes on every processor
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in every "text" + std::string (GCC bug 105651)
+  $<$<BOOL:${DOWNWASH_WERROR}>:-Werror>)
+
+# downwash_module(NAME SOURCES ... USES modules... PRIVATE libraries... PRIVATE_HEADERS files... [INTERNAL | CONTAINS modules...])
+# Adds the library downwash_NAME, alias downwash::NAME. The folder's headers are installed, except those after
+# PRIVATE_HEADERS. An INTERNAL module is no library of its own: it becomes part of the one that CONTAINS it.
+function(downwash_module NAME)
+  cmake_parse_arguments(MODULE "INTERNAL" "" "SOURCES;USES;PRIVATE;PRIVATE_HEADERS;CONTAINS" ${ARGN})
+  if(MODULE_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "downwash_module(${NAME}): unknown argument ${MODULE_UNPARSED_ARGUMENTS}")
+  endif()
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${DOWNWASH_INCLUDE_DIR}/downwash/${NAME} SYMBOLIC)
+  list(TRANSFORM MODULE_USES PREPEND downwash_)
+  set(kind)
+  if(MODULE_INTERNAL)
+    set(kind OBJECT)
+  endif()
+  add_library(downwash_${NAME} ${kind} ${MODULE_SOURCES})
+  add_library(downwash::${NAME} ALIAS downwash_${NAME})
+  target_include_directories(downwash_${NAME} PUBLIC
+    $<BUILD_INTERFACE:${DOWNWASH_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(downwash_${NAME} PUBLIC cxx_std_20)
+  target_link_libraries(downwash_${NAME} PUBLIC ${MODULE_USES} PRIVATE $<BUILD_INTERFACE:downwash_options> ${MODULE_PRIVATE})
+  foreach(part IN LISTS MODULE_CONTAINS)
+    target_link_libraries(downwash_${NAME} PRIVATE $<BUILD_INTERFACE:downwash_${part}>)
+  endforeach()
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+  foreach(header IN LISTS MODULE_PRIVATE_HEADERS)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+      message(FATAL_ERROR "downwash_module(${NAME}): there is no private header ${header}")
+    endif()
+    list(REMOVE_ITEM headers ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+  endforeach()
+  if(MODULE_INTERNAL)
+    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${NAME})
+    set_target_properties(downwash_${NAME} PROPERTIES PUBLIC_HEADER "${headers}")
+    set_property(GLOBAL APPEND PROPERTY DOWNWASH_INTERNAL_MODULES ${NAME})
+    return()
+  endif()
+  set_target_properties(downwash_${NAME} PROPERTIES
+    PUBLIC_HEADER "${headers}"
+    EXPORT_NAME ${NAME} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  set_property(GLOBAL APPEND PROPERTY DOWNWASH_MODULES ${NAME})
+endfunction()

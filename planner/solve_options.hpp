@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "downwash/aeromap/aero_map.hpp"
+
+namespace downwash {
+
+/// A glance at a running search.
+struct Progress {
+    double wall_s = 0;
+    std::uint64_t iterations = 0;
+    std::uint64_t nodes = 0;
+    std::uint64_t rejected = 0;       ///< edges refused so far, for any reason
+    std::optional<double> best_cost;  ///< empty before the first solution
+};
+
+/// How a program takes part in a search.
+struct SolveOptions {
+    int threads = 1;       ///< for flights and the aero map, below 1 as 1; the result does not depend on it
+    std::stop_token stop;  ///< ends the search early, with the best plan so far
+    std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, up to ten times a second
+    /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
+    /// is reused.
+    std::function<void(double)> on_map_progress;
+    bool stop_at_first_solution = false;
+    bool keep_tree = false;              ///< also gives the search tree
+    std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty
+    std::filesystem::path map_cache;     ///< folder in which maps are kept between runs; empty: nowhere
+};
+
+}  // namespace downwash

@@ -1,0 +1,142 @@
+#include "downwash/problems/aero_parameters.hpp"
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "downwash/base/parameter_factories.hpp"
+#include "downwash/base/sha256.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/effects/effect_table.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
+
+namespace downwash {
+namespace {
+
+using Rows = std::vector<Parameter<Problem>>;
+
+template <class Member>
+Parameter<Problem> number(const std::string& path, std::string_view description, Member member) {
+    return parameters::number<Problem>(path, description, member);
+}
+
+bool has_no_map(const Problem& p, std::size_t) {
+    return !p.aero.map;
+}
+
+/// The model's name, and as many rows as all models together have parameters.
+template <class Effect>
+void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Effect effect) {
+    std::vector<std::string_view> names;
+    names.reserve(models.size());
+    for (const EffectModelInfo& model : models) {
+        names.push_back(model.name);
+    }
+    auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
+    model.names = names;
+    model.get = [effect](const Problem& p, std::size_t) { return Value(std::string(info(effect(p).model).name)); };
+    model.set = [effect](Problem& p, std::size_t, const Value& value) {
+        if (const EffectModelInfo* named = find_effect_model(std::get<std::string>(value))) {
+            effect(p) = named->model;
+        }
+    };
+    rows.push_back(std::move(model));
+    for (const EffectModelInfo& known : models) {
+        for (std::size_t i = 0; i < known.parameters.size(); ++i) {
+            const ModelParameter& parameter = known.parameters[i];
+            auto row = number(
+                path + "." + std::string(parameter.name), parameter.description,
+                [ effect, i ](auto& p) -> auto& { return effect(p).parameters[i]; });
+            row.get = [effect, i, which = known.model, otherwise = parameter.source_value](const Problem& p,
+                                                                                           std::size_t) {
+                return Value(effect(p).model == which ? effect(p).parameters[i] : otherwise);
+            };
+            row.range = {parameter.low, parameter.high, parameter.is_open, false};
+            rows.push_back(std::move(row).only(
+                "with the model " + std::string(known.name),
+                [effect, which = known.model](const Problem& p, std::size_t) { return effect(p).model == which; }));
+        }
+    }
+}
+
+template <class Effect>
+void add_table(Rows& rows, const std::string& path, Effect effect) {
+    const auto is_table = [effect](const Problem& p, std::size_t) { return effect(p).model == EffectModel::table; };
+    rows.push_back(
+        parameters::file<Problem>(
+            path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
+            [effect](auto& p) -> auto& { return effect(p).file; },
+            [effect](Problem& p, std::size_t, const std::string& name) { effect(p).table = read_effect_table(name); },
+            [effect](const Problem& p, std::size_t) { return digest_of(*effect(p).table); })
+            .only("with the model table", is_table));
+    rows.push_back(number(
+                       path + ".d_over_r",
+                       "second distance of a table over two; null: the distance to the nearest wall at rotor height",
+                       [effect](auto& p) -> auto& { return effect(p).d_over_r; })
+                       .at_least(0)
+                       .at_most(10000)
+                       .only("with the model table", is_table));
+}
+
+/// One side's surface effect; `effect` names it in a Problem.
+template <class Effect>
+void add_surface(Rows& rows, const std::string& path, const std::string& description,
+                 const std::vector<EffectModelInfo>& models, Effect effect) {
+    auto surface = parameters::group<Problem>(path, description).or_none().only("without aero.map", has_no_map);
+    surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
+        if (count == 0) {
+            effect(p) = EffectModel::none;
+        }
+    };
+    rows.push_back(std::move(surface));
+    add_model(rows, path, models, effect);
+    add_table(rows, path, effect);
+}
+
+void add_map(Rows& rows) {
+    rows.push_back(parameters::file<Problem>(
+        "aero.map", "K on a grid of rotor positions, .vti or CSV, in place of the models; null: none",
+        [](auto& p) -> auto& { return p.aero.map_file; },
+        [](Problem& p, std::size_t, const std::string& name) {
+            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, {.plane = p.plane}));
+        },
+        [](const Problem& p, std::size_t) { return sha256_hex(vti_text(*p.aero.map)); }));
+}
+
+}  // namespace
+
+void add_aero_rows(Rows& rows) {
+    auto aero = parameters::group<Problem>("aero", "how surfaces act on the rotors").or_none();
+    aero.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
+    aero.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
+    rows.push_back(std::move(aero));
+    add_map(rows);
+    std::vector<EffectModelInfo> below(effect_models().begin(), effect_models().end());
+    std::vector<EffectModelInfo> above = below;
+    std::erase_if(above, [](const EffectModelInfo& model) {  // a fountain rises from the ground only
+        return model.model == EffectModel::multirotor_body;
+    });
+    add_surface(
+        rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; });
+    add_surface(
+        rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; });
+    rows.push_back(
+        number(
+            "aero.max_factor",
+            "most that a surface may multiply thrust by; a low one hides from plans how a near ceiling pulls",
+            [](auto& p) -> auto& { return p.aero.max_factor; })
+            .at_least(1)
+            .at_most(10)
+            .only("without aero.map", has_no_map));
+    rows.push_back(number(
+                       "aero.min_distance_radii", "flyable area: least distance of a rotor's disc from obstacles",
+                       [](auto& p) -> auto& { return p.aero.min_distance_radii; })
+                       .at_least(0)
+                       .at_most(100));
+    rows.push_back(number(
+                       "aero.grid_m", "cell size of the map", [](auto& p) -> auto& { return p.aero.grid_m; })
+                       .at_least(0.001)
+                       .at_most(10));
+}
+
+}  // namespace downwash

@@ -1,0 +1,193 @@
+#include "downwash/problems/goal_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/problems/goal_reach.hpp"
+
+namespace downwash {
+namespace {
+
+std::string rounded(double value) {
+    return to_text(value, 4);
+}
+
+/// Calls visit(goal, key) for every goal, alternatives one by one.
+template <class Visit>
+void for_each_goal(const Problem& p, const Visit& visit) {
+    const auto name = [](std::string_view list, std::size_t i) {
+        return std::string(list) + "[" + std::to_string(i) + "]";
+    };
+    for (std::size_t i = 0; i < p.stops.size(); ++i) {
+        visit(p.stops[i], name("goal", i));
+    }
+    if (!p.stops.empty()) {
+        visit(p.goal, name("goal", p.stops.size()));
+    } else if (p.goal.any_of.empty()) {
+        visit(p.goal, "goal");
+    }
+    for (std::size_t i = 0; i < p.goal.any_of.size() && p.stops.empty(); ++i) {
+        visit(p.goal.any_of[i], name("goal.any_of", i));
+    }
+}
+
+/// The errors that a rule finds in each goal.
+template <class Rule>
+std::vector<KeyError> in_each_goal(const Problem& p, const Rule& rule) {
+    std::vector<KeyError> errors;
+    for_each_goal(p, [&](const Goal& goal, const std::string& key) { append(errors, rule(goal, key)); });
+    return errors;
+}
+
+std::vector<KeyError> too_many_goals(const Problem& p) {
+    const std::size_t count = std::max(p.stops.size() + 1, p.goal.any_of.size());
+    if (count <= most_goals) {
+        return {};
+    }
+    return {{p.stops.size() + 1 == count ? "goal" : "goal.any_of",
+             "has " + std::to_string(count) + " goals: expected at most " + std::to_string(most_goals)}};
+}
+
+std::vector<KeyError> unclear_goals(const Problem& p) {
+    const bool may_choose = p.stops.empty();
+    std::vector<KeyError> errors;
+    if (may_choose && !p.goal.any_of.empty() && (p.goal.end_effector || p.goal.configuration)) {
+        errors.push_back({"goal", "needs exactly one of end_effector, configuration or any_of"});
+    }
+    append(
+        errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+            if (!goal.any_of.empty()) {
+                return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
+            }
+            if (goal.end_effector.has_value() == goal.configuration.has_value()) {
+                return {{key, "needs exactly one of end_effector or configuration"}};
+            }
+            const auto& pose = goal.configuration;
+            if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
+                return {{key + ".configuration",
+                         "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
+            }
+            if (pose && ((pose->tolerance_x_m && !pose->x_m) || (pose->tolerance_z_m && !pose->z_m))) {
+                const std::string axis = pose->tolerance_x_m && !pose->x_m ? "x_m" : "z_m";
+                return {{key + ".configuration.tolerance_" + axis, "has a meaning only with " + axis + ": remove it"}};
+            }
+            return {};
+        }));
+    return errors;
+}
+
+std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
+    const double most_s = static_cast<double>(max_plan_ticks) / p.robot.controller.rate_hz;
+    double sum_s = 0;
+    for (const Goal& stop : p.stops) {
+        sum_s += stop.hold_s;
+    }
+    if (sum_s < most_s) {
+        return {};
+    }
+    return {{"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
+                         to_text(most_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"}};
+}
+
+std::vector<KeyError> configurations_outside_bounds(const Problem& p) {
+    return in_each_goal(p, [&](const Goal& goal, const std::string& goal_key) {
+        std::vector<KeyError> errors;
+        if (!goal.configuration) {
+            return errors;
+        }
+        const auto check = [&](const char* key, const std::optional<double>& value, double tolerance_m, double low,
+                               double high) {
+            if (value && (*value < low - tolerance_m || *value > high + tolerance_m)) {
+                errors.push_back({goal_key + key, "is " + to_text(*value) + ", outside the bounds: expected " +
+                                                      to_text(low) + " to " + to_text(high)});
+            }
+        };
+        const GoalTolerance tolerance = tolerance_of(goal);
+        check(".configuration.x_m", goal.configuration->x_m, tolerance.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
+        check(".configuration.z_m", goal.configuration->z_m, tolerance.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+        return errors;
+    });
+}
+
+std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
+    return in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+        if (!goal.configuration || !goal.configuration->arm_rad ||
+            arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad,
+                            usable_tolerance_share * goal.configuration->tolerance_rad)) {
+            return {};
+        }
+        return {
+            {key + ".configuration.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
+    });
+}
+
+std::vector<KeyError> configurations_in_collision(const Problem& p) {
+    return in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+        if (!goal.configuration || has_clear_configuration(p, goal)) {
+            return {};
+        }
+        return {{key + ".configuration",
+                 "is in collision with an obstacle or nearer to it than planner.safety_margin_m, "
+                 "anywhere within its tolerances: move the goal or the obstacle"}};
+    });
+}
+
+std::vector<KeyError> end_effector_out_of_reach(const Problem& p, const Goal& goal, const std::string& key) {
+    if (!goal.end_effector) {
+        return {};
+    }
+    const double missing_m = missing_reach_m(p, goal);
+    if (missing_m > 0) {
+        return {{key, "is out of reach: from anywhere within the bounds the arm of " + to_text(p.robot.arm.length_m) +
+                          " m misses it by " + rounded(missing_m) + " m; widen environment.bounds or move the goal"}};
+    }
+    switch (reach_of_end_effector(p, goal)) {
+        case Reach::clear:
+            return {};
+        case Reach::none:
+            return {{key,
+                     "is out of reach: the limits of the arm, the wanted direction and the bounds "
+                     "leave no pose that gets there"}};
+        case Reach::blocked:
+            break;
+    }
+    return {{key,
+             "is out of reach: in every pose that gets there the robot touches an obstacle or is "
+             "nearer to it than planner.safety_margin_m"}};
+}
+
+std::vector<KeyError> end_effectors_out_of_reach(const Problem& p) {
+    return in_each_goal(p, [&](const Goal& goal, const std::string& key) {
+        return end_effector_out_of_reach(p, goal, key + ".end_effector");
+    });
+}
+
+const std::array<Check<Problem>, 7> checks{{
+    {{"goal"}, too_many_goals},
+    {{"goal"}, unclear_goals},
+    {{"goal", "robot.controller"}, holds_beyond_longest_plan},
+    {{"goal", "environment.bounds"}, configurations_outside_bounds},
+    {{"goal", "robot.arm"}, configurations_beyond_arm_limits},
+    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
+     configurations_in_collision},
+    {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
+     end_effectors_out_of_reach},
+}};
+
+}  // namespace
+
+std::span<const Check<Problem>> goal_checks() {
+    return checks;
+}
+
+std::string arm_limits_text(const ArmParameters& arm) {
+    return rounded(arm.lower_limit_rad * degrees_per_radian) + " to " +
+           rounded(arm.upper_limit_rad * degrees_per_radian);
+}
+
+}  // namespace downwash

@@ -1,0 +1,148 @@
+#include "downwash/problems/goal_parameters.hpp"
+
+#include <string>
+
+#include "downwash/base/parameter_factories.hpp"
+#include "downwash/problems/obstacle_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+using Rows = std::vector<Parameter<Problem>>;
+
+template <class Member>
+Parameter<Problem> position(const std::string& path, std::string_view description, Member member) {
+    return parameters::number<Problem>(path, description, member).at_least(-farthest_m).at_most(farthest_m);
+}
+template <class Member>
+Parameter<Problem> angle(const std::string& path, std::string_view description, Member member) {
+    return parameters::number<Problem>(path, description, member).at_least(-3600).at_most(3600);
+}
+template <class Member>
+Parameter<Problem> tolerance(const std::string& path, std::string_view description, double most, Member member) {
+    return parameters::number<Problem>(path, description, member).above(0).at_most(most);
+}
+
+/// @param kind names the EndEffectorGoal or ConfigurationGoal
+template <class Kind>
+void add_point_tolerances(Rows& rows, const std::string& path, Kind kind) {
+    rows.push_back(tolerance(
+        path + ".tolerance_m", "distance that is near enough",
+        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_m; }));
+    rows.push_back(tolerance(
+        path + ".tolerance_x_m",
+        "where one of the two is given, x and z are judged one by one: of x; null: tolerance_m",
+        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_x_m; }));
+    rows.push_back(tolerance(
+        path + ".tolerance_z_m", "of z; null: tolerance_m",
+        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_z_m; }));
+}
+
+/// @param goal names the Goal
+template <class GoalMember>
+void add_end_effector(Rows& rows, const std::string& path, GoalMember goal) {
+    rows.push_back(
+        parameters::optional_group<Problem>(
+            path,
+            "the end effector at a point", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).end_effector; })
+            .is_exclusive());
+    const auto tip = [goal](auto& p, std::size_t i) -> auto& {
+        return *goal(p, i).end_effector;
+    };
+    rows.push_back(
+        position(
+            path + ".x_m", "along the plane", [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).x_m; })
+            .is_required());
+    rows.push_back(position(
+                       path + ".z_m", "upwards", [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).z_m; })
+                       .is_required());
+    add_point_tolerances(rows, path, tip);
+    rows.push_back(angle(
+        path + ".direction_deg",
+        "direction of the arm in the plane, down is 90; null for any", [tip](auto& p, std::size_t i) -> auto& {
+            return tip(p, i).direction_rad;
+        }));
+    rows.push_back(tolerance(
+        path + ".direction_tolerance_deg", "deviation that is near enough",
+        180, [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).direction_tolerance_rad; }));
+}
+
+/// @param goal names the Goal
+template <class GoalMember>
+void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
+    rows.push_back(
+        parameters::optional_group<Problem>(
+            path,
+            "the vehicle and its arm", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).configuration; })
+            .is_exclusive());
+    const auto pose = [goal](auto& p, std::size_t i) -> auto& {
+        return *goal(p, i).configuration;
+    };
+    rows.push_back(position(
+        path + ".x_m",
+        "along the plane; null for any", [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).x_m; }));
+    rows.push_back(position(
+        path + ".z_m", "upwards; null for any", [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).z_m; }));
+    rows.push_back(angle(
+        path + ".arm_deg",
+        "arm from the vehicle's nose, modulo a turn; null for any", [pose](auto& p, std::size_t i) -> auto& {
+            return pose(p, i).arm_rad;
+        }));
+    add_point_tolerances(rows, path, pose);
+    rows.push_back(tolerance(
+        path + ".tolerance_deg", "deviation of the arm that is near enough",
+        180, [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).tolerance_rad; }));
+}
+
+template <class GoalMember>
+Parameter<Problem> hold(const std::string& path, GoalMember goal) {
+    return parameters::number<Problem>(
+               path + ".hold_s",
+               "how long it is held", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).hold_s; })
+        .at_least(1)
+        .at_most(3600);
+}
+
+Parameter<Problem> goal_group() {
+    auto goal =
+        parameters::group<Problem>("goal", "where the flight must end and stay; a list: where it must stay in turn")
+            .is_required();
+    goal.can_be_list = true;
+    goal.count = [](const Problem& p, std::size_t) { return p.stops.size() + 1; };
+    goal.resize = [](Problem& p, std::size_t, std::size_t count) {
+        p.stops.assign(count - 1, Goal{});
+        p.goal = Goal{};
+    };
+    return goal;
+}
+
+}  // namespace
+
+void add_goal_rows(Rows& rows) {
+    const auto only = [](auto& p, std::size_t) -> auto& {
+        return p.goal;
+    };
+    rows.push_back(goal_group());
+    add_end_effector(rows, "goal.end_effector", only);
+    add_configuration(rows, "goal.configuration", only);
+    rows.push_back(parameters::list<Problem>(
+                       "goal.any_of", "goals of which any will do", [](auto& p) -> auto& { return p.goal.any_of; })
+                       .is_exclusive());
+    const auto alternative = [](auto& p, std::size_t i) -> auto& {
+        return p.goal.any_of[i];
+    };
+    add_end_effector(rows, "goal.any_of[].end_effector", alternative);
+    add_configuration(rows, "goal.any_of[].configuration", alternative);
+    rows.push_back(hold("goal.any_of[]", alternative));
+    rows.push_back(
+        hold("goal", only).only("without any_of", [](const Problem& p, std::size_t) { return p.goal.any_of.empty(); }));
+
+    const auto in_turn = [](auto& p, std::size_t i) -> auto& {
+        return i < p.stops.size() ? p.stops[i] : p.goal;
+    };
+    add_end_effector(rows, "goal[].end_effector", in_turn);
+    add_configuration(rows, "goal[].configuration", in_turn);
+    rows.push_back(hold("goal[]", in_turn));
+}
+
+}  // namespace downwash

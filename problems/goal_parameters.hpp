@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "downwash/base/parameter.hpp"
+#include "downwash/problems/problem.hpp"
+
+namespace downwash {
+
+/// Appends the rows of `goal`: one goal, a list of goals, or a choice of them.
+void add_goal_rows(std::vector<Parameter<Problem>>& rows);
+
+}  // namespace downwash

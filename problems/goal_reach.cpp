@@ -1,0 +1,164 @@
+#include "downwash/problems/goal_reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/scene/collision_checker.hpp"
+
+namespace downwash {
+namespace {
+
+constexpr double turn_rad = 2 * std::numbers::pi;
+constexpr double rounding_m = 1e-9;
+
+struct Offset {
+    double x, z;
+};
+
+/// A coordinate's tolerance is tried in steps of at most a quarter of a metre up to this; beyond it trying does not
+/// show that there is no pose.
+constexpr double widest_m = 2;
+
+/// Offsets within the usable part of a tolerance: rings around its centre or, where x and z have tolerances of their
+/// own, a grid.
+std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
+    const auto steps = [](double half_width_m) {
+        constexpr double step_m = 0.25;
+        return std::clamp(static_cast<int>(std::ceil(half_width_m / step_m)), 2, static_cast<int>(widest_m / step_m));
+    };
+    const int nx = steps(tolerance.x_m);
+    const int nz = steps(tolerance.z_m);
+    std::vector<Offset> offsets{{0, 0}};
+    if (tolerance.is_disc) {
+        for (int ring = 1; ring <= nx; ++ring) {
+            const double radius_m = usable_tolerance_share * tolerance.x_m * ring / nx;
+            const int places = 8 * ring;
+            for (int i = 0; i < places; ++i) {
+                const double angle = i * turn_rad / places;
+                offsets.push_back({radius_m * std::cos(angle), radius_m * std::sin(angle)});
+            }
+        }
+        return offsets;
+    }
+    for (int i = -nx; i <= nx; ++i) {
+        for (int k = -nz; k <= nz; ++k) {
+            offsets.push_back(
+                {usable_tolerance_share * tolerance.x_m * i / nx, usable_tolerance_share * tolerance.z_m * k / nz});
+        }
+    }
+    return offsets;
+}
+
+bool is_too_wide_to_try(const GoalTolerance& tolerance) {
+    return std::max(tolerance.x_m, tolerance.z_m) > widest_m;
+}
+
+/// Angles that the arm can turn to within the usable part of a tolerance around another, at most half a degree apart,
+/// the ends of the tolerance and limits of the arm among them; more than half a turn leaves every angle.
+std::vector<double> angles_within(double middle_rad, double tolerance_rad, const ArmParameters& arm) {
+    constexpr double step_rad = turn_rad / 720;
+    const double most_rad = std::min(usable_tolerance_share * tolerance_rad, turn_rad / 2);
+    const int steps = static_cast<int>(std::ceil(most_rad / step_rad));
+    std::vector<double> angles{middle_rad};
+    for (int i = 1; i <= steps; ++i) {
+        angles.push_back(middle_rad + most_rad * i / steps);
+        angles.push_back(middle_rad - most_rad * i / steps);
+    }
+    for (const double limit_rad : {arm.lower_limit_rad, arm.upper_limit_rad}) {
+        if (arm.is_limited && std::abs(lane::wrap_angle(limit_rad - middle_rad)) <= most_rad) {
+            angles.push_back(limit_rad);
+        }
+    }
+    std::erase_if(angles, [&arm](double angle_rad) { return !arm_can_turn_to(arm, angle_rad, 0); });
+    return angles;
+}
+
+bool is_within(const Bounds& bounds, double x_m, double z_m) {
+    return x_m >= bounds.x_low_m - rounding_m && x_m <= bounds.x_high_m + rounding_m &&
+           z_m >= bounds.z_low_m - rounding_m && z_m <= bounds.z_high_m + rounding_m;
+}
+
+CollisionChecker checker_of(const Problem& problem) {
+    return {std::make_shared<const Scene>(problem.obstacles), problem.plane, problem.robot.shape()};
+}
+
+}  // namespace
+
+bool arm_can_turn_to(const ArmParameters& arm, double angle_rad, double tolerance_rad) {
+    if (!arm.is_limited) {
+        return true;
+    }
+    const double middle = (arm.lower_limit_rad + arm.upper_limit_rad) / 2;
+    const double half_range = (arm.upper_limit_rad - arm.lower_limit_rad) / 2;
+    return std::abs(lane::wrap_angle(angle_rad - middle)) <= half_range + tolerance_rad + rounding_m;
+}
+
+double missing_reach_m(const Problem& problem, const Goal& wanted) {
+    const EndEffectorGoal& goal = *wanted.end_effector;
+    const GoalTolerance tolerance = tolerance_of(wanted);
+    const ArmParameters& arm = problem.robot.arm;
+    const Bounds& bounds = problem.bounds;
+    // The vehicle's place if the arm had no length; a level vehicle carries its joint at a fixed offset.
+    const double x_m = goal.x_m - arm.joint_x_m;
+    const double z_m = goal.z_m - arm.joint_z_m;
+    // A rectangle of places widens the bounds, as they are one; a disc lengthens the arm.
+    const double wider_x_m = tolerance.is_disc ? 0 : tolerance.x_m;
+    const double wider_z_m = tolerance.is_disc ? 0 : tolerance.z_m;
+    const double longer_m = tolerance.is_disc ? tolerance.x_m : 0;
+    const double low_x = bounds.x_low_m - wider_x_m, high_x = bounds.x_high_m + wider_x_m;
+    const double low_z = bounds.z_low_m - wider_z_m, high_z = bounds.z_high_m + wider_z_m;
+    const double nearest_m = std::hypot(x_m - std::clamp(x_m, low_x, high_x), z_m - std::clamp(z_m, low_z, high_z));
+    const double farthest_m = std::hypot(std::max(std::abs(x_m - low_x), std::abs(x_m - high_x)),
+                                         std::max(std::abs(z_m - low_z), std::abs(z_m - high_z)));
+    const double too_far_m = nearest_m - (arm.length_m + longer_m);
+    const double too_near_m = (arm.length_m - longer_m) - farthest_m;
+    return std::max(too_far_m, too_near_m);
+}
+
+Reach reach_of_end_effector(const Problem& problem, const Goal& wanted) {
+    const EndEffectorGoal& goal = *wanted.end_effector;
+    const ArmParameters& arm = problem.robot.arm;
+    const CollisionChecker checker = checker_of(problem);
+    const double tolerance_rad = goal.direction_rad ? goal.direction_tolerance_rad : turn_rad;
+    const std::vector<double> angles = angles_within(goal.direction_rad.value_or(0), tolerance_rad, arm);
+    Reach reach = Reach::none;
+    for (const Offset& offset : offsets_within(tolerance_of(wanted))) {
+        for (const double angle_rad : angles) {
+            const double x_m = goal.x_m + offset.x - arm.length_m * std::cos(angle_rad) - arm.joint_x_m;
+            const double z_m = goal.z_m + offset.z + arm.length_m * std::sin(angle_rad) - arm.joint_z_m;
+            if (!is_within(problem.bounds, x_m, z_m)) {
+                continue;
+            }
+            if (!checker.is_nearer_than({x_m, z_m, 0, angle_rad}, problem.planner.safety_margin_m)) {
+                return Reach::clear;
+            }
+            reach = Reach::blocked;
+        }
+    }
+    return is_too_wide_to_try(tolerance_of(wanted)) ? Reach::clear : reach;
+}
+
+bool has_clear_configuration(const Problem& problem, const Goal& wanted) {
+    const ConfigurationGoal& goal = *wanted.configuration;
+    const GoalTolerance tolerance = tolerance_of(wanted);
+    if (!goal.x_m || !goal.z_m || !goal.arm_rad || is_too_wide_to_try(tolerance)) {
+        return true;
+    }
+    const CollisionChecker checker = checker_of(problem);
+    const std::vector<double> angles = angles_within(*goal.arm_rad, goal.tolerance_rad, problem.robot.arm);
+    for (const Offset& offset : offsets_within(tolerance)) {
+        for (const double angle_rad : angles) {
+            const PlanarPose pose{*goal.x_m + offset.x, *goal.z_m + offset.z, 0, angle_rad};
+            if (!checker.is_nearer_than(pose, problem.planner.safety_margin_m)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace downwash

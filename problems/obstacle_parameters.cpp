@@ -1,0 +1,135 @@
+#include "downwash/problems/obstacle_parameters.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/parameter_factories.hpp"
+#include "downwash/scene/mesh_file.hpp"
+#include "downwash/scene/octomap_file.hpp"
+#include "downwash/scene/shape_digest.hpp"
+#include "downwash/scene/shape_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+using Rows = std::vector<Parameter<Problem>>;
+
+std::size_t pieces_of(const Shape& shape) {
+    if (const auto* mesh = std::get_if<Mesh>(&shape); mesh && mesh->surface) {
+        return mesh->surface->triangles.size();
+    }
+    if (const auto* octomap = std::get_if<Octomap>(&shape); octomap && octomap->tree) {
+        return octomap->tree->cubes.size();
+    }
+    return 0;
+}
+
+std::size_t pieces_of(const std::vector<Obstacle>& obstacles) {
+    std::size_t pieces = 0;
+    for (const Obstacle& obstacle : obstacles) {
+        pieces += pieces_of(obstacle.shape);
+    }
+    return pieces;
+}
+
+/// Reads the file of a shape, or takes what another obstacle has read from it already.
+/// @param content where the Kind keeps it
+template <class Kind, class Content>
+void read_file_of(Problem& problem, std::size_t index, const std::string& file,
+                  std::shared_ptr<const Content> Kind::*content,
+                  std::shared_ptr<const Content> (*read)(const std::filesystem::path&)) {
+    std::shared_ptr<const Content> found;
+    for (const Obstacle& obstacle : problem.obstacles) {
+        if (const auto* other = std::get_if<Kind>(&obstacle.shape); other && other->file == file) {
+            found = other->*content;
+        }
+    }
+    auto& kept = std::get<Kind>(problem.obstacles[index].shape).*content;
+    kept = found ? found : read(file);
+    const std::size_t pieces = pieces_of(problem.obstacles);
+    if (pieces > most_pieces) {
+        kept = nullptr;
+        throw InputError(
+            {{"", "'" + file + "' makes " + std::to_string(pieces) +
+                      " triangles and cubes of all obstacles: expected at most " + std::to_string(most_pieces)}});
+    }
+}
+
+Parameter<Problem> center(const std::string& path, std::string_view description) {
+    return parameters::vector<Problem>(
+               path + ".center_m", description, {"x", "y", "z"},
+               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_m; })
+        .at_least(-farthest_m)
+        .at_most(farthest_m);
+}
+
+Parameter<Problem> orientation(const std::string& path) {
+    return parameters::vector<Problem>(
+               path + ".rpy_deg", "orientation, R = Rz(yaw) Ry(pitch) Rx(roll)", {"roll", "pitch", "yaw"},
+               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].rpy_rad; })
+        .at_least(-360)
+        .at_most(360);
+}
+
+/// @param content where the Kind keeps what is in its file
+template <class Kind, class Content>
+Parameter<Problem> file(const std::string& path, std::string_view description,
+                        std::shared_ptr<const Content> Kind::*content,
+                        std::shared_ptr<const Content> (*read)(const std::filesystem::path&)) {
+    return parameters::file<Problem>(
+               path + ".file", description,
+               [](auto& p, std::size_t i) -> auto& { return std::get<Kind>(p.obstacles[i].shape).file; },
+               [content, read](Problem& p, std::size_t i, const std::string& name) {
+                   read_file_of(p, i, name, content, read);
+               },
+               [content](const Problem& p, std::size_t i) {
+                   return digest_of(*(std::get<Kind>(p.obstacles[i].shape).*content));
+               })
+        .is_required();
+}
+
+void add_mesh(Rows& rows, const std::string& path) {
+    rows.push_back(file(path, "STL (binary or ASCII) or OBJ", &Mesh::surface, &read_mesh));
+    rows.push_back(parameters::number<Problem>(
+                       path + ".scale", "metres in one unit of the file: 0.001 for millimetres",
+                       [](auto& p, std::size_t i) -> auto& { return std::get<Mesh>(p.obstacles[i].shape).scale; })
+                       .at_least(1e-6)
+                       .at_most(1e6));
+    rows.push_back(center(path, "where the origin of the file stands"));
+    rows.push_back(orientation(path));
+}
+
+void add_octomap(Rows& rows, const std::string& path) {
+    rows.push_back(file(path, "OctoMap, .bt or .ot", &Octomap::tree, &read_octomap));
+    rows.push_back(center(path, "where the origin of the file stands"));
+    rows.push_back(orientation(path));
+}
+
+}  // namespace
+
+void add_obstacle_rows(Rows& rows) {
+    const std::string path = "environment.obstacles[]";
+    const auto shape = [](auto& p, std::size_t i) -> auto& {
+        return p.obstacles[i].shape;
+    };
+    rows.push_back(parameters::list<Problem>(
+        "environment.obstacles", "solids in the world frame", [](auto& p) -> auto& { return p.obstacles; }));
+    rows.push_back(parameters::text<Problem>(
+        path + ".name", "name, used once", [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].name; }));
+    add_shape_rows<Problem>(rows, path, shape, [](Rows& to, const std::string& at) {
+        to.push_back(center(at, "centre").is_required());
+        to.push_back(orientation(at));
+    });
+    rows.push_back(parameters::alternative<Mesh, Problem>(
+        path + ".mesh", "a surface of triangles: solid when no edge of it is open, else a sheet with no inside",
+        shape));
+    add_mesh(rows, path + ".mesh");
+    rows.push_back(parameters::alternative<Octomap, Problem>(path + ".octomap",
+                                                             "the occupied cubes of an octree, each solid", shape));
+    add_octomap(rows, path + ".octomap");
+}
+
+}  // namespace downwash

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/aeromap/aero_settings.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/controllers/configuration.hpp"
+#include "downwash/problems/objective.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
+#include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/goal.hpp"
+#include "downwash/simulation/robot.hpp"
+
+namespace downwash {
+
+/// What the planner knows of the physics while it plans (thesis C.2).
+enum class Variant {
+    mp_arm,      ///< geometry only: straight lines of (x, z, arm), the vehicle level
+    mp_arm_da,   ///< dynamics-aware: closed-loop flights without surface effects
+    mp_arm_ada,  ///< aerodynamics-aware: closed-loop flights through the aero map
+};
+
+/// Name as in problem files: "mp-arm-ada".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
+
+/// Where the flight begins.
+struct Start {
+    double x_m = 0, z_m = 0, arm_rad = 0;
+    double pitch_rad = 0;
+    double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
+
+    /// Where vehicle and arm are, the pitch left out.
+    [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
+};
+
+/// Limits of the reference motion.
+struct MotionLimits {
+    double max_speed_m_s = 1.0;
+    double max_acceleration_m_s2 = 0.5;
+    double max_arm_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second
+    double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
+};
+
+/// Wall time of a search that is limited by nothing else [s].
+inline constexpr double default_time_limit_s = 10;
+
+/// How to search.
+struct PlannerSettings {
+    Variant variant = Variant::mp_arm_ada;
+    std::string algorithm = "rrt-star";  ///< one of the names that algorithms() lists
+    CostFunction objective = Objective::energy;
+    /// Wall time of the search [s], > 0. Empty: default_time_limit_s, or none where max_iterations is set.
+    std::optional<double> time_limit_s;
+    std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
+    std::uint32_t seed = 1;
+    double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
+};
+
+/// A motion planning problem for an aerial manipulator, complete in itself.
+struct Problem {
+    std::string name = "problem";  ///< [A-Za-z0-9_-]{1,64}
+    std::string description;
+    Robot robot;
+    PlaneOfMotion plane;
+    Bounds bounds;
+    std::vector<Obstacle> obstacles;
+    AeroSettings aero;
+    Start start;
+    std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
+    Goal goal;
+    MotionLimits motion;
+    PlannerSettings planner;
+};
+
+/// More goals than these, in a row or to choose from, are not planned for.
+inline constexpr std::size_t most_goals = 64;
+
+/// All goals in the order in which they are to be visited: the stops, then the goal.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);
+
+/// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision
+/// or outside the flyable area, a goal out of reach. Keys are key paths of a problem file. Empty when it is sound.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> problem_errors(const Problem& problem);
+
+}  // namespace downwash

@@ -1,0 +1,323 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/base/angles.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/grids/factor_grid.hpp"
+#include "downwash/problems/algorithms.hpp"
+#include "downwash/problems/goal_errors.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/problem_parameters.hpp"
+#include "downwash/scene/collision_checker.hpp"
+#include "downwash/simulation/flight_model.hpp"
+#include "downwash/simulation/robot_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+std::string rounded(double value) {
+    return to_text(value, 4);
+}
+
+std::vector<KeyError> reversed_bounds(const Problem& p) {
+    std::vector<KeyError> errors;
+    if (p.bounds.x_low_m >= p.bounds.x_high_m) {
+        errors.push_back({"environment.bounds.x_m", "is [low, high]: expected low below high"});
+    }
+    if (p.bounds.z_low_m >= p.bounds.z_high_m) {
+        errors.push_back({"environment.bounds.z_m", "is [low, high]: expected low below high"});
+    }
+    return errors;
+}
+
+std::vector<KeyError> repeated_names(const Problem& p) {
+    std::vector<KeyError> errors;
+    std::set<std::string_view> names;
+    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+        const std::string& name = p.obstacles[i].name;
+        if (!name.empty() && !names.insert(name).second) {
+            errors.push_back({"environment.obstacles[" + std::to_string(i) + "].name",
+                              "is '" + excerpt(name) + "' like an obstacle before it: expected a name used once"});
+        }
+    }
+    return errors;
+}
+
+std::vector<KeyError> shapeless_cylinders(const Problem& p) {
+    std::vector<KeyError> errors;
+    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+        const auto* cylinder = std::get_if<Cylinder>(&p.obstacles[i].shape);
+        if (cylinder && cylinder->axis == Vector3{}) {
+            errors.push_back({"environment.obstacles[" + std::to_string(i) + "].cylinder.axis",
+                              "has no direction: expected a vector other than [0, 0, 0]"});
+        }
+    }
+    return errors;
+}
+
+/// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
+std::vector<KeyError> unplaceable_obstacles(const Problem& p) {
+    std::vector<KeyError> errors;
+    try {
+        static_cast<void>(Scene(p.obstacles));
+    } catch (const InputError& invalid) {
+        for (const KeyError& error : invalid.errors()) {
+            errors.push_back({"environment." + error.key, error.message});
+        }
+    }
+    return errors;
+}
+
+std::vector<KeyError> incomplete_effects(const Problem& p) {
+    std::vector<KeyError> errors;
+    if (p.aero.enabled && !p.aero.map) {
+        for (const auto& [effect, key] :
+             {std::pair(&p.aero.ground, "aero.ground"), {&p.aero.ceiling, "aero.ceiling"}}) {
+            if (effect->model == EffectModel::table && !effect->table) {
+                errors.push_back({std::string(key) + ".file", "is missing: expected the file of the table"});
+            }
+        }
+        if (p.aero.ceiling.model == EffectModel::multirotor_body) {
+            errors.push_back({"aero.ceiling.model",
+                              "is multirotor-body: expected a model without a fountain, which "
+                              "rises from the ground only"});
+        }
+    }
+    return errors;
+}
+
+/// A planar map of the user's has to stand in the plane of motion, or beside it.
+std::vector<KeyError> map_of_another_plane(const Problem& p) {
+    constexpr double least_sine = 1e-6;
+    if (!p.aero.enabled || !p.aero.map || !p.aero.map->is_planar()) {
+        return {};
+    }
+    const PlaneOfMotion& frame = p.aero.map->frame();
+    const double sine = frame.sin_heading() * p.plane.cos_heading() - frame.cos_heading() * p.plane.sin_heading();
+    if (std::abs(sine) <= least_sine) {
+        return {};
+    }
+    return {{"aero.map", "stands in another vertical plane (" + to_text(frame.heading_rad() * degrees_per_radian, 8) +
+                             " deg): expected the heading of environment.plane (" +
+                             to_text(p.plane.heading_rad() * degrees_per_radian, 8) + " deg)"}};
+}
+
+/// A map of the user's that says of which rotors it is has to be of the robot's.
+std::vector<KeyError> map_of_another_rotor(const Problem& p) {
+    constexpr double largest_difference = 1e-6;  // relative
+    if (!p.aero.enabled || !p.aero.map) {
+        return {};
+    }
+    const double radius_m = p.robot.rotors.radius_m;
+    for (const auto& [key, value] : p.aero.map->provenance()) {
+        const auto map_radius_m = key == "rotor_radius_m" ? parse_number<double>(value) : std::nullopt;
+        if (map_radius_m && std::abs(*map_radius_m - radius_m) > largest_difference * radius_m) {
+            return {{"aero.map", "is of rotors of " + to_text(*map_radius_m) +
+                                     " m radius, as its rotor_radius_m says: expected robot.rotors.radius_m, " +
+                                     to_text(radius_m) + " m"}};
+        }
+    }
+    return {};
+}
+
+/// A map of the user's has to hold wherever a rotor can get.
+std::vector<KeyError> unreached_places(const Problem& p) {
+    if (!p.aero.enabled || !p.aero.map || !map_of_another_plane(p).empty()) {
+        return {};
+    }
+    const MapExtent reach = rotor_extent(p.robot.rotors, p.bounds);
+    for (const Vector3& rotor_m : p.robot.rotors.positions_m) {
+        for (const double x : {reach.x_low_m, reach.x_high_m}) {
+            for (const double z : {reach.z_low_m, reach.z_high_m}) {
+                const Vector3 hub = p.plane.to_world(x, rotor_m[1], z);
+                if (!p.aero.map->contains(hub)) {
+                    return {{"aero.map", "does not reach the world point (" + rounded(hub[0]) + ", " + rounded(hub[1]) +
+                                             ", " + rounded(hub[2]) +
+                                             "), where a rotor can get at the edge of environment.bounds: expected a "
+                                             "grid that covers " +
+                                             rounded(reach.x_low_m) + " to " + rounded(reach.x_high_m) +
+                                             " m along the "
+                                             "plane and " +
+                                             rounded(reach.z_low_m) + " to " + rounded(reach.z_high_m) +
+                                             " m in z, at every lateral offset of a rotor"}};
+                }
+            }
+        }
+    }
+    return {};
+}
+
+std::vector<KeyError> too_large_map(const Problem& p) {
+    if (!p.aero.enabled) {
+        return {};
+    }
+    const auto no_obstacles = std::make_shared<const Scene>(std::vector<Obstacle>{});
+    const double cells =
+        map_cells(effect_layers(p.robot.rotors, no_obstacles, p.aero).layers, rotor_extent(p.robot.rotors, p.bounds));
+    if (cells <= most_map_cells) {
+        return {};
+    }
+    return {{"aero.grid_m", "makes a map of " + rounded(cells) + " cells over the bounds: expected at most " +
+                                rounded(most_map_cells) + "; choose a coarser grid or narrower bounds"}};
+}
+
+std::vector<KeyError> start_outside_bounds(const Problem& p) {
+    std::vector<KeyError> errors;
+    const auto check = [&errors](const char* key, double value, double low, double high) {
+        if (value < low || value > high) {
+            errors.push_back({key, "is " + to_text(value) + ", outside the bounds: expected " + to_text(low) + " to " +
+                                       to_text(high)});
+        }
+    };
+    check("start.x_m", p.start.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
+    check("start.z_m", p.start.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+    return errors;
+}
+
+std::vector<KeyError> start_too_fast(const Problem& p) {
+    std::vector<KeyError> errors;
+    const double speed = std::hypot(p.start.vx_m_s, p.start.vz_m_s);
+    if (speed > p.motion.max_speed_m_s) {
+        errors.push_back({p.start.vx_m_s == 0 ? "start.vz_m_s" : "start.vx_m_s",
+                          "makes a start speed of " + rounded(speed) + " m/s: expected at most motion.max_speed_m_s, " +
+                              to_text(p.motion.max_speed_m_s)});
+    }
+    if (std::abs(p.start.arm_rate_rad_s) > p.motion.max_arm_rate_rad_s) {
+        errors.push_back({"start.arm_rate_deg_s", "is faster than motion.max_arm_rate_deg_s: expected at most " +
+                                                      rounded(p.motion.max_arm_rate_rad_s * degrees_per_radian) +
+                                                      " in size"});
+    }
+    return errors;
+}
+
+bool is_beyond_limits(const ArmParameters& arm, double angle_rad, double tolerance_rad = 1e-9) {
+    return arm.is_limited &&
+           (angle_rad < arm.lower_limit_rad - tolerance_rad || angle_rad > arm.upper_limit_rad + tolerance_rad);
+}
+
+std::vector<KeyError> start_beyond_arm_limits(const Problem& p) {
+    if (!is_beyond_limits(p.robot.arm, p.start.arm_rad)) {
+        return {};
+    }
+    return {{"start.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
+}
+
+std::vector<KeyError> start_in_collision(const Problem& p) {
+    const PlanarPose pose{p.start.x_m, p.start.z_m, p.start.pitch_rad, p.start.arm_rad};
+    const CollisionChecker checker(std::make_shared<const Scene>(p.obstacles), p.plane, p.robot.shape());
+    if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
+        return {};
+    }
+    const double clearance_m = checker.clearance_m(pose);
+    const std::string remedy = ": move the start or the obstacle";
+    if (clearance_m <= 0) {
+        return {{"start", "is in collision with an obstacle" + remedy}};
+    }
+    return {{"start", "is " + rounded(clearance_m) + " m from an obstacle, nearer than planner.safety_margin_m, " +
+                          to_text(p.planner.safety_margin_m) + remedy}};
+}
+
+/// World position of a rotor's hub (model 1: body axes b1 = (cos p, -sin p), b3 = (sin p, cos p)).
+Vector3 hub_m(const Problem& p, const Vector3& in_body_m) {
+    const double c = std::cos(p.start.pitch_rad);
+    const double s = std::sin(p.start.pitch_rad);
+    return p.plane.to_world(p.start.x_m + in_body_m[0] * c + in_body_m[2] * s, in_body_m[1],
+                            p.start.z_m - in_body_m[0] * s + in_body_m[2] * c);
+}
+
+std::vector<KeyError> start_not_flyable(const Problem& p) {
+    if (!p.aero.enabled) {
+        return {};
+    }
+    const auto scene = std::make_shared<const Scene>(p.obstacles);
+    const DirectEffect effect(scene, p.aero, p.robot.rotors.radius_m);
+    for (std::size_t i = 0; i < p.robot.rotors.positions_m.size(); ++i) {
+        const Vector3 hub = hub_m(p, p.robot.rotors.positions_m[i]);
+        if (!effect.is_flyable(hub)) {
+            return {{"start", "is outside the flyable area: the disc of rotor " + std::to_string(i + 1) + " is " +
+                                  rounded(disc_clearance_m(*scene, hub, p.robot.rotors.radius_m)) +
+                                  " m from an obstacle; expected at least " +
+                                  rounded(p.aero.min_distance_radii * p.robot.rotors.radius_m) +
+                                  " m (aero.min_distance_radii times the rotor radius)"}};
+        }
+    }
+    return {};
+}
+
+std::vector<KeyError> weightless_objective(const Problem& p) {
+    if (p.planner.objective == CostFunction::of_nothing()) {
+        return {{"planner.objective", "has no weight above 0: expected one at least"}};
+    }
+    return {};
+}
+
+std::vector<KeyError> algorithm_of_another_variant(const Problem& p) {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        if (algorithm.plans_for(p.planner.variant)) {
+            names.push_back(algorithm.name);
+        }
+    }
+    if (std::find(names.begin(), names.end(), p.planner.algorithm) != names.end()) {
+        return {};
+    }
+    std::string hint = did_you_mean(p.planner.algorithm, names);
+    if (hint.empty()) {
+        hint = "; did you mean '" + std::string(names.front()) + "'?";
+    }
+    return {{"planner.algorithm", "is '" + excerpt(p.planner.algorithm) + "', which does not plan for " +
+                                      std::string(name_of(p.planner.variant)) + ": expected " + joined_names(names) +
+                                      hint}};
+}
+
+const std::array<Check<Problem>, 16> checks{{
+    {{"environment.bounds"}, reversed_bounds},
+    {{"environment.obstacles"}, repeated_names},
+    {{"environment.obstacles"}, shapeless_cylinders},
+    {{"environment.obstacles"}, unplaceable_obstacles},
+    {{"aero"}, incomplete_effects},
+    {{"environment.bounds", "environment.plane", "aero.map", "robot.rotors"}, unreached_places},
+    {{"environment.plane", "aero.map"}, map_of_another_plane},
+    {{"aero.map", "robot.rotors"}, map_of_another_rotor},
+    {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
+    {{"environment.bounds", "start"}, start_outside_bounds},
+    {{"start", "motion"}, start_too_fast},
+    {{"start.arm_deg", "robot.arm"}, start_beyond_arm_limits},
+    {{"environment.obstacles", "environment.plane", "start", "robot.multirotor.body", "robot.arm",
+      "planner.safety_margin_m"},
+     start_in_collision},
+    {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
+    {{"planner.objective"}, weightless_objective},
+    {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
+}};
+
+}  // namespace
+
+std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys wrong) {
+    std::vector<KeyError> errors = value_errors(problem_parameters(), problem, "", wrong);
+    append(errors, further_robot_errors(problem.robot, wrong, "robot."));
+    append(errors, run_checks(std::span<const Check<Problem>>(checks), problem, "", wrong));
+    append(errors, run_checks(goal_checks(), problem, "", wrong));
+    return errors;
+}
+
+std::vector<Goal> goals_of(const Problem& problem) {
+    std::vector<Goal> goals = problem.stops;
+    goals.push_back(problem.goal);
+    return goals;
+}
+
+std::vector<KeyError> problem_errors(const Problem& problem) {
+    return further_problem_errors(problem, {});
+}
+
+}  // namespace downwash

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "downwash/base/export.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash {
+
+/// The robot and scene of a problem, bound together.
+/// @pre problem_errors(problem) is empty
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem);
+
+/// The vehicle at the start of a problem.
+[[nodiscard]] DOWNWASH_EXPORT FlightState start_state(const FlightModel& model, const Start& start);
+
+}  // namespace downwash

@@ -1,0 +1,169 @@
+#pragma once
+
+// Private to problems/.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
+
+namespace downwash::problems {
+
+using Json = nlohmann::json;
+
+/// A value in the document and the key path that leads to it.
+struct Node {
+    const Json* json;
+    std::string key;
+
+    [[nodiscard]] Node at(std::size_t index) const {
+        return {&(*json)[index], key + "[" + std::to_string(index) + "]"};
+    }
+};
+
+/// Reads values out of a document and collects what is wrong with them.
+class JsonReader {
+ public:
+    /// Of a coordinate, an angle and their derivatives.
+    static constexpr double greatest_number = 1e6;
+    /// Further ones are not noted.
+    static constexpr std::size_t most_errors = 20;
+
+    void refuse(const Node& node, const std::string& message) {
+        if (errors_.size() < most_errors) {
+            errors_.push_back({node.key, message});
+        }
+    }
+    [[nodiscard]] const std::vector<KeyError>& errors() const noexcept { return errors_; }
+    [[nodiscard]] bool has_enough() const noexcept { return errors_.size() >= most_errors; }
+
+    /// The member of a group, null included; nothing when it is missing.
+    static std::optional<Node> member(const Node& group, const char* name) {
+        const auto found = group.json->find(name);
+        if (found == group.json->end()) {
+            return std::nullopt;
+        }
+        return Node{&*found, group.key.empty() ? name : group.key + "." + name};
+    }
+
+    std::optional<Node> required(const Node& group, const char* name) {
+        auto node = member(group, name);
+        if (!node) {
+            refuse(group, "'" + std::string(name) + "' is missing here");
+        }
+        return node;
+    }
+
+    std::optional<double> number(const Node& node) {
+        if (!node.json->is_number()) {
+            refuse(node, "expected a number, found " + std::string(node.json->type_name()));
+            return std::nullopt;
+        }
+        const double value = node.json->get<double>();
+        if (!std::isfinite(value) || std::abs(value) > greatest_number) {
+            refuse(node, "expected a number between -1e6 and 1e6, found " + to_text(value));
+            return std::nullopt;
+        }
+        return value;
+    }
+
+    double required_number(const Node& group, const char* name) {
+        const auto node = required(group, name);
+        return node ? number(*node).value_or(0) : 0;
+    }
+
+    /// A number of any size >= 0, `otherwise` when it is missing or null.
+    double amount(const Node& group, const char* name, double otherwise) {
+        const auto node = member(group, name);
+        if (!node || node->json->is_null()) {
+            return otherwise;
+        }
+        const double value = node->json->is_number() ? node->json->get<double>() : -1;
+        if (!(value >= 0 && std::isfinite(value))) {
+            refuse(*node, "expected a number that is not negative");
+            return otherwise;
+        }
+        return value;
+    }
+
+    /// A whole number >= 0 that the type of `value` can hold.
+    template <class Integer>
+    void read_count(const Node& node, Integer& value) {
+        constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<Integer>::max());
+        if (node.json->is_number_unsigned() && node.json->get<std::uint64_t>() <= most) {
+            value = node.json->get<Integer>();
+        } else {
+            refuse(node, "expected a whole number from 0 to " + std::to_string(most));
+        }
+    }
+
+    /// The same for a member of a group, left as it is when that is missing.
+    template <class Integer>
+    void read_count(const Node& group, const char* name, Integer& value) {
+        if (const auto node = member(group, name)) {
+            read_count(*node, value);
+        }
+    }
+
+    void read_flag(const Node& group, const char* name, bool& value) {
+        if (const auto node = member(group, name)) {
+            if (node->json->is_boolean()) {
+                value = node->json->get<bool>();
+            } else {
+                refuse(*node, "expected true or false");
+            }
+        }
+    }
+
+    /// One of the values that name_of() knows.
+    template <class Enumeration, std::size_t count>
+    void read_choice(const Node& group, const char* name, const std::array<Enumeration, count>& values,
+                     Enumeration& value) {
+        const auto node = member(group, name);
+        if (!node) {
+            return;
+        }
+        std::array<std::string_view, count> names;
+        for (std::size_t i = 0; i < count; ++i) {
+            names[i] = name_of(values[i]);
+            if (*node->json == names[i]) {
+                value = values[i];
+                return;
+            }
+        }
+        refuse(*node, "expected one of " + joined_names(names));
+    }
+
+    /// A list of groups; nothing when it is something else.
+    std::vector<Node> groups(const std::optional<Node>& list) {
+        std::vector<Node> nodes;
+        if (!list) {
+            return nodes;
+        }
+        if (!list->json->is_array()) {
+            refuse(*list, "expected a list, found " + std::string(list->json->type_name()));
+            return nodes;
+        }
+        for (std::size_t i = 0; i < list->json->size(); ++i) {
+            nodes.push_back(list->at(i));
+            if (!nodes.back().json->is_object()) {
+                refuse(nodes.back(), "expected a group of keys, found " + std::string(nodes.back().json->type_name()));
+                nodes.pop_back();
+            }
+        }
+        return nodes;
+    }
+
+ private:
+    std::vector<KeyError> errors_;
+};
+
+}  // namespace downwash::problems

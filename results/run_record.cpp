@@ -1,0 +1,168 @@
+#include "downwash/results/run_record.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/results/solution_file.hpp"
+
+namespace downwash {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
+constexpr int deepest_nesting = 32;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& message) {
+    throw InputError({KeyError{"", file.string() + ": " + message}});
+}
+
+std::string text_of(const fs::path& file) {
+    std::string text;
+    try {
+        text = read_file(file, largest_file + 1);
+    } catch (const FileError& error) {
+        throw InputError({KeyError{"", file.string() + " " + error.what()}});
+    }
+    if (text.size() > largest_file) {
+        refuse(file, "larger than " + std::to_string(largest_file >> 20U) + " MiB, more than any run leaves behind");
+    }
+    return text;
+}
+
+std::string text_at(const nlohmann::json& json, const char* pointer) {
+    const nlohmann::json::json_pointer place(pointer);
+    return json.contains(place) && json[place].is_string() ? json[place].get<std::string>() : "";
+}
+
+/// @return whether there is a plan
+bool take_solution(const fs::path& file, RunRecord& run) {
+    using Json = nlohmann::json;
+    bool is_deep = false;
+    const Json solution = Json::parse(
+        run.solution_text,
+        [&is_deep](int depth, Json::parse_event_t, Json&) {
+            is_deep = is_deep || depth > deepest_nesting;
+            return !is_deep;
+        },
+        false);
+    if (solution.is_discarded() || is_deep || !solution.is_object()) {
+        refuse(file, "this is not the JSON that `downwash solve` writes");
+    }
+    if (text_at(solution, "/schema") != solution_schema) {
+        refuse(file, "its schema is not " + std::string(solution_schema));
+    }
+    run.status = text_at(solution, "/status");
+    run.outcome = text_at(solution, "/execution/outcome");
+    const auto plan = solution.find("plan");
+    return plan != solution.end() && !plan->is_null();
+}
+
+[[noreturn]] void refuse_row(const fs::path& file, const NumberTable& table, std::size_t row,
+                             const std::string& message) {
+    throw InputError({KeyError{"", file.string() + ":" + std::to_string(table.lines[row]) + ": " + message}});
+}
+
+/// Far beyond everything that flies.
+constexpr double greatest_number = 1e9;
+
+/// @param may_be_empty the one column whose cells may be
+void check_numbers(const fs::path& file, const NumberTable& table, std::string_view may_be_empty) {
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        for (std::size_t row = 0; row < table.rows(); ++row) {
+            const double number = table.columns[column][row];
+            if (std::isnan(number) && table.names[column] != may_be_empty) {
+                refuse_row(file, table, row, table.names[column] + " is empty");
+            }
+            if (std::abs(number) > greatest_number) {
+                refuse_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e9");
+            }
+        }
+    }
+}
+
+/// Every node leads back to a root.
+void check_tree(const fs::path& file, const NumberTable& tree) {
+    check_numbers(file, tree, "parent");
+    const std::vector<double>& parents = *tree.find("parent");
+    const auto rows = static_cast<double>(parents.size());
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        if (!std::isnan(parents[i]) &&
+            !(parents[i] >= 0 && parents[i] < rows && parents[i] == std::floor(parents[i]))) {
+            refuse_row(file, tree, i,
+                       "parent is " + to_text(parents[i]) + ", expected a row of this file, counted from 0");
+        }
+    }
+    std::vector<std::size_t> seen_from(parents.size(), parents.size());  // the row from which each was reached first
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        std::size_t here = i;
+        while (seen_from[here] == parents.size()) {
+            seen_from[here] = i;
+            if (std::isnan(parents[here])) {
+                break;
+            }
+            here = static_cast<std::size_t>(parents[here]);
+            if (seen_from[here] == i) {
+                refuse_row(file, tree, i, "its parents run in a circle");
+            }
+        }
+    }
+}
+
+std::vector<std::string> flight_columns(const Robot& robot) {
+    std::vector<std::string> names{"t_s",    "ref_x_m",   "ref_z_m",  "ref_arm_rad",     "x_m",
+                                   "z_m",    "pitch_rad", "arm_rad",  "clearance_m",     "ee_x_m",
+                                   "ee_z_m", "power_w",   "energy_j", "aero_factor_min", "aero_factor_max"};
+    for (std::size_t i = 1; i <= robot.rotors.positions_m.size(); ++i) {
+        const std::string rotor = "rotor_" + std::to_string(i);
+        names.push_back(rotor + "_cmd_n");
+        names.push_back(rotor + "_aero_factor");
+    }
+    return names;
+}
+
+/// Only the clearance may be empty, where there are no obstacles; time goes on.
+void check_flight(const fs::path& file, const NumberTable& flight) {
+    check_numbers(file, flight, "clearance_m");
+    const std::vector<double>& times_s = *flight.find("t_s");
+    for (std::size_t row = 0; row < times_s.size(); ++row) {
+        if (row > 0 ? times_s[row] <= times_s[row - 1] : times_s[row] < 0) {
+            refuse_row(file, flight, row, "t_s is " + to_text(times_s[row]) + ", expected times that rise from 0 on");
+        }
+    }
+}
+
+}  // namespace
+
+RunRecord read_run(const fs::path& folder) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) {
+        refuse(folder, "there is no such folder; expected one that `downwash solve` wrote");
+    }
+    RunRecord run;
+    const fs::path solution = folder / "solution.json";
+    run.solution_text = text_of(solution);
+    const bool has_plan = take_solution(solution, run);
+    const fs::path problem = folder / "effective.yaml";
+    run.problem_text = text_of(problem);
+    run.problem = read_problem(problem);
+    if (has_plan) {
+        run.plan = read_solution(solution.string(), run.problem).plan;
+    }
+    const fs::path flight = folder / "trajectory.csv";
+    run.flight = read_number_table(text_of(flight), flight.string(), flight_columns(run.problem.robot));
+    check_flight(flight, run.flight);
+    const fs::path tree = folder / "tree.csv";
+    if (fs::exists(tree, ignored)) {
+        run.tree = read_number_table(text_of(tree), tree.string(), {"x_m", "z_m", "arm_rad", "parent"});
+        check_tree(tree, run.tree);
+    }
+    return run;
+}
+
+}  // namespace downwash

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/results/number_table.hpp"
+
+namespace downwash {
+
+/// A finished run, as its folder tells it.
+struct RunRecord {
+    Problem problem;            ///< effective.yaml
+    std::string problem_text;   ///< the same as text
+    std::string solution_text;  ///< solution.json: well-formed, of the schema that this version writes
+    std::string status;         ///< of the solution: "solved", "approximate" or "none"
+    std::string outcome;        ///< of its flight: "ok", "collision"...; empty without one
+    std::optional<Plan> plan;   ///< of the solution; empty without one
+    NumberTable flight;         ///< trajectory.csv; no rows when nothing was flown
+    NumberTable tree;           ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
+};
+
+/// Reads what `solve` or `execute` left in a folder.
+/// @throws ProblemFileError or InputError with the place of every error: a file that is missing or is not what they
+/// write
+[[nodiscard]] DOWNWASH_EXPORT RunRecord read_run(const std::filesystem::path& folder);
+
+}  // namespace downwash

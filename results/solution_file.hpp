@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/problem.hpp"
+
+namespace downwash {
+
+/// The `schema` of the files that this version writes and reads.
+inline constexpr char solution_schema[] = "downwash/solution/v1";
+
+/// How a solution names the problem that it solves.
+struct ProblemReference {
+    std::string name;
+    std::string file;    ///< as the user gave it
+    std::string sha256;  ///< of the effective problem and every file that it refers to
+};
+
+/// The text of solution.json: everything but the rows of the flight. Numbers read back as the very same; what is not
+/// finite becomes null.
+[[nodiscard]] DOWNWASH_EXPORT std::string solution_json(const Solution& solution, const ProblemReference& problem);
+
+/// Reads a solution back, its plan above all, to fly it for `problem`. The execution stays empty; what a plan written
+/// by hand leaves out (all but `schema` and `plan`) is taken from the problem's settings.
+/// @throws ProblemFileError with every error: no solution file, no plan in it, a reference off the grid of control
+/// ticks or starting elsewhere than the problem does, waypoints that disagree with the reference
+[[nodiscard]] DOWNWASH_EXPORT Solution read_solution(const std::string& path, const Problem& problem);
+
+}  // namespace downwash

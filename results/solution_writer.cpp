@@ -1,0 +1,140 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "downwash/base/version.hpp"
+#include "downwash/results/solution_file.hpp"
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON knows no infinity and no NaN.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json number(const std::optional<double>& value) {
+    return value ? number(*value) : Json();
+}
+
+Json obstruction_json(const std::optional<Obstruction>& obstruction) {
+    if (!obstruction) {
+        return {};
+    }
+    return {{"cause", obstruction->cause},
+            {"x_m", number(obstruction->at.x_m)},
+            {"z_m", number(obstruction->at.z_m)},
+            {"arm_rad", number(obstruction->at.arm_rad)},
+            {"goal_distance_m", number(obstruction->goal_distance_m)}};
+}
+
+Json planning_json(const SearchRecord& record) {
+    Json improvements = Json::array();
+    for (const Improvement& improvement : record.improvements) {
+        improvements.push_back({{"wall_s", number(improvement.wall_s)},
+                                {"iteration", improvement.iteration},
+                                {"cost", number(improvement.cost)},
+                                {"flown_cost", number(improvement.flown_cost)}});
+    }
+    return {{"wall_s", number(record.wall_s)},
+            {"map_wall_s", number(record.map_wall_s)},
+            {"flight_wall_s", number(record.flight_wall_s)},
+            {"first_solution_wall_s", number(record.first_solution_wall_s)},
+            {"iterations", record.iterations},
+            {"edges_simulated", record.edges_simulated},
+            {"simulated_s", number(record.simulated_s)},
+            {"states_checked", record.states_checked},
+            {"improvements", std::move(improvements)},
+            {"rejected", record.rejected},
+            {"nearest_approach_m", number(record.nearest_approach_m)},
+            {"obstruction", obstruction_json(record.obstruction)}};
+}
+
+Json knot_json(const ReferenceKnot& knot, double tick_s) {
+    const ReferencePoint& point = knot.point;
+    return {{"t_s", static_cast<double>(knot.tick) * tick_s},
+            {"x_m", point.position[0]},
+            {"z_m", point.position[1]},
+            {"arm_rad", point.position[2]},
+            {"vx_m_s", point.velocity[0]},
+            {"vz_m_s", point.velocity[1]},
+            {"arm_rate_rad_s", point.velocity[2]},
+            {"ax_m_s2", point.acceleration[0]},
+            {"az_m_s2", point.acceleration[1]},
+            {"arm_acceleration_rad_s2", point.acceleration[2]}};
+}
+
+Json plan_json(const std::optional<Plan>& plan) {
+    if (!plan) {
+        return {};
+    }
+    Json waypoints = Json::array();
+    Json reference = Json::array();
+    for (const ReferenceKnot& knot : plan->reference) {
+        const Configuration at = configuration_of(knot.point);
+        waypoints.push_back({{"x_m", at.x_m}, {"z_m", at.z_m}, {"arm_rad", at.arm_rad}});
+        reference.push_back(knot_json(knot, plan->tick_s));
+    }
+    return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
+}
+
+Json execution_json(const Solution& solution) {
+    if (!solution.execution) {
+        return {};
+    }
+    const Execution& flight = *solution.execution;
+    Json goals = Json::array();
+    for (const GoalVisit& visit : flight.goals) {
+        goals.push_back({{"met", visit.is_met}, {"error_m", number(visit.error_m)}});
+    }
+    return {{"aero", flight.aero},
+            {"outcome", name_of(flight.outcome)},
+            {"min_clearance_m", number(flight.min_clearance_m)},
+            {"energy_j", number(flight.energy_j)},
+            {"duration_s", number(flight.duration_s)},
+            {"cost", number(solution.execution_cost)},
+            {"max_tracking_error_m", number(flight.max_tracking_error_m)},
+            {"max_saturation", number(flight.max_saturation)},
+            {"goal_error_m", number(flight.goal_error_m)},
+            {"goals", std::move(goals)}};
+}
+
+/// A name, or the weights of a sum.
+Json objective_json(const CostFunction& objective) {
+    if (const auto single = objective.single()) {
+        return name_of(*single);
+    }
+    Json weights = Json::object();
+    for (const Objective each : all_objectives) {
+        if (objective.weight(each) > 0) {
+            weights[std::string(name_of(each))] = objective.weight(each);
+        }
+    }
+    return weights;
+}
+
+}  // namespace
+
+std::string solution_json(const Solution& solution, const ProblemReference& problem) {
+    const Json document = {
+        {"schema", solution_schema},
+        {"status", name_of(solution.status)},
+        {"interrupted", solution.interrupted},
+        {"problem", {{"name", problem.name}, {"file", problem.file}, {"sha256", problem.sha256}}},
+        {"variant", name_of(solution.variant)},
+        {"algorithm", solution.algorithm},
+        {"objective", objective_json(solution.objective)},
+        {"seed", solution.seed},
+        {"version", version()},
+        {"threads", solution.threads},
+        {"cost", solution.plan ? number(solution.cost) : Json()},
+        {"planning", planning_json(solution.planning)},
+        {"plan", plan_json(solution.plan)},
+        {"execution", execution_json(solution)},
+    };
+    // A file name may be any bytes; what is no UTF-8 in it is replaced.
+    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace downwash

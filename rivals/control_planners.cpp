@@ -1,0 +1,206 @@
+#include "downwash/rivals/control_planners.hpp"
+
+#include <ompl/base/ProblemDefinition.h>
+#include <ompl/base/ScopedState.h>
+#include <ompl/control/PathControl.h>
+#include <ompl/control/planners/est/EST.h>
+#include <ompl/control/planners/kpiece/KPIECE1.h>
+#include <ompl/control/planners/rrt/RRT.h>
+#include <ompl/control/planners/sst/SST.h>
+#include <ompl/datastructures/NearestNeighborsLinear.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "downwash/rivals/flight_space.hpp"
+#include "downwash/rivals/ompl_parameters.hpp"
+#include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/search_tree.hpp"
+
+namespace downwash::planning {
+namespace {
+
+namespace ob = ompl::base;
+namespace oc = ompl::control;
+
+/// A planner of OMPL's with a generator of its own seed.
+template <class Planner>
+class Seeded : public Planner {
+ public:
+    Seeded(const oc::SpaceInformationPtr& information, std::uint32_t seed) : Planner(information) {
+        this->rng_.setLocalSeed(seed);
+    }
+};
+
+class SeededSst : public Seeded<oc::SST> {
+ public:
+    using Seeded::Seeded;
+
+    /// From now on any solution will do again, not only those cheaper than the last.
+    void forget_solution() { prevSolutionCost_ = opt_->infiniteCost(); }
+};
+
+/// Gives a planner its problem, and an exact neighbour search that draws no random numbers.
+template <class Planner>
+std::shared_ptr<Planner> with_neighbours(std::shared_ptr<Planner> planner, const ob::ProblemDefinitionPtr& definition) {
+    planner->setProblemDefinition(definition);  // SST's set-up needs the objective
+    planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
+    return planner;
+}
+
+struct PreparedPlanner {
+    ob::PlannerPtr planner;
+    bool is_anytime = false;
+    std::function<void()> forget_solution = [] {};  ///< after one was discarded
+};
+
+PreparedPlanner prepared_planner(std::string_view algorithm, const oc::SpaceInformationPtr& information,
+                                 const ob::ProblemDefinitionPtr& definition, std::uint32_t seed) {
+    if (algorithm == "rrt") {
+        return {with_neighbours(std::make_shared<Seeded<oc::RRT>>(information, seed), definition)};
+    }
+    if (algorithm == "sst") {
+        const auto sst = with_neighbours(std::make_shared<SeededSst>(information, seed), definition);
+        return {sst, true, [sst] { sst->forget_solution(); }};
+    }
+    if (algorithm == "kpiece1") {
+        return {std::make_shared<Seeded<oc::KPIECE1>>(information, seed)};
+    }
+    if (algorithm == "est") {
+        return {std::make_shared<Seeded<oc::EST>>(information, seed)};
+    }
+    throw std::logic_error("no planner over controls has this name");
+}
+
+/// Every moment of a path, one step apart. OMPL keeps only those at which the control changes.
+std::vector<FlightPoint> moments_of(const oc::PathControl& path, const SteeredFlights& flights) {
+    std::vector<FlightPoint> moments{point_of(path.getState(0))};
+    for (std::size_t i = 0; i < path.getControlCount(); ++i) {
+        const auto number = static_cast<unsigned int>(i);
+        const auto steps = std::llround(path.getControlDuration(number) / flights.steps().duration_s());
+        for (long long step = 0; step < steps; ++step) {
+            moments.push_back(flights.stepped_again(moments.back(), velocity_of(path.getControl(number))));
+        }
+        if (!is_same_moment(point_of(path.getState(number + 1)), moments.back())) {
+            throw std::logic_error("flying a path again did not reproduce it bit for bit");
+        }
+    }
+    return moments;
+}
+
+/// The search for a plan and then for better ones, one OMPL solution at a time.
+class ControlSearch {
+ public:
+    ControlSearch(const SteeredFlights& flights, const ControlHooks& hooks)
+        : flights_(flights), hooks_(hooks), nearest_{flights.start()} {}
+
+    void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
+        review({flights_.start()});
+        while (!(result_.plan && !prepared.is_anytime) && !is_over_) {
+            const std::uint64_t before = iterations_;
+            const ob::PlannerStatus status =
+                prepared.planner->solve(ob::PlannerTerminationCondition([this] { return ask(); }));
+            if (const ob::PathPtr path = definition->getSolutionPath()) {
+                // The planner's status counts an approximate solution as one.
+                const bool is_exact = status == ob::PlannerStatus::EXACT_SOLUTION;
+                std::vector<FlightPoint> moments = moments_of(*path->as<oc::PathControl>(), flights_);
+                const Review review_of = is_exact ? review(moments) : Review::not_closed;
+                if (review_of == Review::discarded) {
+                    prepared.forget_solution();
+                }
+                if (review_of != Review::accepted && distance_m(moments.back()) < distance_m(nearest_.back())) {
+                    nearest_ = std::move(moments);
+                }
+            }
+            definition->clearSolutionPaths();
+            if (iterations_ == before) {
+                break;  // the planner will not go on
+            }
+        }
+    }
+
+    [[nodiscard]] ControlResult result() const {
+        ControlResult result = result_;
+        result.iterations = iterations_;
+        if (!result.plan) {
+            result.nearest_approach_m = distance_m(nearest_.back());
+        }
+        if (!result.plan && nearest_.size() > 1) {
+            result.status = Status::approximate;
+            result.plan = flights_.plan(nearest_, {});
+            result.cost = nearest_.back().cost;
+        }
+        return result;
+    }
+
+ private:
+    bool ask() {
+        is_over_ = is_over_ || hooks_.is_over(iterations_);
+        iterations_ += is_over_ ? 0 : 1;
+        return is_over_;
+    }
+
+    /// From the place of rest to the goal region.
+    [[nodiscard]] double distance_m(const FlightPoint& moment) const {
+        return flights_.space().goal_distance_m(moment.rest);
+    }
+
+    enum class Review { accepted, not_closed, no_better, discarded };
+
+    /// Closes a flight and offers it.
+    Review review(const std::vector<FlightPoint>& moments) {
+        if (!flights_.is_worth_closing(moments.back())) {
+            return Review::not_closed;
+        }
+        const std::optional<Closing> end = flights_.closing(moments.back());
+        if (!end) {
+            return Review::not_closed;
+        }
+        if (result_.plan && end->cost >= result_.cost) {
+            return Review::no_better;
+        }
+        Plan plan = flights_.plan(moments, end);
+        flights_.verify(plan, moments, *end);
+        if (!hooks_.accept(plan, end->cost, iterations_)) {
+            flights_.flights().count_rejection("direct_flight");
+            return Review::discarded;
+        }
+        result_ = {Status::solved, std::move(plan), end->cost, 0, {}, {}};
+        return Review::accepted;
+    }
+
+    const SteeredFlights& flights_;
+    const ControlHooks& hooks_;
+    ControlResult result_;
+    std::vector<FlightPoint> nearest_;  ///< the way to the place of rest that came nearest to the goal
+    std::uint64_t iterations_ = 0;
+    bool is_over_ = false;
+};
+
+}  // namespace
+
+ControlResult plan_by_controls(std::string_view algorithm, std::uint32_t seed, const SteeredFlights& flights,
+                               Random& random, const ControlHooks& hooks) {
+    const QuietOmpl quiet;
+    const oc::SpaceInformationPtr information = make_flight_information(flights, random);
+    const auto definition = std::make_shared<ob::ProblemDefinition>(information);
+    ob::ScopedState<> start(information);
+    point_of(start.get()) = flights.start();
+    definition->addStartState(start);
+    definition->setGoal(make_flight_goal(information, flights, random));
+    definition->setOptimizationObjective(make_flight_objective(information));
+
+    const PreparedPlanner prepared = prepared_planner(algorithm, information, definition, seed);
+    prepared.planner->setProblemDefinition(definition);
+    set_parameters(*prepared.planner, algorithm);
+    prepared.planner->setup();
+    ControlSearch search(flights, hooks);
+    search.run(prepared, definition);
+    ControlResult result = search.result();
+    if (hooks.keep_tree) {
+        result.tree = tree_of(*prepared.planner, [](const ob::State* state) { return point_of(state).rest; });
+    }
+    return result;
+}
+
+}  // namespace downwash::planning

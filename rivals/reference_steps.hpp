@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "downwash/search/search_space.hpp"
+
+namespace downwash::planning {
+
+/// A reference that is steered by velocities, in steps of equal length: what a planner over controls decides at each
+/// step. Within a step the reference runs on the quintic between its ends, both without acceleration, so that the steps
+/// of a flight are the segments of a Plan, to the last bit.
+class ReferenceSteps {
+ public:
+    /// @param tick_s length of a control tick; a step is the whole number of them nearest to half a second, at least
+    /// one
+    ReferenceSteps(const ReferenceLimits& limits, double tick_s);
+
+    [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+    [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
+
+    /// The reference one step later. It takes on the wanted velocity as far as the limits allow: the speed never
+    /// exceeds its limit, nor the acceleration, whose peak in the middle of the step is 3/2 of its mean.
+    /// @param from without acceleration   @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s], finite
+    [[nodiscard]] ReferencePoint after(const ReferencePoint& from, const double velocity[3]) const noexcept;
+
+    /// Where the reference comes to rest when it is asked to stand still from now on.
+    [[nodiscard]] Configuration rest_of(const ReferencePoint& from) const noexcept;
+
+    /// How long that takes [ticks]: a whole number of steps, as many as weak limits ask for.
+    [[nodiscard]] double braking_ticks(const ReferencePoint& from) const noexcept;
+
+ private:
+    ReferenceLimits limits_;
+    std::int64_t ticks_;
+    double duration_s_;
+    double speed_gain_m_s_;  ///< greatest change of velocity in a step
+    double arm_gain_rad_s_;
+};
+
+}  // namespace downwash::planning

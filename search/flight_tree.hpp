@@ -1,0 +1,109 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "downwash/controllers/plan.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/planned_flights.hpp"
+#include "downwash/search/search_record.hpp"
+#include "downwash/search/search_space.hpp"
+#include "downwash/simulation/flight.hpp"
+
+namespace downwash::planning {
+
+/// A vehicle that arrived somewhere, and how.
+struct FlightNode {
+    Configuration configuration;  ///< the reference point at which the edge to this node ends, at rest
+    ReferencePoint reference;     ///< the same with its derivatives; only the root may move
+    FlightState state;            ///< the whole vehicle there, integrators included
+    double cost = 0;              ///< of the flight from the start, in the objective's unit
+    FlightNode* parent = nullptr;
+    std::int64_t ticks = 0;  ///< length of the edge from the parent
+    std::int64_t ticks_from_start = 0;
+    std::vector<FlightNode*> children;
+    bool is_hold = false;       ///< the edge is the hold at the goal; such a node has no children
+    bool is_discarded = false;  ///< a hold whose direct flight failed
+};
+
+/// The tree of closed-loop flights: every edge is a flight from the parent's whole vehicle state along a reference
+/// segment that starts at the parent's reference point. Holds at the goal are edges as well. Knows no search strategy.
+class FlightTree {
+ public:
+    FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, PlannedFlights& flights);
+
+    [[nodiscard]] FlightNode& root() noexcept { return nodes_.front(); }
+    [[nodiscard]] std::size_t size() const noexcept { return moving_.size(); }
+    /// The nodes that edges may start from, oldest first; holds are not among them.
+    [[nodiscard]] const std::vector<FlightNode*>& nodes() const noexcept { return moving_; }
+    [[nodiscard]] const std::vector<FlightNode*>& holds() const noexcept { return holds_; }
+
+    /// The `count` nodes nearest to a configuration, nearest first; ties by age.
+    [[nodiscard]] std::vector<FlightNode*> nearest(const Configuration& to, std::size_t count) const;
+
+    /// What the flight of an edge would cost far from all surfaces, without flying it.
+    [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
+
+    /// No chain of edges from a configuration to the goal, and hold there, costs less, far from all surfaces.
+    [[nodiscard]] double least_cost_to_goal(const Configuration& from) const;
+
+    /// An edge that may be worth flying: from a node to rest at a configuration (arm angle unwrapped as seen from it).
+    struct Edge {
+        const FlightNode* from;
+        Configuration to;
+    };
+    /// A flight that was accepted but belongs to no tree yet.
+    struct Flown {
+        Configuration to;
+        std::int64_t ticks;
+        FlightState state;
+        double cost;  ///< from the start
+    };
+
+    /// Flies edges side by side; nothing for those that are refused.
+    [[nodiscard]] std::vector<std::optional<Flown>> flown(std::span<const Edge> edges);
+
+    /// Adds what was flown below its parent.
+    FlightNode& add(FlightNode& parent, const Flown& flight);
+
+    /// Flies holds at nodes, and adds those that meet the goal over their last second.
+    void add_holds(std::span<FlightNode* const> nodes);
+
+    /// A node, and another that might be its cheaper parent.
+    struct Rewiring {
+        FlightNode* node;
+        FlightNode* parent;
+    };
+    /// Tries them in their order: puts the node below the parent by an accepted flight, if that is cheaper, and flies
+    /// its whole subtree again from the new state. Everything stays as it was when a descendant fails or some cost
+    /// would not fall. Returns how many were done.
+    std::size_t rewire(std::span<const Rewiring> rewirings);
+
+    /// The plan that leads to a node (for a hold: to its parent).
+    [[nodiscard]] Plan plan_to(const FlightNode& node) const;
+
+    /// The whole vehicle at the knots of that plan; for a hold also after it.
+    [[nodiscard]] std::vector<FlightState> states_to(const FlightNode& node) const;
+
+ private:
+    [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,
+                                              std::int64_t ticks) const;
+    [[nodiscard]] std::optional<ReferenceSegment> promising_segment(const Edge& edge);
+    [[nodiscard]] std::optional<Flown> flown(const FlightNode& from, const FlightJob& job) const;
+    [[nodiscard]] FlightJob edge_job(const FlightNode& from, const FlightNode& to) const;
+    bool move_below(FlightNode& node, FlightNode& parent, const Flown& flight);
+
+    const FlightModel& model_;
+    const SearchSpace& space_;
+    PlannedFlights& flights_;
+    FreeAirCost free_air_cost_;
+    std::deque<FlightNode> nodes_;
+    std::vector<FlightNode*> moving_;
+    std::vector<Configuration> places_;  ///< of moving_, in one piece of memory
+    std::vector<FlightNode*> holds_;
+};
+
+}  // namespace downwash::planning

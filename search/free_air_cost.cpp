@@ -1,0 +1,89 @@
+#include "downwash/search/free_air_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "downwash/simulation/flight_loop.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// Of the rest-to-rest reference; what a motion of any length and division takes beyond its way over the top speed.
+constexpr double peak_over_mean_speed = 15.0 / 8.0;
+
+/// Power of the level, hovering vehicle, arm still [W].
+double hover_power_w(const FlightModel& model) {
+    const PlantModel& plant = model.tick().plant;
+    double thrust_n[max_rotors];
+    dynamics::allocate(plant, plant.total_mass_kg * standard_gravity_m_s2, 0.0, thrust_n);
+    return dynamics::rotor_power(plant, thrust_n);
+}
+
+}  // namespace
+
+ReferenceLimits reference_limits(const MotionLimits& motion) {
+    return {motion.max_speed_m_s, motion.max_acceleration_m_s2, motion.max_arm_rate_rad_s,
+            motion.max_arm_acceleration_rad_s2};
+}
+
+FreeAirCost::FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space)
+    : objective_(problem.planner.objective),
+      counts_clearance_(objective_.weight(Objective::clearance) > 0),
+      model_(model),
+      space_(space),
+      limits_(reference_limits(problem.motion)),
+      hover_power_w_(hover_power_w(model)) {}
+
+double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
+    const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
+    const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits_);
+    const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
+    return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), duration_s * density});
+}
+
+double FreeAirCost::least_of_motion(const Configuration& from, const Configuration& to) const {
+    const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
+    const double duration_s =
+        peak_over_mean_speed * std::max(travel_m(from, to) / limits_.max_speed_m_s, turn / limits_.max_arm_rate_rad_s);
+    // Far from everything clearance costs next to nothing.
+    return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), 0});
+}
+
+double FreeAirCost::least_to_goal(const Configuration& from) const {
+    double least = HUGE_VAL;
+    for (const Goal& goal : alternatives(space_.goal())) {
+        // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.
+        const GoalError off = space_.error_beyond_tolerance(goal, from);
+        const bool has_tip = goal.end_effector.has_value();
+        const double tip_speed_m_s =
+            limits_.max_speed_m_s + (has_tip ? 2 * space_.arm_weight_m() * limits_.max_arm_rate_rad_s : 0);
+        const double duration_s =
+            peak_over_mean_speed * std::max(off.distance_m / tip_speed_m_s, off.angle_rad / limits_.max_arm_rate_rad_s);
+        // A tip moves by at most d + 2 w darm where the length is sqrt(d^2 + (w darm)^2).
+        const double length_m = has_tip ? off.distance_m / std::sqrt(5.0) : off.distance_m;
+        const double all_s = duration_s + goal.hold_s;
+        least = std::min(least, objective_({hover_power_w_ * all_s, all_s, length_m, 0}));
+    }
+    return least;
+}
+
+double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
+    const double density = counts_clearance_ ? clearance_density(at) : 0;
+    return objective_({hover_power_w_ * hold_s, hold_s, 0, hold_s * density});
+}
+
+double FreeAirCost::clearance_density(const Configuration& at) const {
+    return simulation::clearance_density(model_.collisions().clearance_m({at.x_m, at.z_m, 0, at.arm_rad}));
+}
+
+double FreeAirCost::mean_clearance_density(const Configuration& from, const Configuration& to) const {
+    constexpr double spacing_m = 0.25;
+    const int pieces = static_cast<int>(std::ceil(space_.distance_m(from, to) / spacing_m)) + 1;
+    double sum = 0;
+    for (int i = 0; i < pieces; ++i) {
+        sum += clearance_density(between(from, to, (i + 0.5) / pieces));
+    }
+    return sum / pieces;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "downwash/controllers/reference_segment.hpp"
+#include "downwash/search/search_space.hpp"
+
+namespace downwash::planning {
+
+/// What a motion costs far from all surfaces, without flying it: the cost of MP-ARM's straight edges, and the estimate
+/// by which the tree of flights decides what is worth flying.
+class FreeAirCost {
+ public:
+    FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space);
+
+    /// Along the rest-to-rest reference between two configurations, the arm by the shorter turn.
+    [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;
+
+    /// No chain of rest-to-rest motions between two configurations costs less than this.
+    [[nodiscard]] double least_of_motion(const Configuration& from, const Configuration& to) const;
+
+    /// Nor does any from a configuration to one that meets the goal, with the hold there.
+    [[nodiscard]] double least_to_goal(const Configuration& from) const;
+
+    /// Of holding at a configuration [s].
+    [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const;
+
+ private:
+    [[nodiscard]] double clearance_density(const Configuration& at) const;
+    [[nodiscard]] double mean_clearance_density(const Configuration& from, const Configuration& to) const;
+
+    CostFunction objective_;
+    bool counts_clearance_;  ///< it takes queries of distance
+    const FlightModel& model_;
+    const SearchSpace& space_;
+    ReferenceLimits limits_;
+    double hover_power_w_;
+};
+
+/// The reference limits of a problem.
+[[nodiscard]] ReferenceLimits reference_limits(const MotionLimits& motion);
+
+}  // namespace downwash::planning

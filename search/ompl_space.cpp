@@ -1,0 +1,215 @@
+#include "downwash/search/ompl_space.hpp"
+
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/StateSampler.h>
+#include <ompl/base/StateValidityChecker.h>
+#include <ompl/base/goals/GoalSampleableRegion.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/base/spaces/SO2StateSpace.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "downwash/base/lane_math.hpp"
+
+namespace downwash::planning {
+namespace {
+
+namespace ob = ompl::base;
+using Position = ob::RealVectorStateSpace::StateType;
+using Arm = ob::RealVectorStateSpace::StateType;
+using TurningArm = ob::SO2StateSpace::StateType;
+
+/// It is a metric space, but if it said so OMPL would search neighbours with random numbers of its own seed.
+class ConfigurationSpace : public ob::CompoundStateSpace {
+ public:
+    bool isMetricSpace() const override { return false; }
+};
+
+ob::StateSpacePtr make_space(const SearchSpace& space) {
+    const auto position = std::make_shared<ob::RealVectorStateSpace>(2);
+    ob::RealVectorBounds bounds(2);
+    bounds.setLow(0, space.bounds().x_low_m);
+    bounds.setHigh(0, space.bounds().x_high_m);
+    bounds.setLow(1, space.bounds().z_low_m);
+    bounds.setHigh(1, space.bounds().z_high_m);
+    position->setBounds(bounds);
+    const auto compound = std::make_shared<ConfigurationSpace>();
+    compound->addSubspace(position, 1);
+    if (space.arm_is_limited()) {
+        const auto arm = std::make_shared<ob::RealVectorStateSpace>(1);
+        arm->setBounds(space.arm_low_rad(), space.arm_high_rad());
+        compound->addSubspace(arm, space.arm_weight_m());
+    } else {
+        compound->addSubspace(std::make_shared<ob::SO2StateSpace>(), space.arm_weight_m());
+    }
+    compound->lock();
+    return compound;
+}
+
+/// Samples with the caller's generator.
+class Sampler : public ob::StateSampler {
+ public:
+    Sampler(const ob::StateSpace* states, const SearchSpace& space, Random& random)
+        : ob::StateSampler(states), search_(space), random_(random) {}
+
+    void sampleUniform(ob::State* state) override { write(search_.sample(random_), state, search_); }
+
+    void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
+        Configuration c = read(near, search_);
+        c.x_m += random_.uniform(-distance, distance);
+        c.z_m += random_.uniform(-distance, distance);
+        c.arm_rad += random_.uniform(-distance, distance) / search_.arm_weight_m();
+        write(c, state, search_);
+        space_->enforceBounds(state);
+    }
+
+    void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
+        // The sum of twelve uniform numbers is near enough to a normal one for a planner.
+        const auto normal = [this] {
+            double sum = -6;
+            for (int i = 0; i < 12; ++i) {
+                sum += random_.uniform(0, 1);
+            }
+            return sum;
+        };
+        Configuration c = read(mean, search_);
+        c.x_m += deviation * normal();
+        c.z_m += deviation * normal();
+        c.arm_rad += deviation * normal() / search_.arm_weight_m();
+        write(c, state, search_);
+        space_->enforceBounds(state);
+    }
+
+ private:
+    const SearchSpace& search_;
+    Random& random_;
+};
+
+class Validity : public ob::StateValidityChecker {
+ public:
+    Validity(const ob::SpaceInformationPtr& information, const SearchSpace& space, QueryCounts& counts)
+        : ob::StateValidityChecker(information), space_(space), counts_(counts) {}
+
+    bool isValid(const ob::State* state) const override {
+        return counts_.note(space_.rejection_at(read(state, space_)));
+    }
+
+ private:
+    const SearchSpace& space_;
+    QueryCounts& counts_;
+};
+
+/// Straight lines, checked so densely that no point of the robot moves farther than a step between two checks.
+class StraightMotion : public ob::MotionValidator {
+ public:
+    StraightMotion(const ob::SpaceInformationPtr& information, const SearchSpace& space, double step_m,
+                   QueryCounts& counts)
+        : ob::MotionValidator(information), space_(space), step_m_(step_m), counts_(counts) {}
+
+    bool checkMotion(const ob::State* from, const ob::State* to) const override {
+        std::pair<ob::State*, double> unused{nullptr, 0};
+        return checkMotion(from, to, unused);
+    }
+
+    bool checkMotion(const ob::State* from, const ob::State* to,
+                     std::pair<ob::State*, double>& last_valid) const override {
+        const Configuration a = read(from, space_);
+        const Configuration b = space_.seen_from(a, read(to, space_));
+        const double arm_length_m = 2 * space_.arm_weight_m();
+        const double motion_m = travel_m(a, b) + arm_length_m * std::abs(b.arm_rad - a.arm_rad);
+        const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
+        for (int i = 1; i <= steps; ++i) {
+            const Configuration c = between(a, b, static_cast<double>(i) / steps);
+            if (!counts_.note(space_.rejection_at(c))) {
+                last_valid.second = static_cast<double>(i - 1) / steps;
+                if (last_valid.first != nullptr) {
+                    si_->getStateSpace()->interpolate(from, to, last_valid.second, last_valid.first);
+                }
+                return false;
+            }
+        }
+        return true;
+    }
+
+ private:
+    const SearchSpace& space_;
+    double step_m_;
+    QueryCounts& counts_;
+};
+
+class GoalRegion : public ob::GoalSampleableRegion {
+ public:
+    GoalRegion(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+               unsigned int most_samples)
+        : ob::GoalSampleableRegion(information), space_(space), random_(random), most_samples_(most_samples) {
+        setThreshold(1e-9);  // distanceGoal is 0 inside the region
+    }
+
+    double distanceGoal(const ob::State* state) const override { return space_.goal_distance_m(read(state, space_)); }
+
+    /// Some planners take every valid sample for a goal, so it has to be one: where no new one is found, the last;
+    /// before there is any, the middle of the region, which the planner may find invalid.
+    void sampleGoal(ob::State* state) const override {
+        if (const std::optional<Configuration> sample = space_.sample_goal(random_)) {
+            last_ = *sample;
+        }
+        write(last_.value_or(space_.moved_into_goal(space_.sample(random_), 0)), state, space_);
+    }
+
+    unsigned int maxSampleCount() const override { return most_samples_; }
+
+ private:
+    const SearchSpace& space_;
+    Random& random_;
+    unsigned int most_samples_;
+    mutable std::optional<Configuration> last_;
+};
+
+}  // namespace
+
+bool QueryCounts::note(Rejection rejection) noexcept {
+    ++states;
+    refused_collision += rejection == Rejection::collision ? 1 : 0;
+    refused_bounds += rejection == Rejection::bounds ? 1 : 0;
+    return rejection == Rejection::none;
+}
+
+void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
+    auto* compound = state->as<ob::CompoundState>();
+    auto* position = compound->as<Position>(0);
+    position->values[0] = c.x_m;
+    position->values[1] = c.z_m;
+    if (space.arm_is_limited()) {
+        compound->as<Arm>(1)->values[0] = c.arm_rad;
+    } else {
+        compound->as<TurningArm>(1)->value = lane::wrap_angle(c.arm_rad);
+    }
+}
+
+Configuration read(const ob::State* state, const SearchSpace& space) {
+    const auto* compound = state->as<ob::CompoundState>();
+    const auto* position = compound->as<Position>(0);
+    return {position->values[0], position->values[1],
+            space.arm_is_limited() ? compound->as<Arm>(1)->values[0] : compound->as<TurningArm>(1)->value};
+}
+
+ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random, double motion_step_m,
+                                               QueryCounts& counts) {
+    const ob::StateSpacePtr states = make_space(space);
+    states->setStateSamplerAllocator([&space, &random](const ob::StateSpace* s) -> ob::StateSamplerPtr {
+        return std::make_shared<Sampler>(s, space, random);
+    });
+    auto information = std::make_shared<ob::SpaceInformation>(states);
+    information->setStateValidityChecker(std::make_shared<Validity>(information, space, counts));
+    information->setMotionValidator(std::make_shared<StraightMotion>(information, space, motion_step_m, counts));
+    information->setup();
+    return information;
+}
+
+ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+                             unsigned int most_samples) {
+    return std::make_shared<GoalRegion>(information, space, random, most_samples);
+}
+
+}  // namespace downwash::planning

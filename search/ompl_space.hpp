@@ -1,0 +1,46 @@
+#pragma once
+
+#include <ompl/base/Goal.h>
+#include <ompl/base/SpaceInformation.h>
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "downwash/search/random.hpp"
+#include "downwash/search/search_space.hpp"
+
+// The search space as OMPL sees it. Every random number comes from the caller's generator, none from OMPL's global one.
+
+namespace downwash::planning {
+
+/// Counts of what OMPL's planners asked.
+struct QueryCounts {
+    std::uint64_t states = 0;
+    std::uint64_t refused_collision = 0;  ///< states and motions
+    std::uint64_t refused_bounds = 0;
+
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_collision + refused_bounds; }
+    /// Counts a query and says whether it found nothing wrong.
+    bool note(Rejection rejection) noexcept;
+};
+
+/// Space information over (x, z) and the arm (a circle, or an interval where it has limits) with sampler, validity and
+/// straight-line motions of the level vehicle. The arguments must outlive it.
+[[nodiscard]] ompl::base::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random,
+                                                                     double motion_step_m, QueryCounts& counts);
+
+/// The goal region: any level configuration that meets the goal, sampled by inverse kinematics.
+/// @param most_samples that planners draw which collect goals before they search
+[[nodiscard]] ompl::base::GoalPtr make_goal_region(
+    const ompl::base::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+    unsigned int most_samples = std::numeric_limits<unsigned int>::max());
+
+/// Copies a configuration into a state of that space.
+void write(const Configuration& configuration, ompl::base::State* state, const SearchSpace& space);
+
+/// The configuration of a state.
+[[nodiscard]] Configuration read(const ompl::base::State* state, const SearchSpace& space);
+
+}  // namespace downwash::planning

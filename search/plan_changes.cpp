@@ -1,0 +1,127 @@
+#include "downwash/search/plan_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace downwash::planning {
+namespace {
+
+// How often what is changed; shares of one, the rest changes speeds alone.
+constexpr double moves_goal = 0.10;
+constexpr double adds_corner = 0.05;
+constexpr double leaves_corner_out = 0.10;
+constexpr double flies_through = 0.15;
+constexpr double moves_corner = 0.15;
+constexpr double moves_and_changes_speed = 0.35;
+
+constexpr double largest_shift_m = 1.0;
+constexpr double largest_speed_change = 0.5;  ///< as a share of the limits of motion
+constexpr double shortest_split_s = 1.0;      ///< a shorter segment gets no corner in between
+
+}  // namespace
+
+PlanChanges::PlanChanges(const Problem& problem, const SearchSpace& space, Random& random)
+    : space_(space), random_(random), motion_(problem.motion), tick_s_(1 / problem.robot.controller.rate_hz) {}
+
+double PlanChanges::noise(double size) {
+    // A sum of uniform numbers: bell-shaped, bounded, and the same on every machine.
+    return size * (random_.uniform(-1, 1) + random_.uniform(-1, 1) + random_.uniform(-1, 1)) / 3;
+}
+
+std::size_t PlanChanges::index_below(std::size_t count) {
+    return static_cast<std::size_t>(random_.uniform(0, static_cast<double>(count)));
+}
+
+void PlanChanges::shift(ReferencePoint& point, double step) {
+    const double size_m = step * largest_shift_m;
+    point.position[0] += noise(size_m);
+    point.position[1] += noise(size_m);
+    point.position[2] += noise(size_m / space_.arm_weight_m());
+}
+
+void PlanChanges::change_speed(ReferencePoint& point, double step) {
+    const double share = step * largest_speed_change;
+    for (const int axis : {0, 1}) {
+        point.velocity[axis] += noise(share * motion_.max_speed_m_s);
+        point.acceleration[axis] += noise(share * motion_.max_acceleration_m_s2);
+    }
+    point.velocity[2] += noise(share * motion_.max_arm_rate_rad_s);
+    point.acceleration[2] += noise(share * motion_.max_arm_acceleration_rad_s2);
+}
+
+std::optional<ChangedPoints> PlanChanges::draw(const Points& points, const std::vector<std::int64_t>& ticks,
+                                               double step) {
+    const double kind = random_.uniform(0, 1);
+    if (kind < moves_goal) {
+        return with_goal_moved(points, step);
+    }
+    const bool has_corners = points.size() > 2;
+    if (kind < moves_goal + adds_corner || !has_corners) {
+        return with_corner_added(points, ticks, step);
+    }
+    return with_corner_changed(points, kind - moves_goal - adds_corner, step);
+}
+
+std::optional<ChangedPoints> PlanChanges::with_goal_moved(Points points, double step) {
+    const std::size_t last = points.size() - 1;
+    const auto goal = space_.sample_goal_near(configuration_of(points[last]), step * largest_shift_m, random_);
+    if (!goal) {
+        return std::nullopt;
+    }
+    points[last] = at_rest(space_.seen_from(configuration_of(points[last - 1]), *goal));
+    return ChangedPoints{std::move(points), last - 1, last - 1};
+}
+
+std::optional<ChangedPoints> PlanChanges::with_corner_added(Points points, const std::vector<std::int64_t>& ticks,
+                                                            double step) {
+    const std::size_t i = index_below(ticks.size());
+    if (static_cast<double>(ticks[i]) * tick_s_ < shortest_split_s) {
+        return std::nullopt;
+    }
+    const auto at = static_cast<std::int64_t>(random_.uniform(0.2, 0.8) * static_cast<double>(ticks[i]));
+    ReferencePoint corner = ReferenceSegment(points[i], points[i + 1], ticks[i], tick_s_).at_tick(at);
+    shift(corner, step);
+    change_speed(corner, step);
+    points.insert(points.begin() + static_cast<std::ptrdiff_t>(i) + 1, corner);
+    return ChangedPoints{std::move(points), i, i + 1};
+}
+
+/// @param kind in [0, 1 - moves_goal - adds_corner)
+ChangedPoints PlanChanges::with_corner_changed(Points points, double kind, double step) {
+    const std::size_t corner = 1 + index_below(points.size() - 2);
+    if (kind < leaves_corner_out) {
+        points.erase(points.begin() + static_cast<std::ptrdiff_t>(corner));
+        return {std::move(points), corner - 1, corner - 1};
+    }
+    kind -= leaves_corner_out;
+    if (kind < flies_through) {
+        fly_through(points, corner);
+    } else if (kind < flies_through + moves_corner) {
+        shift(points[corner], step);
+    } else {
+        if (kind < flies_through + moves_corner + moves_and_changes_speed) {
+            shift(points[corner], step);
+        }
+        change_speed(points[corner], step);
+    }
+    return {std::move(points), corner - 1, corner};
+}
+
+/// Gives a corner a speed towards where the corners beside it lead.
+void PlanChanges::fly_through(Points& points, std::size_t corner) {
+    const double* before = points[corner - 1].position;
+    const double* after = points[corner + 1].position;
+    const double dx = after[0] - before[0];
+    const double dz = after[1] - before[1];
+    const double per_metre = 1 / std::max(std::sqrt(dx * dx + dz * dz), 1e-3);
+    const double speed_m_s = random_.uniform(0, 1) * motion_.max_speed_m_s;
+    ReferencePoint& p = points[corner];
+    for (int axis = 0; axis < 3; ++axis) {
+        p.velocity[axis] = speed_m_s * per_metre * (after[axis] - before[axis]);
+        p.acceleration[axis] = 0;
+    }
+    p.velocity[2] = std::clamp(p.velocity[2], -motion_.max_arm_rate_rad_s, motion_.max_arm_rate_rad_s);
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,229 @@
+#include "downwash/search/plan_refiner.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace downwash::planning {
+namespace {
+
+constexpr int changes_side_by_side = 8;
+
+/// Changes begin with the largest and shrink to this share of them.
+constexpr double least_step = 0.01;
+
+/// When so many waves in a row did not make a plan better its steps become large again.
+constexpr int most_failures = 60;
+
+/// Of its waves, after how many the other plan has to be nearly as cheap as the champion, and after how many cheaper.
+constexpr int waves_to_come_near = 60;
+constexpr double near_cost_ratio = 1.05;
+constexpr int waves_to_overtake = 180;
+
+/// A plan so much dearer than the champion is not worth working on.
+constexpr double most_cost_ratio = 1.5;
+
+}  // namespace
+
+PlanRefiner::PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random)
+    : flights_(flights), changes_(problem, space, random) {}
+
+const FlownPlan* PlanRefiner::champion() const noexcept {
+    return tracks_.empty() ? nullptr : &tracks_.front().plan;
+}
+
+void PlanRefiner::drop(int number) {
+    std::erase_if(tracks_, [number](const Track& track) { return track.number == number; });
+}
+
+FlightJob PlanRefiner::job_for(const FlightState& from, const Change& change, std::size_t first,
+                               std::size_t last) const {
+    const double tick_s = flights_.model().tick().tick_s;
+    FlightJob job{from, {}, 0};
+    for (std::size_t i = first; i <= last; ++i) {
+        job.legs.push_back({{change.points[i], change.points[i + 1], change.ticks[i], tick_s}});
+    }
+    if (last + 1 == change.ticks.size()) {
+        job.legs.push_back(flights_.hold_leg(change.points.back()));
+        job.judged_ticks = flights_.judged_ticks();
+    }
+    return job;
+}
+
+double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const {
+    double cost = base.costs[change.first];
+    const FlightState* state = &base.states[change.first];
+    for (const FlightLeg& leg : job.legs) {
+        cost = flights_.cost_after(cost, *state, leg);
+        state = &leg.end;
+    }
+    return cost;
+}
+
+FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const FlightJob& job) const {
+    FlownPlan plan;
+    plan.points = change.points;
+    plan.ticks = change.ticks;
+    const auto kept = static_cast<std::ptrdiff_t>(change.first) + 1;
+    plan.states.assign(base.states.begin(), base.states.begin() + kept);
+    plan.costs.assign(base.costs.begin(), base.costs.begin() + kept);
+    for (std::size_t leg = 0; leg + 1 < job.legs.size(); ++leg) {
+        plan.costs.push_back(flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs[leg]));
+        plan.states.push_back(job.legs[leg].end);
+    }
+    plan.cost = flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs.back());
+    plan.states.push_back(job.end());
+    return plan;
+}
+
+void PlanRefiner::take(const Plan& plan) {
+    if (plan.reference.size() < 2) {
+        return;  // the start meets the goal: there is nothing on the way
+    }
+    Change change;
+    for (std::size_t i = 0; i < plan.reference.size(); ++i) {
+        change.points.push_back(plan.reference[i].point);
+        if (i > 0) {
+            change.ticks.push_back(plan.reference[i].tick - plan.reference[i - 1].tick);
+        }
+    }
+    FlownPlan base;
+    base.states.push_back(flights_.start());
+    base.costs.push_back(0);
+    std::vector<FlightJob> jobs{job_for(base.states[0], change, 0, change.ticks.size() - 1)};
+    flights_.fly(jobs);
+    if (jobs[0].rejection() != Rejection::none) {
+        return;
+    }
+    Track track{flown(base, change, jobs[0]), ++taken_};
+    if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
+        if (!tracks_.empty()) {
+            tracks_.front().waves = 0;  // it has its turns to overtake before it
+        }
+        tracks_.insert(tracks_.begin(), std::move(track));
+        tracks_.resize(std::min(tracks_.size(), most_tracks));
+    } else if (track.plan.cost < most_cost_ratio * tracks_.front().plan.cost && tracks_.size() < most_tracks) {
+        tracks_.push_back(std::move(track));
+    }
+}
+
+std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
+    auto drawn = changes_.draw(track.plan.points, track.plan.ticks, track.step);
+    if (!drawn) {
+        return std::nullopt;
+    }
+    Change change{std::move(drawn->points), {}, drawn->first_segment, drawn->last_segment};
+    // Segments that do not change keep their ticks; their numbers may have shifted by a corner more or less.
+    const std::size_t segments = change.points.size() - 1;
+    const std::size_t old_segments = track.plan.ticks.size();
+    const auto keeps_limits_at = [&](std::size_t corner) {
+        return keeps_limits(change.points[corner], flights_.limits());
+    };
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < segments; ++i) {
+        if (i >= drawn->first_segment && i <= drawn->last_segment) {
+            if (!keeps_limits_at(i) || !keeps_limits_at(i + 1)) {
+                return std::nullopt;
+            }
+            const ReferenceSegment segment = flights_.fastest_segment(change.points[i], change.points[i + 1]);
+            if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment)) {
+                return std::nullopt;
+            }
+            change.ticks.push_back(segment.ticks());
+        } else {
+            change.ticks.push_back(track.plan.ticks[i < change.first ? i : i + old_segments - segments]);
+        }
+        total += change.ticks.back();
+    }
+    return total <= max_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
+}
+
+/// Of changes whose own segments are flown: where one got to the old plan's next corner for less, the rest of the plan,
+/// hold included, is flown as well.
+std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes,
+                                              std::vector<FlightJob>& jobs) {
+    std::vector<std::size_t> promising;
+    std::vector<std::size_t> unfinished;
+    std::vector<FlightJob> rests;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const Change& change = changes[i];
+        const std::size_t segments = change.ticks.size();
+        const bool is_whole = change.last + 1 == segments;
+        const double old_cost = is_whole ? base.cost : base.costs[change.last + 1 + base.ticks.size() - segments];
+        if (jobs[i].rejection() != Rejection::none || !(cost_after(base, change, jobs[i]) < old_cost)) {
+            continue;
+        }
+        promising.push_back(i);
+        if (!is_whole) {
+            unfinished.push_back(i);
+            rests.push_back(job_for(jobs[i].end(), change, change.last + 1, segments - 1));
+        }
+    }
+    flights_.fly(rests);
+    for (std::size_t i = 0; i < rests.size(); ++i) {
+        std::vector<FlightLeg>& legs = jobs[unfinished[i]].legs;
+        legs.insert(legs.end(), rests[i].legs.begin(), rests[i].legs.end());
+    }
+    std::optional<FlownPlan> best;
+    for (const std::size_t i : promising) {
+        if (jobs[i].rejection() == Rejection::none) {
+            FlownPlan plan = flown(base, changes[i], jobs[i]);
+            if (plan.cost < (best ? best->cost : base.cost)) {
+                best = std::move(plan);
+            }
+        }
+    }
+    return best;
+}
+
+void PlanRefiner::improve() {
+    if (tracks_.empty()) {
+        return;
+    }
+    const std::size_t number = turn_++ % tracks_.size();
+    Track& track = tracks_[number];
+    std::vector<Change> changes;
+    std::vector<FlightJob> jobs;
+    for (int tries = 0; tries < 4 * changes_side_by_side && jobs.size() < changes_side_by_side; ++tries) {
+        if (auto change = changed(track)) {
+            jobs.push_back(job_for(track.plan.states[change->first], *change, change->first, change->last));
+            changes.push_back(std::move(*change));
+        }
+    }
+    flights_.fly(jobs);
+    const std::optional<FlownPlan> best = best_of(track.plan, changes, jobs);
+    if (best) {
+        track.plan = *best;
+        track.step = std::min(1.0, 1.5 * track.step);
+        track.failures = 0;
+    } else {
+        track.step = std::max(least_step, 0.9 * track.step);
+        if (++track.failures >= most_failures) {
+            track.step = 1;
+            track.failures = 0;
+        }
+    }
+    ++track.waves;
+    if (number > 0) {
+        if (track.plan.cost < tracks_.front().plan.cost) {
+            std::swap(tracks_.front(), track);
+            tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
+        } else if (track.waves >= waves_to_overtake ||
+                   (track.waves >= waves_to_come_near &&
+                    track.plan.cost > near_cost_ratio * tracks_.front().plan.cost)) {
+            tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
+        }
+    }
+}
+
+Plan PlanRefiner::plan_of(const FlownPlan& flown) const {
+    Plan plan;
+    plan.tick_s = flights_.model().tick().tick_s;
+    std::int64_t tick = 0;
+    for (std::size_t i = 0; i < flown.points.size(); ++i) {
+        plan.reference.push_back({tick, flown.points[i]});
+        tick += i < flown.ticks.size() ? flown.ticks[i] : 0;
+    }
+    return plan;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "downwash/controllers/plan.hpp"
+#include "downwash/search/plan_changes.hpp"
+#include "downwash/search/planned_flights.hpp"
+#include "downwash/search/random.hpp"
+#include "downwash/search/search_record.hpp"
+
+namespace downwash::planning {
+
+/// A plan with all that was found out by flying it, hold included.
+struct FlownPlan {
+    std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
+    std::vector<FlightState> states;     ///< the vehicle at each point, and after the hold
+    std::vector<double> costs;           ///< from the start up to each point
+    std::vector<std::int64_t> ticks;     ///< from each point to the next
+    double cost = 0;                     ///< hold included
+};
+
+/// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
+/// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
+/// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with
+/// success-driven step length (Rechenberg 1973), several changes side by side. Of two plans that it works on the
+/// cheaper one is the champion; the other one is given a chance to overtake it before it is dropped.
+class PlanRefiner {
+ public:
+    PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random);
+
+    /// Whether there is room for another plan to work on.
+    [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < most_tracks; }
+    /// Flies a plan and takes it on, if nothing refuses it. Far more expensive ones than the champion are not wanted.
+    void take(const Plan& plan);
+
+    /// Tries some changes of one of its plans, as many as are flown side by side.
+    void improve();
+
+    [[nodiscard]] const FlownPlan* champion() const noexcept;
+    /// Number, in the order in which plans were taken on, of the one that became the champion; the first is 1.
+    /// @pre there is a champion
+    [[nodiscard]] int champion_number() const noexcept { return tracks_.front().number; }
+    /// Forgets what became of a plan that was taken on, which flies in the planner's model only.
+    void drop(int number);
+    [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
+
+ private:
+    static constexpr std::size_t most_tracks = 2;
+    struct Track {
+        FlownPlan plan;
+        int number;        ///< of the plan that was taken on
+        double step = 1;   ///< of changes, as a share of the largest
+        int failures = 0;  ///< waves since the last success, or since steps became large again
+        int waves = 0;     ///< that it was worked on
+    };
+    /// A changed plan that may be worth flying.
+    struct Change {
+        std::vector<ReferencePoint> points;
+        std::vector<std::int64_t> ticks;
+        std::size_t first = 0, last = 0;  ///< segments that differ
+    };
+
+    [[nodiscard]] std::optional<Change> changed(const Track& track);
+    /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
+    [[nodiscard]] FlightJob job_for(const FlightState& from, const Change& change, std::size_t first,
+                                    std::size_t last) const;
+    [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
+                                                   std::vector<FlightJob>& jobs);
+    [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+
+    PlannedFlights& flights_;
+    PlanChanges changes_;
+    std::vector<Track> tracks_;  ///< the champion first
+    int taken_ = 0;
+    std::size_t turn_ = 0;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "downwash/problems/problem.hpp"
+#include "downwash/search/search_record.hpp"
+#include "downwash/search/search_space.hpp"
+#include "downwash/simulation/flight_batch.hpp"
+
+namespace downwash::planning {
+
+/// Counters of everything that was flown.
+struct FlightStatistics {
+    std::uint64_t edges = 0;
+    std::uint64_t ticks = 0;
+    std::uint64_t states_checked = 0;
+    std::map<std::string, std::uint64_t> rejected;
+    std::uint64_t rejections = 0;
+    std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were refused, the one that came nearest
+
+    FlightStatistics& operator+=(const FlightStatistics& other);
+};
+
+/// How the flights of one search are flown, judged, paid for and counted.
+class PlannedFlights {
+ public:
+    /// @param map surface effects of the planner's own model; nullptr for none
+    /// @param is_over asked now and then within flights, from all threads; true ends them without a result
+    /// @param threads at least 1; nothing but the time depends on it
+    /// @param start the whole vehicle with which the search begins; empty: as the problem's start says
+    PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
+                   std::function<bool()> is_over = {}, int threads = 1, std::optional<FlightState> start = {});
+
+    /// Flights of the same search, to be flown beside the others and counted on their own.
+    PlannedFlights(const PlannedFlights& others, int threads);
+
+    /// From its next batch on flies with so many of its threads. May be called from any thread.
+    void use_threads(int threads) { crew_.use_threads(threads); }
+
+    /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
+    /// its reference to a few centimetres. Counts the refusal if it is not.
+    [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment);
+
+    /// Flies jobs, and counts ticks and refusals.
+    void fly(std::span<FlightJob> jobs);
+
+    /// Flies a reference again, from the start of the search through the planner's own model, by the plain loop over
+    /// ticks. May be called from any thread.
+    /// @param states the whole vehicle at each knot; one more: after the hold at the last of them
+    /// @throws std::logic_error when something is refused, or a state does not come out bit for bit
+    void verify(std::span<const ReferenceKnot> knots, std::span<const FlightState> states) const;
+
+    /// The hold at the goal as the last leg of a job; the job's judged_ticks have to be judged_ticks().
+    [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
+    [[nodiscard]] std::int64_t judged_ticks() const;
+
+    /// The cost from the start up to the end of a leg that began with `from`.
+    [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
+
+    /// A segment between two points in as few ticks as the limits of motion allow.
+    [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
+    [[nodiscard]] const ReferenceLimits& limits() const noexcept { return limits_; }
+
+    [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
+    [[nodiscard]] const FlightModel& model() const noexcept { return model_; }
+    /// The vehicle at the start of the search.
+    [[nodiscard]] const FlightState& start() const noexcept { return start_; }
+    [[nodiscard]] const AeroMap* map() const noexcept { return map_; }
+    [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
+    void count_rejection(const std::string& cause);
+    /// An interrupted flight is none.
+    void count_rejection(Rejection rejection);
+
+ private:
+    [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
+    /// Counts a refusal at a place of a segment.
+    void refuse(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
+
+    const Problem& problem_;
+    const FlightModel& model_;
+    const SearchSpace& space_;
+    const AeroMap* map_;
+    ReferenceLimits limits_;
+    FlightState start_;
+    FlightCrew crew_;
+    FlightStatistics statistics_;
+};
+
+/// A count of nothing for every cause of refusal.
+[[nodiscard]] std::map<std::string, std::uint64_t> no_rejections();
+
+/// The name under which a refusal is counted.
+[[nodiscard]] std::string cause_of(Rejection rejection);
+
+}  // namespace downwash::planning

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/configuration.hpp"
+
+namespace downwash {
+
+/// What a search came to.
+enum class Status : std::uint8_t {
+    none,         ///< not even a first step
+    approximate,  ///< the best there is does not reach the goal
+    solved,       ///< the planner's own model reaches the goal and holds there
+};
+
+/// A moment at which the best plan became cheaper.
+struct Improvement {
+    double wall_s = 0;
+    std::uint64_t iteration = 0;
+    double cost = 0;                   ///< by the planner's own model
+    std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
+};
+
+/// What stood between a search and its goal: of the ways into the goal region that were refused, holds included, the
+/// one that came nearest. `direct_flight`, if it had plans: where the flight of the one that was discarded last came
+/// nearest to an obstacle or, if that is not why, ended.
+struct Obstruction {
+    std::string cause;           ///< as in SearchRecord::rejected
+    Configuration at;                 ///< where it was refused
+    double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
+};
+
+/// How a search went.
+struct SearchRecord {
+    double wall_s = 0;                            ///< of the search, direct flights of better plans included
+    double setup_wall_s = 0;                      ///< before it: checks of the problem, scene and aero map
+    double map_wall_s = 0;                        ///< of that, spent on the aero map
+    double flight_wall_s = 0;                     ///< spent on the direct flight of the reported plan
+    std::optional<double> first_solution_wall_s;  ///< first plan that the planner's own model accepted
+    std::uint64_t iterations = 0;
+    std::uint64_t edges_simulated = 0;
+    double simulated_s = 0;            ///< flight time simulated, not counting direct flights
+    std::uint64_t states_checked = 0;  ///< collision queries of single states
+    std::vector<Improvement> improvements;
+    std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
+    /// Of a search that found no plan: how near to the goal region the vehicle was brought [m], and, of a search by
+    /// flights, what stopped it there.
+    std::optional<double> nearest_approach_m;
+    std::optional<Obstruction> obstruction;
+};
+
+/// A node of the tree that a search has grown.
+struct TreeNode {
+    static constexpr int no_parent = -1;
+
+    Configuration at;
+    int parent = no_parent;  ///< in the same list
+};
+
+/// Name as in solution files: "solved".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Status status);
+
+}  // namespace downwash

@@ -1,0 +1,280 @@
+#include "downwash/search/search_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/rigid_body.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// The coordinates of the level vehicle.
+std::array<double, 4> level_at(const Configuration& c) {
+    return {c.x_m, c.z_m, 0, c.arm_rad};
+}
+
+}  // namespace
+
+ReferencePoint reference_at(const Start& start) noexcept {
+    ReferencePoint point = at_rest(start.configuration());
+    point.velocity[0] = start.vx_m_s;
+    point.velocity[1] = start.vz_m_s;
+    point.velocity[2] = start.arm_rate_rad_s;
+    return point;
+}
+
+double travel_m(const Configuration& a, const Configuration& b) noexcept {
+    const double dx = b.x_m - a.x_m;
+    const double dz = b.z_m - a.z_m;
+    return std::sqrt(dx * dx + dz * dz);
+}
+
+Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
+    return {a.x_m + s * (b.x_m - a.x_m), a.z_m + s * (b.z_m - a.z_m), a.arm_rad + s * (b.arm_rad - a.arm_rad)};
+}
+
+SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
+    : model_(model),
+      bounds_(problem.bounds),
+      goal_(problem.goal),
+      arm_(problem.robot.arm),
+      margin_m_(problem.planner.safety_margin_m) {}
+
+double SearchSpace::arm_low_rad() const noexcept {
+    return arm_.is_limited ? arm_.lower_limit_rad : -std::numbers::pi;
+}
+
+double SearchSpace::arm_high_rad() const noexcept {
+    return arm_.is_limited ? arm_.upper_limit_rad : std::numbers::pi;
+}
+
+double SearchSpace::arm_turn_rad(double from_rad, double to_rad) const noexcept {
+    return arm_.is_limited ? to_rad - from_rad : lane::wrap_angle(to_rad - from_rad);
+}
+
+Configuration SearchSpace::seen_from(const Configuration& from, Configuration to) const noexcept {
+    to.arm_rad = from.arm_rad + arm_turn_rad(from.arm_rad, to.arm_rad);
+    return to;
+}
+
+double SearchSpace::distance_m(const Configuration& a, const Configuration& b) const noexcept {
+    const double dx = b.x_m - a.x_m;
+    const double dz = b.z_m - a.z_m;
+    const double turn = arm_weight_m() * arm_turn_rad(a.arm_rad, b.arm_rad);
+    return std::sqrt(dx * dx + dz * dz + turn * turn);
+}
+
+Configuration SearchSpace::steered(const Configuration& from, const Configuration& to, double range_m) const {
+    const Configuration target = seen_from(from, to);
+    const double distance = distance_m(from, target);
+    if (distance <= range_m) {
+        return target;
+    }
+    return between(from, target, range_m / distance);
+}
+
+Configuration SearchSpace::sample(Random& random) const {
+    Configuration c;
+    c.x_m = random.uniform(bounds_.x_low_m, bounds_.x_high_m);
+    c.z_m = random.uniform(bounds_.z_low_m, bounds_.z_high_m);
+    c.arm_rad = random.uniform(arm_low_rad(), arm_high_rad());
+    return c;
+}
+
+double SearchSpace::into_arm_range(double arm_rad, double near_rad) const noexcept {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double least = arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
+    const double turns_to_spare = std::floor((arm_high_rad() - least) / turn);
+    if (!arm_.is_limited || turns_to_spare < 1) {
+        return least;
+    }
+    return least + turn * std::clamp(std::round((near_rad - least) / turn), 0.0, turns_to_spare);
+}
+
+Configuration SearchSpace::sample_near(const Configuration& configuration, double radius_m, Random& random) const {
+    const double turn = radius_m / arm_weight_m();
+    Configuration c;
+    c.x_m = std::clamp(configuration.x_m + random.uniform(-radius_m, radius_m), bounds_.x_low_m, bounds_.x_high_m);
+    c.z_m = std::clamp(configuration.z_m + random.uniform(-radius_m, radius_m), bounds_.z_low_m, bounds_.z_high_m);
+    c.arm_rad = configuration.arm_rad + random.uniform(-turn, turn);
+    if (arm_.is_limited) {
+        c.arm_rad = std::clamp(c.arm_rad, arm_.lower_limit_rad, arm_.upper_limit_rad);
+    }
+    return c;
+}
+
+std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& configuration, double radius_m,
+                                                           Random& random) const {
+    const Goal& goal = nearest_goal(goal_, model_.tick().plant, level_at(configuration).data());
+    const Configuration near = sample_near(configuration, radius_m, random);
+    // Another place anywhere within a disc is near enough; a rectangle may be wide.
+    const Configuration candidate = tolerance_of(goal).is_disc
+                                        ? moved_to(goal, near, random)
+                                        : moved_into(goal, near, usable_tolerance_share * random.uniform(0.5, 1));
+    return is_valid(candidate) ? std::optional(candidate) : std::nullopt;
+}
+
+Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& random) const {
+    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance: where an
+    // obstacle, a bound or a limit stands at the goal, only those can do.
+    const GoalTolerance tolerance = tolerance_of(goal);
+    const double share = random.chance(0.5) ? usable_tolerance_share : 0;
+    double dx = random.uniform(-1, 1);
+    double dz = random.uniform(-1, 1);
+    const double stretch = tolerance.is_disc ? share / std::max(1.0, std::sqrt(dx * dx + dz * dz)) : share;
+    dx *= stretch * tolerance.x_m;
+    dz *= stretch * tolerance.z_m;
+    const double turn = usable_tolerance_share * tolerance.angle_rad * random.uniform(-1, 1);
+    if (goal.end_effector) {
+        const EndEffectorGoal& point = *goal.end_effector;
+        if (point.direction_rad) {
+            c.arm_rad = into_arm_range(*point.direction_rad + turn, c.arm_rad);
+        }
+        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
+        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
+        c.x_m = point.x_m + dx - tip.x;
+        c.z_m = point.z_m + dz - tip.z;
+        return c;
+    }
+    const ConfigurationGoal& pose = *goal.configuration;
+    if (pose.x_m) {
+        c.x_m = *pose.x_m + dx;
+    }
+    if (pose.z_m) {
+        c.z_m = *pose.z_m + dz;
+    }
+    if (pose.arm_rad) {
+        c.arm_rad = into_arm_range(*pose.arm_rad + (share > 0 ? turn : 0), c.arm_rad);
+    }
+    return c;
+}
+
+Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
+    return moved_into(nearest_goal(goal_, model_.tick().plant, level_at(c).data()), c, share);
+}
+
+Configuration SearchSpace::moved_into(const Goal& wanted, Configuration c, double share) const {
+    const GoalTolerance tolerance = tolerance_of(wanted);
+    const auto nearest_angle = [&](double from_rad, double goal_rad) {
+        const double most = share * tolerance.angle_rad;
+        return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most), from_rad);
+    };
+    // What may stay of the deviation from the goal.
+    const auto keep = [&](double& dx, double& dz) {
+        if (!tolerance.is_disc) {
+            dx = std::clamp(dx, -share * tolerance.x_m, share * tolerance.x_m);
+            dz = std::clamp(dz, -share * tolerance.z_m, share * tolerance.z_m);
+            return;
+        }
+        const double most = share * tolerance.x_m;
+        const double distance = std::sqrt(dx * dx + dz * dz);
+        const double part = distance > most ? most / distance : 1;
+        dx *= part;
+        dz *= part;
+    };
+    if (wanted.end_effector) {
+        const EndEffectorGoal& goal = *wanted.end_effector;
+        if (goal.direction_rad) {
+            c.arm_rad = nearest_angle(c.arm_rad, *goal.direction_rad);
+        }
+        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
+        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
+        double dx = c.x_m + tip.x - goal.x_m;
+        double dz = c.z_m + tip.z - goal.z_m;
+        keep(dx, dz);
+        c.x_m = goal.x_m + dx - tip.x;
+        c.z_m = goal.z_m + dz - tip.z;
+        return c;
+    }
+    const ConfigurationGoal& goal = *wanted.configuration;
+    double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
+    double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
+    keep(dx, dz);
+    if (goal.x_m) {
+        c.x_m = *goal.x_m + dx;
+    }
+    if (goal.z_m) {
+        c.z_m = *goal.z_m + dz;
+    }
+    if (goal.arm_rad) {
+        c.arm_rad = nearest_angle(c.arm_rad, *goal.arm_rad);
+    }
+    return c;
+}
+
+std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
+    constexpr int tries = 20;
+    const std::span<const Goal> goals = alternatives(goal_);
+    for (int i = 0; i < tries; ++i) {
+        const auto lot = goals.size() == 1 ? 0 : random.uniform(0, static_cast<double>(goals.size()));
+        const Configuration candidate = moved_to(goals[static_cast<std::size_t>(lot)], sample(random), random);
+        if (is_valid(candidate)) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+GoalError SearchSpace::error(const Configuration& c) const {
+    return goal_error(goal_, model_.tick().plant, level_at(c).data());
+}
+
+double SearchSpace::hold_s(const Configuration& c) const {
+    return nearest_goal(goal_, model_.tick().plant, level_at(c).data()).hold_s;
+}
+
+bool SearchSpace::is_near_goal(const Configuration& c) const {
+    // A hair more than the share: samples right at its rim shall count.
+    return error(c).used_share <= usable_tolerance_share + 1e-6;
+}
+
+double SearchSpace::goal_distance_m(const Configuration& c) const {
+    if (is_near_goal(c)) {
+        return 0;
+    }
+    double least = HUGE_VAL;
+    for (const Goal& goal : alternatives(goal_)) {
+        const GoalError off = error_beyond_tolerance(goal, c);
+        least = std::min(least, off.distance_m + arm_weight_m() * off.angle_rad);
+    }
+    return least;
+}
+
+GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configuration& c) const {
+    const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c).data());
+    const GoalTolerance tolerance = tolerance_of(goal);
+    const auto beyond = [](double deviation, double most) {
+        return std::max(0.0, std::abs(deviation) - usable_tolerance_share * most);
+    };
+    const auto length = [](double x, double z) { return std::sqrt(x * x + z * z); };
+    return {tolerance.is_disc ? beyond(length(d.x_m, d.z_m), tolerance.x_m)
+                              : length(beyond(d.x_m, tolerance.x_m), beyond(d.z_m, tolerance.z_m)),
+            beyond(d.angle_rad, tolerance.angle_rad), tolerance.used_share(d)};
+}
+
+bool SearchSpace::is_inside(const Configuration& c) const noexcept {
+    return c.x_m >= bounds_.x_low_m && c.x_m <= bounds_.x_high_m && c.z_m >= bounds_.z_low_m &&
+           c.z_m <= bounds_.z_high_m &&
+           (!arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad));
+}
+
+Rejection SearchSpace::rejection_at(const Configuration& c) const {
+    if (!is_inside(c)) {
+        return Rejection::bounds;
+    }
+    return model_.collisions().is_nearer_than({c.x_m, c.z_m, 0, c.arm_rad}, margin_m_) ? Rejection::collision
+                                                                                       : Rejection::none;
+}
+
+double SearchSpace::extent_m() const noexcept {
+    const double dx = bounds_.x_high_m - bounds_.x_low_m;
+    const double dz = bounds_.z_high_m - bounds_.z_low_m;
+    const double turn = arm_weight_m() * (arm_.is_limited ? arm_high_rad() - arm_low_rad() : std::numbers::pi);
+    return std::sqrt(dx * dx + dz * dz + turn * turn);
+}
+
+}  // namespace downwash::planning

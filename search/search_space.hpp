@@ -1,0 +1,111 @@
+#pragma once
+
+#include <optional>
+
+#include "downwash/controllers/configuration.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/search/random.hpp"
+#include "downwash/simulation/flight.hpp"
+#include "downwash/simulation/flight_model.hpp"
+
+namespace downwash::planning {
+
+/// The reference at the start of a problem: the one point of a plan that may move.
+[[nodiscard]] ReferencePoint reference_at(const Start& start) noexcept;
+
+/// Straight distance of the vehicle's positions [m].
+[[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) noexcept;
+
+/// The point at the share s of the straight line from a to b, arm angles taken as they stand.
+[[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept;
+
+/// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
+class SearchSpace {
+ public:
+    SearchSpace(const Problem& problem, const FlightModel& model);
+
+    [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+    [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
+    [[nodiscard]] bool arm_is_limited() const noexcept { return arm_.is_limited; }
+    [[nodiscard]] double arm_low_rad() const noexcept;
+    [[nodiscard]] double arm_high_rad() const noexcept;
+
+    /// Metres that one radian of the arm counts for: half the arm's length.
+    [[nodiscard]] double arm_weight_m() const noexcept { return 0.5 * arm_.length_m; }
+
+    /// Turn from one arm angle to another [rad]: the shorter way, unless the arm has limits.
+    [[nodiscard]] double arm_turn_rad(double from_rad, double to_rad) const noexcept;
+
+    /// `to` with its arm angle unwrapped so that it is reached from `from` by the shorter turn.
+    [[nodiscard]] Configuration seen_from(const Configuration& from, Configuration to) const noexcept;
+
+    /// sqrt(dx^2 + dz^2 + (w darm)^2) [m], the arm by the shorter turn.
+    [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
+
+    /// The point at most `range_m` from `from` on the straight line towards `to`.
+    [[nodiscard]] Configuration steered(const Configuration& from, const Configuration& to, double range_m) const;
+
+    /// A configuration within the bounds.
+    [[nodiscard]] Configuration sample(Random& random) const;
+
+    /// A configuration of the level vehicle that meets the goal, free of collision: inverse kinematics with the arm in
+    /// any direction that the goal leaves open, so both branches of the arm occur; alternatives come in turn by lot.
+    /// Nothing after some failed tries.
+    [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
+
+    /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
+    [[nodiscard]] Configuration sample_near(const Configuration& configuration, double radius_m, Random& random) const;
+
+    /// The same for a configuration that meets the goal: what the goal leaves free is moved. Nothing when that
+    /// collides.
+    [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
+                                                                Random& random) const;
+
+    /// The configuration nearest to another that uses up at most so much of each of the goal's tolerances; what the
+    /// goal leaves free is kept. Of alternatives the nearest. May collide.
+    /// @param share of the tolerances, 0 to 1; 0 is the middle of the goal
+    [[nodiscard]] Configuration moved_into_goal(Configuration configuration, double share) const;
+
+    /// Goal error of the level vehicle.
+    [[nodiscard]] GoalError error(const Configuration& configuration) const;
+
+    /// For how long the goal is held there [s]; of several alternatives the nearest one's hold.
+    [[nodiscard]] double hold_s(const Configuration& configuration) const;
+
+    /// Whether the level vehicle there is so near the goal that a flight to it may well meet the goal: within the
+    /// usable share of each tolerance.
+    [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
+
+    /// By how much the error from one of the goal's alternatives exceeds the usable share of each tolerance.
+    [[nodiscard]] GoalError error_beyond_tolerance(const Goal& goal, const Configuration& configuration) const;
+
+    /// Distance and angle to the goal as one length [m], 0 inside the goal region; of alternatives to the nearest.
+    [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
+
+    /// What forbids the level vehicle there: `bounds` (or arm limits), `collision` with the safety margin, or `none`.
+    [[nodiscard]] Rejection rejection_at(const Configuration& configuration) const;
+    [[nodiscard]] bool is_valid(const Configuration& configuration) const {
+        return rejection_at(configuration) == Rejection::none;
+    }
+
+    /// Whether a configuration keeps the bounds and the arm's limits.
+    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
+
+    /// Largest distance between two configurations [m].
+    [[nodiscard]] double extent_m() const noexcept;
+
+ private:
+    [[nodiscard]] Configuration moved_to(const Goal& goal, Configuration configuration, Random& random) const;
+    [[nodiscard]] Configuration moved_into(const Goal& wanted, Configuration configuration, double share) const;
+    /// The same direction of the arm as an angle within its limits, of several the one nearest to another angle; where
+    /// none is within, and without limits, the least that is no smaller than arm_low_rad().
+    [[nodiscard]] double into_arm_range(double arm_rad, double near_rad) const noexcept;
+
+    const FlightModel& model_;
+    Bounds bounds_;
+    Goal goal_;
+    ArmParameters arm_;
+    double margin_m_;
+};
+
+}  // namespace downwash::planning

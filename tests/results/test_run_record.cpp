@@ -1,0 +1,128 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "../support/solved_run.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/results/run_record.hpp"
+
+using namespace downwash;
+using test::SolvedRun;
+
+namespace {
+
+/// What reading the run says.
+std::string error_of(const SolvedRun& run) {
+    try {
+        (void)read_run(run.folder());
+    } catch (const InputError& error) {
+        return error.errors().at(0).message;
+    }
+    return "";
+}
+
+std::string content_of(const std::filesystem::path& file) {
+    return read_file(file, 1U << 30U);
+}
+
+std::string table_error(const std::string& text) {
+    try {
+        (void)read_number_table(text, "file.csv", {"a", "b"});
+    } catch (const InputError& error) {
+        return error.errors().at(0).message;
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("a run is read back as it was written") {
+    const SolvedRun run;
+    const RunRecord record = read_run(run.folder());
+    CHECK(record.problem.name == run.problem.name);
+    CHECK(record.solution_text == content_of(run.file("solution.json")));
+    CHECK(record.problem_text == content_of(run.file("effective.yaml")));
+    const auto& rows = run.solution.execution->rows;
+    REQUIRE(record.flight.rows() == rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        REQUIRE(record.flight.find("x_m")->at(i) == rows[i].q[0]);
+        REQUIRE(record.flight.find("energy_j")->at(i) == rows[i].energy_j);
+        REQUIRE(record.flight.find("rotor_1_aero_factor")->at(i) == rows[i].rotor_factor[0]);
+    }
+    REQUIRE(record.tree.rows() == run.solution.tree.size());
+    CHECK(std::isnan(record.tree.find("parent")->at(0)));
+    CHECK(record.tree.find("parent")->at(1) == run.solution.tree[1].parent);
+    CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
+}
+
+TEST_CASE("files that no run left behind are refused with their place") {
+    const SolvedRun run;
+    SECTION("no folder") {
+        CHECK_THROWS_AS(read_run(run.folder() / "elsewhere"), InputError);
+    }
+    SECTION("a file is missing") {
+        std::filesystem::remove(run.file("trajectory.csv"));
+        CHECK(error_of(run).find("trajectory.csv cannot be read") != std::string::npos);
+    }
+    SECTION("a tree may be missing") {
+        std::filesystem::remove(run.file("tree.csv"));
+        CHECK(read_run(run.folder()).tree.rows() == 0);
+    }
+    SECTION("a solution that is no JSON") {
+        write_file(run.file("solution.json"), "{\"schema\": ");
+        CHECK(error_of(run).find("solution.json: this is not the JSON") != std::string::npos);
+    }
+    SECTION("a solution that nests without end") {
+        write_file(run.file("solution.json"), std::string(100000, '['));
+        CHECK(error_of(run).find("solution.json: this is not the JSON") != std::string::npos);
+    }
+    SECTION("a solution of another schema") {
+        write_file(run.file("solution.json"), R"({"schema": "downwash/solution/v9"})");
+        CHECK(error_of(run).find("its schema is not downwash/solution/v1") != std::string::npos);
+    }
+    SECTION("a flight with a hole") {
+        std::string text = content_of(run.file("trajectory.csv"));
+        const std::size_t second_row = text.find('\n', text.find('\n') + 1) + 1;
+        text.insert(text.find(',', second_row) + 1, ",");
+        write_file(run.file("trajectory.csv"), text);
+        CHECK(error_of(run).find("trajectory.csv:3: ") != std::string::npos);
+    }
+    SECTION("a tree that bites its tail") {
+        write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n\n0,0,0,1\n1,1,0,0\n");
+        CHECK(error_of(run).find("tree.csv:3: its parents run in a circle") != std::string::npos);
+    }
+    SECTION("a flight in which time stands still") {
+        std::string text = content_of(run.file("trajectory.csv"));
+        const std::size_t second = text.find('\n', text.find('\n') + 1) + 1;
+        text.replace(second, text.find(',', second) - second, "0");
+        write_file(run.file("trajectory.csv"), text);
+        CHECK(error_of(run).find("trajectory.csv:3: t_s is 0") != std::string::npos);
+    }
+    SECTION("a tree whose parents are not there") {
+        write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n0,0,0,\n1,1,0,7\n");
+        CHECK(error_of(run).find("tree.csv:3: parent is 7") != std::string::npos);
+    }
+}
+
+TEST_CASE("tables of numbers are read strictly") {
+    const NumberTable table = read_number_table("a,b,c\n1,,-2.5e3\n", "file.csv", {"a", "b"});
+    CHECK(table.rows() == 1);
+    CHECK(table.find("a")->at(0) == 1);
+    CHECK(std::isnan(table.find("b")->at(0)));
+    CHECK(table.find("c")->at(0) == -2500);
+    CHECK(table.find("d") == nullptr);
+    CHECK(read_number_table("a,b\n", "file.csv", {"a", "b"}).rows() == 0);
+
+    CHECK(table_error("") == "file.csv: the file is empty: expected a line of column names");
+    CHECK(table_error("a,b,<c>\n") == "file.csv:1:5: '<c>' is no name of a column: expected letters, digits and '_'");
+    CHECK(table_error("a,c\n") == "file.csv:1: there is no column 'b'");
+    CHECK(table_error("a,b,a\n") == "file.csv:1:5: the column 'a' is there twice");
+    CHECK(table_error("a,b\n1,2,3\n") == "file.csv:2: 3 cells under 2 column names");
+    CHECK(table_error("a,b\n1,2\n1,two\n") == "file.csv:3:3: 'two' is not a finite number");
+    CHECK(table_error("a,b\n1,nan\n") == "file.csv:2:3: 'nan' is not a finite number");
+    std::string many = "a,b";
+    for (int i = 2; i <= 200; ++i) {
+        many += ",c" + std::to_string(i);
+    }
+    CHECK(table_error(many + "\n").find("more than 200 columns") != std::string::npos);
+}

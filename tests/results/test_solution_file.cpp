@@ -1,0 +1,213 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/results/solution_file.hpp"
+#include "test_files.hpp"
+
+using downwash::Plan;
+using downwash::Problem;
+using downwash::ProblemFileError;
+using downwash::read_solution;
+using downwash::ReferenceKnot;
+using downwash::Solution;
+
+namespace {
+
+const Problem& problem() {
+    static const Problem open_air = downwash::read_problem(DOWNWASH_PROBLEMS "/open_air.yaml");
+    return open_air;
+}
+
+/// A plan of three knots with numbers that do not end.
+Solution sample() {
+    Solution solution;
+    solution.status = downwash::Status::solved;
+    solution.algorithm = "rrt-star";
+    solution.seed = 4294967295U;
+    solution.threads = 3;
+    solution.cost = 1000.0 / 7;
+    solution.planning.first_solution_wall_s = 1.0 / 3;
+    solution.planning.iterations = 12345678901234567ULL;
+    solution.planning.improvements = {{0.1, 7, 200.0 / 7, {}}, {0.2, 9, 1000.0 / 7, 1001.0 / 7}};
+    solution.planning.rejected = {{"collision", 5}, {"bounds", 0}};
+    Plan plan;
+    plan.tick_s = 1 / problem().robot.controller.rate_hz;
+    const std::int64_t ticks[] = {0, 333, 100003};
+    for (int i = 0; i < 3; ++i) {
+        ReferenceKnot knot;
+        knot.tick = ticks[i];
+        for (int axis = 0; axis < 3; ++axis) {
+            const double start[] = {problem().start.x_m, problem().start.z_m, problem().start.arm_rad};
+            knot.point.position[axis] = start[axis] + i * std::sqrt(2.0 + axis);
+            knot.point.velocity[axis] = i * (axis - 1) / 3.0;
+            knot.point.acceleration[axis] = i * std::exp(-30.0 * axis);
+        }
+        plan.reference.push_back(knot);
+    }
+    solution.plan = plan;
+    return solution;
+}
+
+std::string sample_text() {
+    return solution_json(sample(), {"open_air", "open_air.yaml", std::string(64, 'a')});
+}
+
+Solution read(const std::string& text) {
+    const downwash::test::TestFolder folder;
+    folder.write("solution.json", text);
+    return read_solution((folder / "solution.json").string(), problem());
+}
+
+/// The first error of a file; empty when it is read.
+std::string error_of(const std::string& text) {
+    try {
+        static_cast<void>(read(text));
+    } catch (const ProblemFileError& invalid) {
+        const downwash::LocatedError& error = invalid.errors().at(0);
+        return std::to_string(error.line) + ":" + std::to_string(error.column) + ": " + error.message;
+    }
+    return "";
+}
+
+/// The sample with the first occurrence of `from` replaced.
+std::string sample_with(const std::string& from, const std::string& to) {
+    std::string text = sample_text();
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("A plan is read back to the last bit") {
+    const Solution written = sample();
+    const Solution found = read(sample_text());
+    REQUIRE(found.plan);
+    REQUIRE(found.plan->reference.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(found.plan->reference[i].tick == written.plan->reference[i].tick);
+        CHECK(found.plan->reference[i].point == written.plan->reference[i].point);
+    }
+    CHECK(found.plan->tick_s == written.plan->tick_s);
+    CHECK(found.cost == written.cost);
+    CHECK(found.seed == written.seed);
+    CHECK(found.threads == written.threads);
+    CHECK(found.planning.first_solution_wall_s == written.planning.first_solution_wall_s);
+    CHECK(found.planning.iterations == written.planning.iterations);
+    CHECK(found.planning.improvements.at(1).cost == written.planning.improvements.at(1).cost);
+    CHECK(found.planning.rejected == written.planning.rejected);
+    CHECK_FALSE(found.execution);
+    CHECK(solution_json(found, {"open_air", "open_air.yaml", std::string(64, 'a')}) == sample_text());
+}
+
+TEST_CASE("The weights of a sum are written and read back") {
+    Solution solution = sample();
+    solution.objective.weight(downwash::Objective::time) = 50.0 / 3;
+    const std::string text = solution_json(solution, {"open_air", "open_air.yaml", ""});
+    CHECK(text.find("\"energy\": 1.0") != std::string::npos);
+    CHECK(text.find("\"clearance\"") == std::string::npos);
+    CHECK(read(text).objective == solution.objective);
+}
+
+TEST_CASE("What is not finite is written as null") {
+    Solution solution = sample();
+    solution.execution.emplace();
+    solution.execution->min_clearance_m = std::numeric_limits<double>::infinity();
+    solution.execution->goal_error_m = std::numeric_limits<double>::quiet_NaN();
+    const std::string text = solution_json(solution, {"open_air", "\xff.yaml", ""});
+    CHECK(text.find("\"min_clearance_m\": null") != std::string::npos);
+    CHECK(text.find("\"goal_error_m\": null") != std::string::npos);
+    CHECK(read(text).plan);
+}
+
+TEST_CASE("Without a plan there is no cost and nothing to read back") {
+    Solution solution;
+    solution.algorithm = "rrt-star";
+    const std::string text = solution_json(solution, {"open_air", "", ""});
+    CHECK(text.find("\"cost\": null") != std::string::npos);
+    CHECK(text.find("\"execution\": null") != std::string::npos);
+    CHECK(error_of(text).find("plan: the file holds no plan") != std::string::npos);
+}
+
+TEST_CASE("A plan file is refused where it cannot be flown") {
+    const auto [from, to, expected] = GENERATE(table<std::string, std::string, std::string>({
+        {"solution/v1", "solution/v2", "2:13: schema: unsupported schema"},
+        {"\"schema\": \"downwash/solution/v1\",", "", "1:1: 'schema' is missing"},
+        {"\"t_s\": 0.0", "\"t_s\": 0.01", "the first knot must stand at t_s 0"},
+        {"\"t_s\": 3.33", "\"t_s\": 3.335", "expected a whole number of the robot's control ticks of 0.01 s"},
+        {"\"t_s\": 3.33", "\"t_s\": -3.33", "expected a whole number of the robot's control ticks"},
+        {"\"t_s\": 3.33", "\"t_s\": 3.330001", "expected a whole number of the robot's control ticks"},
+        {"\"t_s\": 3.33", "\"t_s\": 0", "plan.reference[1]: t_s must be greater"},
+        {"\"t_s\": 3.33", "\"t_s\": 2000", "plan.reference[2]: t_s must be greater"},
+        {"\"t_s\": 3.33", "\"t_s\": 999999", "expected a whole number"},
+        {"\"t_s\": 3.33", "\"t_s\": \"3.33\"", "plan.reference[1].t_s: expected a number, found string"},
+        {"\"t_s\": 3.33", "\"t\": 3.33", "plan.reference[1]: 't_s' is missing here"},
+        {"\"vx_m_s\": 0.0", "\"vx_m_s\": null", "plan.reference[0].vx_m_s: expected a number, found null"},
+        {"\"vx_m_s\": 0.0", "\"vx_m_s\": 1e300", "expected a number between"},
+        {"\"vx_m_s\": 0.0", "\"vx_m_s\": 1e999", "a number that is too large"},
+        {"\"vx_m_s\": 0.0", "\"vx_m_s\": NaN", "this is not JSON"},
+        {"\"x_m\": -6.0", "\"x_m\": -6.1", "plan.waypoints[0]: this waypoint is not where plan.reference[0] is"},
+        {"\"waypoints\"", "\"way\"", "plan: 'waypoints' is missing here"},
+        {"\"reference\": [", "\"reference\": [], \"old\": [", "plan.reference: expected at least one knot"},
+        {"\"reference\": [", "\"reference\": [7, ", "plan.reference[0]: expected a group of keys"},
+        {"\"waypoints\": [", "\"waypoints\": {}, \"old\": [", "plan.waypoints: expected a list"},
+        {"\"waypoints\": [", "\"waypoints\": [], \"old\": [", "there are 0 waypoints, but 3 knots"},
+        {"\"plan\": {", "\"plan\": 5, \"old\": {", "plan: expected a group"},
+        {"\"status\": \"solved\"", "\"status\": \"great\"",
+         "3:13: status: expected one of none, approximate or solved"},
+        {"\"variant\": \"mp-arm-ada\"", "\"variant\": 5", "variant: expected one of mp-arm"},
+        {"\"algorithm\": \"rrt-star\"", "\"algorithm\": \"x\"", "algorithm: expected"},
+        {"\"objective\": \"energy\"", "\"objective\": \"fun\"", "objective: expected one of energy, time"},
+        {"\"objective\": \"energy\"", "\"objective\": {\"time\": 0}", "objective: expected a weight above 0"},
+        {"\"objective\": \"energy\"", "\"objective\": {\"time\": -1}", "objective.time: expected a number"},
+        {"\"seed\": 4294967295", "\"seed\": 4294967296", "seed: expected a whole number from 0 to 4294967295"},
+        {"\"interrupted\": false", "\"interrupted\": 0", "interrupted: expected true or false"},
+        {"\"planning\": {", "\"planning\": 1, \"old\": {", "planning: expected a group of keys"},
+        {"\"collision\": 5", "\"collision\": -5", "planning.rejected.collision: expected a whole number"},
+    }));
+    CAPTURE(from, to);
+    CHECK_THAT(error_of(sample_with(from, to)), Catch::Contains(expected));
+}
+
+TEST_CASE("A plan of another problem is refused") {
+    Solution solution = sample();
+    solution.plan->reference[0].point.position[2] += 0.001;
+    const std::string error = error_of(solution_json(solution, {"open_air", "", ""}));
+    CHECK_THAT(error, Catch::Contains("plan.reference[0]: the plan begins at") && Catch::Contains("another problem"));
+}
+
+TEST_CASE("A file that was cut off anywhere is refused") {
+    const std::string text = sample_text();
+    const std::size_t whole = text.find_last_of('}');
+    for (std::size_t length = 0; length <= whole; length += 7) {
+        CAPTURE(length);
+        CHECK_FALSE(error_of(text.substr(0, length)).empty());
+    }
+}
+
+TEST_CASE("Megabytes of brackets do not overflow the stack") {
+    for (const std::string bracket : {"[", "{\"a\":", "[{\"a\":"}) {
+        std::string text;
+        for (int i = 0; i < 2'000'000; ++i) {
+            text += bracket;
+        }
+        CHECK_THAT(error_of(text), Catch::Contains("nests deeper"));
+    }
+}
+
+TEST_CASE("Random bytes in a plan file never do worse than an error") {
+    const std::string text = sample_text();
+    std::uint32_t random = 12345;
+    for (int i = 0; i < 2000; ++i) {
+        std::string broken = text;
+        for (int k = 0; k < 3; ++k) {
+            random = random * 1664525U + 1013904223U;
+            broken[(random >> 8U) % broken.size()] = "{}[],:\"0-9e\\tn\xff "[random % 16];
+        }
+        CHECK_NOTHROW(error_of(broken));
+    }
+}

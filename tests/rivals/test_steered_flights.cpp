@@ -1,0 +1,204 @@
+#include <ompl/control/spaces/RealVectorControlSpace.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/rivals/control_planners.hpp"
+#include "downwash/rivals/flight_space.hpp"
+
+using namespace downwash;
+using planning::Closing;
+using planning::FlightPoint;
+
+namespace {
+
+struct Fixture {
+    explicit Fixture(Problem given = test::ceiling_problem())
+        : problem(std::move(given)),
+          model(make_flight_model(problem)),
+          space(problem, *model),
+          map(model->make_map(problem.bounds)),
+          planned(problem, *model, space, map.get()),
+          flights(problem, space, planned) {}
+
+    Problem problem;
+    std::shared_ptr<const FlightModel> model;
+    planning::SearchSpace space;
+    std::shared_ptr<const AeroMap> map;
+    planning::PlannedFlights planned;
+    planning::SteeredFlights flights;
+};
+
+/// The vehicle hanging still 0.3 m away from the goal (tip at (3, 4.8), arm up at 60 degrees).
+Configuration near_goal() {
+    return {3 - 0.6 - 0.3, 4.8 - 1.2 * 0.8660254037844386, -1.0471975511965976};
+}
+
+}  // namespace
+
+TEST_CASE("a step is a pure function, and flies as the same segment does") {
+    const Fixture f;
+    const double forward[3] = {0.8, 0.1, 0.3};
+    const FlightPoint start = f.flights.start();
+    const FlightPoint a = f.flights.stepped(f.flights.stepped(start, forward), forward);
+    const FlightPoint b = f.flights.stepped(f.flights.stepped(start, forward), forward);
+    REQUIRE(a.is_valid);
+    CHECK(is_same_moment(a, b));
+    CHECK(a.cost == b.cost);
+    CHECK(a.ticks == 100);
+
+    FlightState state = start.vehicle;
+    const FlightPoint middle = f.flights.stepped(start, forward);
+    for (const auto& [from, to] : {std::pair(start.reference, middle.reference), {middle.reference, a.reference}}) {
+        const ReferenceSegment segment(from, to, 50, 0.01);
+        CHECK(fly(*f.model, f.map.get(), f.planned.rules(), segment, state).rejection == Rejection::none);
+    }
+    CHECK(std::memcmp(&state, &a.vehicle, sizeof(state)) == 0);
+    CHECK(a.cost == Approx(state.plant.energy_j).epsilon(1e-12));
+}
+
+TEST_CASE("a step into an obstacle is refused and counted") {
+    const Fixture f(test::walled_problem());  // a wall at x = 0
+    FlightPoint point = f.flights.resting_at({-1.2, 2, 1.5707963267948966});
+    const double forward[3] = {1, 0, 0};
+    int steps = 0;
+    while (point.is_valid && steps < 20) {
+        point = f.flights.stepped(point, forward);
+        ++steps;
+    }
+    CHECK_FALSE(point.is_valid);
+    CHECK(f.planned.statistics().rejected.at("flyable_area") == 1);  // rotors come first
+}
+
+TEST_CASE("a step from which the reference could not stop inside the bounds is not flown") {
+    const Fixture f;  // x up to 6
+    FlightPoint point = f.flights.resting_at({5.9, 2, 1.5707963267948966});
+    const double forward[3] = {1, 0, 0};
+    point = f.flights.stepped(point, forward);
+    REQUIRE(point.is_valid);
+    const std::uint64_t ticks = f.planned.statistics().ticks;
+    point = f.flights.stepped(point, forward);
+    CHECK_FALSE(point.is_valid);
+    CHECK(point.reference.position[0] < 6.1);
+    CHECK(f.planned.statistics().ticks == ticks);
+    CHECK(f.planned.statistics().rejected.at("bounds") == 1);
+}
+
+TEST_CASE("a moment beyond the longest plan is refused") {
+    const Fixture f;
+    FlightPoint point = f.flights.start();
+    const double still[3] = {0, 0, 0};
+    point.ticks = max_plan_ticks - 50;
+    CHECK(f.flights.stepped(point, still).is_valid);
+    point.ticks = max_plan_ticks - 49;
+    CHECK_FALSE(f.flights.stepped(point, still).is_valid);
+    CHECK(f.planned.statistics().rejected.at("too_long") == 1);
+}
+
+TEST_CASE("a flight closes from nearby, at rest within the goal, hold included") {
+    Problem problem = test::ceiling_problem();
+    problem.start.x_m = near_goal().x_m;
+    problem.start.z_m = near_goal().z_m;
+    problem.start.arm_rad = near_goal().arm_rad;
+    const Fixture f(problem);
+    const double upwards[3] = {0.2, 0.05, 0};
+    const std::vector<FlightPoint> moments{f.flights.start(), f.flights.stepped(f.flights.start(), upwards)};
+    REQUIRE(f.flights.is_worth_closing(moments.back()));
+    const std::optional<Closing> end = f.flights.closing(moments.back());
+    REQUIRE(end);
+    CHECK(meets_goal(f.problem.goal, f.model->tick().plant, end->end));
+    CHECK(end->cost == Approx(end->end.plant.energy_j).epsilon(1e-12));
+    const Plan plan = f.flights.plan(moments, end);
+    REQUIRE(plan.reference.size() == 3);
+    CHECK(plan.reference[1].tick == 50);
+    CHECK_NOTHROW(f.flights.verify(plan, moments, *end));
+
+    SECTION("the reported flight of that plan is the same flight, to what the map and one step a tick leave out") {
+        const Execution flight = execute(*f.model, f.flights.start().vehicle, plan.reference, f.problem.goal, true);
+        CHECK(flight.outcome == Outcome::ok);
+        CHECK(flight.rows[50].q[0] == Approx(moments.back().vehicle.plant.q[0]).margin(1e-4));
+        CHECK(flight.energy_j == Approx(end->cost).epsilon(1e-2));
+    }
+    SECTION("a vehicle that differs in one bit is noticed") {
+        std::vector<FlightPoint> wrong = moments;
+        wrong.back().vehicle.controller.arm_integral = std::nextafter(wrong.back().vehicle.controller.arm_integral, 1);
+        CHECK_THROWS_AS(f.flights.verify(plan, wrong, *end), std::logic_error);
+        Closing wrong_end = *end;
+        wrong_end.end.plant.q[2] = std::nextafter(wrong_end.end.plant.q[2], 1);
+        CHECK_THROWS_AS(f.flights.verify(plan, moments, wrong_end), std::logic_error);
+    }
+    SECTION("far away it is not tried") {
+        CHECK_FALSE(f.flights.is_worth_closing(f.flights.resting_at({-4, 2, 1.5})));
+    }
+}
+
+TEST_CASE("a plan without an end is braked to rest") {
+    const Fixture f;
+    const double forward[3] = {1, 0, 0.5};
+    std::vector<FlightPoint> moments{f.flights.start()};
+    for (int i = 0; i < 4; ++i) {
+        moments.push_back(f.flights.stepped(moments.back(), forward));
+    }
+    const Plan plan = f.flights.plan(moments, {});
+    CHECK(plan.reference.back().point.velocity[0] == 0);
+    CHECK(plan.last().x_m == Approx(moments.back().rest.x_m));
+    CHECK(plan.last().arm_rad == Approx(moments.back().rest.arm_rad));
+}
+
+TEST_CASE("OMPL propagates what steps fly, and ends before the step that is refused") {
+    const Fixture f(test::walled_problem());
+    planning::Random random(1);
+    const auto information = planning::make_flight_information(f.flights, random);
+    ompl::base::State* from = information->allocState();
+    ompl::base::State* to = information->allocState();
+    ompl::control::Control* control = information->allocControl();
+    planning::point_of(from) = f.flights.resting_at({-3, 2, 1.5707963267948966});
+    const double forward[3] = {1, 0, 0};
+    std::copy(forward, forward + 3, control->as<ompl::control::RealVectorControlSpace::ControlType>()->values);
+    const unsigned int steps = information->propagateWhileValid(from, control, 100, to);
+    FlightPoint point = planning::point_of(from);
+    for (unsigned int i = 0; i < steps; ++i) {
+        point = f.flights.stepped(point, forward);
+    }
+    CHECK(steps > 5);
+    CHECK(steps < 100);
+    CHECK(point.is_valid);
+    CHECK(is_same_moment(point, planning::point_of(to)));
+    CHECK_FALSE(f.flights.stepped(point, forward).is_valid);
+    information->freeControl(control);
+    information->freeState(to);
+    information->freeState(from);
+}
+
+TEST_CASE("a discarded plan is counted and each planner goes on to another") {
+    for (const char* algorithm : {"rrt", "sst", "kpiece1", "est"}) {
+        CAPTURE(algorithm);
+        Fixture f;
+        planning::Random random(1);
+        int asked = 0;
+        planning::ControlHooks hooks;
+        hooks.is_over = [&](std::uint64_t iteration) { return iteration >= 20000 || asked >= 3; };
+        hooks.accept = [&](const Plan&, double, std::uint64_t) { return ++asked == 3; };
+        const auto result = planning::plan_by_controls(algorithm, 1, f.flights, random, hooks);
+        CHECK(asked == 3);
+        CHECK(f.planned.statistics().rejected.at("direct_flight") == 2);
+        CHECK(result.status == Status::solved);
+    }
+}
+
+TEST_CASE("when every plan is discarded the nearest flight is approximate, never a solution") {
+    Fixture f;
+    planning::Random random(1);
+    planning::ControlHooks hooks;
+    hooks.is_over = [](std::uint64_t iteration) { return iteration >= 3000; };
+    hooks.accept = [](const Plan&, double, std::uint64_t) { return false; };
+    const auto result = planning::plan_by_controls("rrt", 1, f.flights, random, hooks);
+    CHECK(f.planned.statistics().rejected.at("direct_flight") > 0);
+    CHECK(result.status == Status::approximate);
+    CHECK(result.plan);
+    CHECK(result.iterations == 3000);
+}

@@ -1,0 +1,198 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/search/flight_tree.hpp"
+
+using namespace downwash;
+using planning::FlightNode;
+
+namespace {
+
+struct Fixture {
+    explicit Fixture(Problem given = test::ceiling_problem())
+        : problem(std::move(given)),
+          model(make_flight_model(problem)),
+          space(problem, *model),
+          map(model->make_map(problem.bounds)),
+          flights(problem, *model, space, map.get()),
+          tree(problem, *model, space, flights) {}
+
+    std::optional<planning::FlightTree::Flown> flown(const FlightNode& from, const Configuration& to) {
+        const planning::FlightTree::Edge edge{&from, space.seen_from(from.configuration, to)};
+        return tree.flown({&edge, 1}).front();
+    }
+    FlightNode* fly(FlightNode& from, const Configuration& to) {
+        const auto flight = flown(from, to);
+        return flight ? &tree.add(from, *flight) : nullptr;
+    }
+    bool rewire(FlightNode& node, FlightNode& parent) {
+        const planning::FlightTree::Rewiring rewiring{&node, &parent};
+        return tree.rewire({&rewiring, 1}) == 1;
+    }
+    void verify(const FlightNode& node) const { flights.verify(tree.plan_to(node).reference, tree.states_to(node)); }
+    /// The hold at a node, or nullptr.
+    FlightNode* hold(FlightNode& node) {
+        const std::size_t before = tree.holds().size();
+        FlightNode* const nodes[] = {&node};
+        tree.add_holds(nodes);
+        return tree.holds().size() > before ? tree.holds().back() : nullptr;
+    }
+
+    Problem problem;
+    std::shared_ptr<const FlightModel> model;
+    planning::SearchSpace space;
+    std::shared_ptr<const AeroMap> map;
+    planning::PlannedFlights flights;
+    planning::FlightTree tree;
+};
+
+bool same_bytes(const FlightState& a, const FlightState& b) {
+    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("re-flying from the start reproduces every node of a random tree bit for bit, after rewirings too") {
+    Fixture f;
+    planning::Random random(7);
+    int rewired = 0;
+    for (int i = 0; i < 120; ++i) {
+        const Configuration to = f.space.sample(random);
+        const auto near = f.tree.nearest(to, 8);
+        FlightNode* node = f.fly(*near.front(), to);
+        if (node == nullptr) {
+            continue;
+        }
+        for (FlightNode* neighbour : near) {
+            if (neighbour != &f.tree.root() && neighbour != node->parent &&
+                node->cost + f.tree.estimated_cost(*node, neighbour->configuration) < neighbour->cost) {
+                rewired += f.rewire(*neighbour, *node) ? 1 : 0;
+            }
+        }
+    }
+    REQUIRE(f.tree.size() > 20);
+    REQUIRE(rewired > 0);
+    for (const FlightNode* node : f.tree.nodes()) {
+        CHECK_NOTHROW(f.verify(*node));
+    }
+}
+
+TEST_CASE("an edge starts from the whole vehicle state of its parent, not from rest") {
+    Fixture f;
+    FlightNode* first = f.fly(f.tree.root(), {-1, 2.5, 0.5});
+    REQUIRE(first != nullptr);
+    FlightNode rested = *first;
+    const double q[4] = {first->configuration.x_m, first->configuration.z_m, 0, first->configuration.arm_rad};
+    const double u[4] = {0, 0, 0, 0};
+    rested.state = f.model->state_at(q, u);
+    const auto from_flight = f.flown(*first, {1, 3, 0});
+    const auto from_rest = f.flown(rested, {1, 3, 0});
+    REQUIRE(from_flight);
+    REQUIRE(from_rest);
+    CHECK_FALSE(same_bytes(from_flight->state, from_rest->state));
+}
+
+TEST_CASE("a rewiring that does not pay leaves the tree untouched") {
+    Fixture f;
+    FlightNode* direct = f.fly(f.tree.root(), {1, 2, 1});
+    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1});
+    REQUIRE(direct != nullptr);
+    REQUIRE(detour != nullptr);
+    FlightNode* child = f.fly(*direct, {3, 2, 1});
+    REQUIRE(child != nullptr);
+    const FlightState before = direct->state;
+    const FlightState child_before = child->state;
+    CHECK_FALSE(f.rewire(*direct, *detour));
+    CHECK(direct->parent == &f.tree.root());
+    CHECK(same_bytes(direct->state, before));
+    CHECK(same_bytes(child->state, child_before));
+}
+
+TEST_CASE("a rewiring that pays flies the whole subtree again") {
+    Fixture f;
+    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
+    REQUIRE(detour != nullptr);
+    FlightNode* node = f.fly(*detour, {1, 2.5, 1});
+    REQUIRE(node != nullptr);
+    FlightNode* child = f.fly(*node, {3, 2, 0});
+    REQUIRE(child != nullptr);
+    const double cost = node->cost;
+    const double child_cost = child->cost;
+    REQUIRE(f.rewire(*node, f.tree.root()));
+    CHECK(node->parent == &f.tree.root());
+    CHECK(detour->children.empty());
+    CHECK(node->cost < cost);
+    CHECK(child->cost < child_cost);
+    CHECK_NOTHROW(f.verify(*child));
+}
+
+TEST_CASE("a vehicle cannot be sent into an obstacle, and the refusal is counted") {
+    Fixture f(test::walled_problem());
+    const auto before = f.flights.statistics().rejected.at("collision");
+    CHECK(f.fly(f.tree.root(), {3, 2, 1.5}) == nullptr);
+    CHECK(f.flights.statistics().rejected.at("collision") == before + 1);
+    CHECK(f.tree.size() == 1);
+}
+
+TEST_CASE("hovering right under a wide ceiling is found out by flying, hold included") {
+    // The surface acts as a negative stiffness that the position loop cannot hold against (model 5.2).
+    Fixture f;
+    const double under_the_ceiling_m = 5 - 0.06 - 0.15;  // rotors 0.15 m below it
+    FlightNode* node = f.fly(f.tree.root(), {-3, under_the_ceiling_m, 1.5});
+    if (node != nullptr) {
+        node->reference = {};
+        node->reference.position[0] = -3;
+        node->reference.position[1] = under_the_ceiling_m;
+        node->reference.position[2] = 1.5;
+    }
+    CHECK((node == nullptr || f.hold(*node) == nullptr));
+    const auto& rejected = f.flights.statistics().rejected;
+    CHECK(rejected.at("collision") + rejected.at("flyable_area") + rejected.at("tracking") +
+              rejected.at("goal_missed") >
+          0);
+}
+
+TEST_CASE("a tampered state is noticed when the plan is flown again") {
+    Fixture f;
+    FlightNode* node = f.fly(f.tree.root(), {-1, 2.5, 0.5});
+    REQUIRE(node != nullptr);
+    node->state.plant.q[0] = std::nextafter(node->state.plant.q[0], 100.0);
+    CHECK_THROWS_AS(f.verify(*node), std::logic_error);
+}
+
+TEST_CASE("the nearest nodes come in the order of distance, an unlimited arm going the shorter way round") {
+    Fixture f;
+    f.fly(f.tree.root(), {-2, 2, 3.0});
+    f.fly(f.tree.root(), {-2, 2, 0.0});
+    REQUIRE(f.tree.size() == 3);
+    const Configuration query{-2, 2, -3.0};
+    const auto nearest = f.tree.nearest(query, 2);
+    REQUIRE(nearest.size() == 2);
+    CHECK(f.space.distance_m(nearest[0]->configuration, query) == Approx(0.6 * (2 * 3.14159265358979 - 6)));
+    CHECK(f.space.distance_m(nearest[0]->configuration, query) <= f.space.distance_m(nearest[1]->configuration, query));
+}
+
+TEST_CASE("goal samples meet the goal with the arm on either side") {
+    Fixture f;
+    planning::Random random(3);
+    bool left = false;
+    bool right = false;
+    int found = 0;
+    int exact = 0;
+    for (int i = 0; i < 200; ++i) {
+        if (const auto sample = f.space.sample_goal(random)) {
+            ++found;
+            CHECK(f.space.is_near_goal(*sample));
+            exact += f.space.error(*sample).distance_m < 1e-9 ? 1 : 0;
+            CHECK(f.space.is_valid(*sample));
+            left = left || sample->x_m < f.problem.goal.end_effector->x_m;
+            right = right || sample->x_m > f.problem.goal.end_effector->x_m;
+        }
+    }
+    CHECK(found > 100);
+    CHECK(exact > found / 4);
+    CHECK(left);
+    CHECK(right);
+}

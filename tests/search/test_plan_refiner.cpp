@@ -1,0 +1,102 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/search/plan_refiner.hpp"
+#include "downwash/simulation/execution.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// The ceiling problem and a plan for it that stops at every corner of a detour.
+struct Fixture {
+    Problem problem = test::ceiling_problem();
+    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    planning::SearchSpace space{problem, *model};
+    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    planning::Random random{4};
+    planning::PlannedFlights flights{problem, *model, space, map.get()};
+    planning::PlanRefiner refiner{problem, space, flights, random};
+
+    [[nodiscard]] Plan stop_and_go() const {
+        const double up = -1.5707963267948966;  // the arm, from a vehicle 1.2 m below the goal
+        Plan plan;
+        plan.tick_s = model->tick().tick_s;
+        plan.reference.push_back({0, planning::reference_at(problem.start)});
+        for (const Configuration& corner : {Configuration{-2, 1, 0}, {0, 3, -0.5}, {3, 3.6, up}}) {
+            const ReferenceKnot& last = plan.reference.back();
+            const ReferenceSegment segment = flights.fastest_segment(last.point, at_rest(corner));
+            plan.reference.push_back({last.tick + segment.ticks(), segment.to()});
+        }
+        return plan;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners without a stop") {
+    Fixture f;
+    f.refiner.take(f.stop_and_go());
+    REQUIRE(f.refiner.champion() != nullptr);
+    const double before = f.refiner.champion()->cost;
+    double last = before;
+    for (int wave = 0; wave < 150; ++wave) {
+        f.refiner.improve();
+        REQUIRE(f.refiner.champion()->cost <= last);
+        last = f.refiner.champion()->cost;
+    }
+    CHECK(last < 0.8 * before);
+    const planning::FlownPlan& plan = *f.refiner.champion();
+    for (std::size_t i = 1; i + 1 < plan.points.size(); ++i) {
+        const double* v = plan.points[i].velocity;
+        CHECK(v[0] * v[0] + v[1] * v[1] > 1e-4);
+    }
+    CHECK(at_rest(configuration_of(plan.points.back())) == plan.points.back());
+}
+
+TEST_CASE(
+    "what the refiner says of a plan is what flying it from the start gives, and its reference keeps the limits") {
+    Fixture f;
+    f.refiner.take(f.stop_and_go());
+    for (int wave = 0; wave < 60; ++wave) {
+        f.refiner.improve();
+    }
+    const planning::FlownPlan& flown = *f.refiner.champion();
+    const Plan plan = f.refiner.plan_of(flown);
+    FlightState state = start_state(*f.model, f.problem.start);
+    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
+        const ReferenceSegment segment(plan.reference[i - 1].point, plan.reference[i].point,
+                                       plan.reference[i].tick - plan.reference[i - 1].tick, plan.tick_s);
+        CHECK(keeps_limits(segment, f.flights.limits()));
+        CHECK(fly(*f.model, f.map.get(), f.flights.rules(), segment, state).rejection == Rejection::none);
+        CHECK(std::memcmp(&state, &flown.states[i], sizeof state) == 0);
+    }
+    const FlightLeg hold = f.flights.hold_leg(plan.reference.back().point);
+    CHECK(fly(*f.model, f.map.get(), f.flights.rules(), hold.segment, state).rejection == Rejection::none);
+    CHECK(state.plant.energy_j == flown.cost);
+    CHECK(meets_goal(f.problem.goal, f.model->tick().plant, state));
+}
+
+TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped is gone") {
+    Fixture f;
+    Plan through_the_ground = f.stop_and_go();
+    through_the_ground.reference[1].point.position[1] = -1;
+    f.refiner.take(through_the_ground);
+    CHECK(f.refiner.champion() == nullptr);
+    f.refiner.improve();  // nothing to work on
+    f.refiner.take(f.stop_and_go());
+    REQUIRE(f.refiner.champion() != nullptr);
+    CHECK(f.refiner.wants_plan());
+    f.refiner.take(f.stop_and_go());
+    CHECK_FALSE(f.refiner.wants_plan());
+    const int first = f.refiner.champion_number();
+    f.refiner.drop(first);
+    REQUIRE(f.refiner.champion() != nullptr);
+    CHECK(f.refiner.champion_number() != first);
+    f.refiner.drop(first);  // it is gone already
+    REQUIRE(f.refiner.champion() != nullptr);
+    f.refiner.drop(f.refiner.champion_number());
+    CHECK(f.refiner.champion() == nullptr);
+}

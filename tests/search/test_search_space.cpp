@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "../support/random.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/search_space.hpp"
+
+using namespace downwash;
+
+namespace {
+
+constexpr double pi = 3.141592653589793;
+
+struct Fixture {
+    explicit Fixture(Problem given)
+        : problem(std::move(given)), model(make_flight_model(problem)), space(problem, *model) {}
+
+    Problem problem;
+    std::shared_ptr<const FlightModel> model;
+    planning::SearchSpace space;
+};
+
+Problem with_configuration_goal() {
+    Problem problem = test::ceiling_problem();
+    problem.goal.end_effector.reset();
+    problem.goal.configuration = ConfigurationGoal{2.0, 3.0, std::nullopt, 0.5, 0.1};
+    return problem;
+}
+
+}  // namespace
+
+TEST_CASE("moved into the goal's middle, the tip of the arm is there and the arm keeps its angle") {
+    const Fixture f(test::ceiling_problem());  // the tip to (3, 4.8), an arm of 1.2 m
+    const Configuration up = f.space.moved_into_goal({1, 1, -pi / 2}, 0);
+    CHECK(up.x_m == Approx(3));
+    CHECK(up.z_m == Approx(3.6));
+    CHECK(up.arm_rad == -pi / 2);
+    const Configuration forward = f.space.moved_into_goal({1, 1, 0}, 0);
+    CHECK(forward.x_m == Approx(1.8));
+    CHECK(forward.z_m == Approx(4.8));
+}
+
+TEST_CASE("moved into the goal's tolerance, a configuration stays as near as the tolerance allows") {
+    const Fixture f(with_configuration_goal());  // (2, 3) within 0.5 m, any arm
+    const Configuration c = f.space.moved_into_goal({2, 7, 1.25}, 0.5);
+    CHECK(c.x_m == Approx(2));
+    CHECK(c.z_m == Approx(3.25));
+    CHECK(c.arm_rad == 1.25);
+    const Configuration inside = f.space.moved_into_goal({2.1, 3.1, 1.25}, 0.5);
+    CHECK(inside.x_m == Approx(2.1));
+    CHECK(inside.z_m == Approx(3.1));
+}
+
+TEST_CASE("an arm that turns more than once reaches a direction by the shorter turn") {
+    Problem problem = test::ceiling_problem();
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = -200 * pi / 180;
+    problem.robot.arm.upper_limit_rad = 300 * pi / 180;
+    problem.goal.end_effector->direction_rad = 250 * pi / 180;
+    const Fixture f(problem);
+    const double once = 250 * pi / 180, before = -110 * pi / 180;
+    CHECK(f.space.moved_into_goal({0, 2, 280 * pi / 180}, 0).arm_rad == Approx(once));
+    CHECK(f.space.moved_into_goal({0, 2, -150 * pi / 180}, 0).arm_rad == Approx(before));
+    planning::Random random(1);
+    int high = 0, low = 0;
+    for (int i = 0; i < 200; ++i) {
+        if (const auto c = f.space.sample_goal(random)) {
+            CHECK(f.space.is_inside(*c));
+            ++(c->arm_rad > 0 ? high : low);
+        }
+    }
+    CHECK(high > 20);
+    CHECK(low > 20);
+}
+
+TEST_CASE("the wanted direction of the arm is taken on to within the tolerance") {
+    Problem problem = test::ceiling_problem();
+    problem.goal.end_effector->direction_rad = -pi / 2;
+    problem.goal.end_effector->direction_tolerance_rad = 0.2;
+    const Fixture f(problem);
+    CHECK(f.space.moved_into_goal({0, 2, 0}, 0).arm_rad == Approx(-pi / 2));
+    CHECK(f.space.moved_into_goal({0, 2, 0}, 1).arm_rad == Approx(-pi / 2 + 0.2));
+    CHECK(f.space.moved_into_goal({0, 2, pi}, 1).arm_rad == Approx(-pi / 2 - 0.2));
+    CHECK(f.space.moved_into_goal({0, 2, -1.6}, 1).arm_rad == Approx(-1.6));
+}
+
+TEST_CASE("whatever is moved into the goal meets it") {
+    for (const Problem& problem : {test::ceiling_problem(), with_configuration_goal()}) {
+        const Fixture f(problem);
+        planning::Random random(3);
+        for (int i = 0; i < 200; ++i) {
+            const Configuration c = f.space.sample(random);
+            CHECK(f.space.is_near_goal(f.space.moved_into_goal(c, 0)));
+            CHECK(f.space.is_near_goal(f.space.moved_into_goal(c, usable_tolerance_share)));
+        }
+    }
+}
+
+namespace {
+
+Goal random_goal(planning::Random& random) {
+    const auto some = [&](double low, double high) {
+        return random.chance(0.5) ? std::optional(random.uniform(low, high)) : std::nullopt;
+    };
+    Goal goal;
+    if (random.chance(0.5)) {
+        EndEffectorGoal& tip = goal.end_effector.emplace();
+        tip.x_m = random.uniform(-3, 3);
+        tip.z_m = random.uniform(2, 4);
+        tip.tolerance_m = random.uniform(0.01, 0.5);
+        tip.tolerance_x_m = some(0.01, 1);
+        tip.tolerance_z_m = some(0.01, 1);
+        tip.direction_rad = some(-pi, pi);
+        return goal;
+    }
+    ConfigurationGoal& pose = goal.configuration.emplace();
+    pose.x_m = some(-3, 3);
+    pose.z_m = some(2, 4);
+    pose.arm_rad = pose.x_m || pose.z_m ? some(-pi, pi) : random.uniform(-pi, pi);
+    pose.tolerance_m = random.uniform(0.01, 0.5);
+    pose.tolerance_x_m = pose.x_m ? some(0.01, 1) : std::nullopt;
+    pose.tolerance_z_m = pose.z_m ? some(0.01, 1) : std::nullopt;
+    return goal;
+}
+
+/// The rules of the documentation once more, in other words: within (times a share) the tolerances or not.
+bool lies_within(const Goal& goal, const Configuration& c, double share) {
+    double dx = 0;
+    double dz = 0;
+    double turn = 0;
+    double most_turn = 0;
+    double most = 0;
+    std::optional<double> most_x;
+    std::optional<double> most_z;
+    if (goal.end_effector) {
+        const EndEffectorGoal& tip = *goal.end_effector;
+        dx = c.x_m + 1.2 * std::cos(c.arm_rad) - tip.x_m;
+        dz = c.z_m - 1.2 * std::sin(c.arm_rad) - tip.z_m;
+        turn = tip.direction_rad ? std::remainder(c.arm_rad - *tip.direction_rad, 2 * pi) : 0;
+        most_turn = tip.direction_tolerance_rad;
+        most = tip.tolerance_m;
+        most_x = tip.tolerance_x_m;
+        most_z = tip.tolerance_z_m;
+    } else {
+        const ConfigurationGoal& pose = *goal.configuration;
+        dx = pose.x_m ? c.x_m - *pose.x_m : 0;
+        dz = pose.z_m ? c.z_m - *pose.z_m : 0;
+        turn = pose.arm_rad ? std::remainder(c.arm_rad - *pose.arm_rad, 2 * pi) : 0;
+        most_turn = pose.tolerance_rad;
+        most = pose.tolerance_m;
+        most_x = pose.tolerance_x_m;
+        most_z = pose.tolerance_z_m;
+    }
+    if (std::abs(turn) > share * most_turn) {
+        return false;
+    }
+    if (!most_x && !most_z) {
+        return dx * dx + dz * dz <= share * share * most * most;
+    }
+    return std::abs(dx) <= share * most_x.value_or(most) && std::abs(dz) <= share * most_z.value_or(most);
+}
+
+}  // namespace
+
+TEST_CASE("samples, distances and verdicts agree on where a goal is, whatever its tolerances") {
+    planning::Random random(11);
+    int samples = 0;
+    int near = 0;
+    int met = 0;
+    for (int k = 0; k < 300; ++k) {
+        Problem problem = test::ceiling_problem();
+        std::vector<Goal> goals{random_goal(random)};
+        problem.goal = goals[0];
+        if (random.chance(0.3)) {
+            goals.push_back(random_goal(random));
+            problem.goal = {};
+            problem.goal.any_of = goals;
+        }
+        const Fixture f(problem);
+        const auto is_within = [&](const Configuration& c, double share) {
+            return std::any_of(goals.begin(), goals.end(), [&](const Goal& g) { return lies_within(g, c, share); });
+        };
+        for (int i = 0; i < 10; ++i) {
+            const auto sample = f.space.sample_goal(random);
+            if (!sample) {
+                continue;
+            }
+            ++samples;
+            CHECK(f.space.is_near_goal(*sample));
+            CHECK(is_within(*sample, usable_tolerance_share + 1e-6));
+            CHECK(f.space.goal_distance_m(*sample) == 0);
+            // Beside it the verdicts are those of the documentation, up to the rim.
+            const Configuration beside = f.space.sample_near(*sample, 0.6, random);
+            if (is_within(beside, 0.899) == is_within(beside, 0.901)) {
+                CHECK(f.space.is_near_goal(beside) == is_within(beside, usable_tolerance_share));
+                near += f.space.is_near_goal(beside) ? 1 : 0;
+            }
+            if (is_within(beside, 0.999) == is_within(beside, 1.001)) {
+                CHECK(is_met(f.space.error(beside)) == is_within(beside, 1));
+                met += is_met(f.space.error(beside)) ? 1 : 0;
+            }
+            CHECK((f.space.goal_distance_m(beside) == 0) == f.space.is_near_goal(beside));
+            CHECK(f.space.is_near_goal(f.space.moved_into_goal(beside, usable_tolerance_share)));
+            CHECK(is_within(f.space.moved_into_goal(beside, 0), 1e-6));
+        }
+    }
+    CHECK(samples > 1500);
+    CHECK(near > 200);
+    CHECK(met > near);
+    CHECK(met < samples - 500);
+}
+
+TEST_CASE("samples of several goals come to all of them") {
+    Problem problem = test::ceiling_problem();
+    Goal left = problem.goal;
+    left.end_effector->x_m = -3;
+    problem.goal.any_of = {problem.goal, left};
+    problem.goal.end_effector.reset();
+    const Fixture f(problem);
+    planning::Random random(5);
+    int at_left = 0;
+    for (int i = 0; i < 400; ++i) {
+        const auto sample = f.space.sample_goal(random);
+        REQUIRE(sample);
+        at_left += lies_within(left, *sample, 1) ? 1 : 0;
+        // Beside a place at one goal it stays with that goal.
+        const auto beside = f.space.sample_goal_near(*sample, 0.2, random);
+        CHECK((!beside || lies_within(left, *beside, 1) == lies_within(left, *sample, 1)));
+    }
+    CHECK(at_left > 150);
+    CHECK(at_left < 250);
+}
+
+TEST_CASE("no motion is cheaper than the least that is said of it, however it is divided, nor a way to the goal") {
+    for (const Objective objective : {Objective::energy, Objective::time, Objective::length, Objective::clearance}) {
+        CAPTURE(name_of(objective));
+        for (Problem problem : {test::ceiling_problem(), with_configuration_goal()}) {
+            problem.planner.objective = objective;
+            const Fixture f(problem);
+            const planning::FreeAirCost cost(f.problem, *f.model, f.space);
+            planning::Random random(5);
+            double tightest = 0;
+            for (int i = 0; i < 200; ++i) {
+                const Configuration a = f.space.sample(random);
+                const Configuration b = f.space.sample(random);
+                const Configuration c = f.space.sample(random);
+                const double least = cost.least_of_motion(a, c);
+                CHECK(least <= cost.of_motion(a, c) * (1 + 1e-12));
+                CHECK(least <= (cost.of_motion(a, b) + cost.of_motion(b, c)) * (1 + 1e-12));
+                CHECK(least <= cost.least_of_motion(a, b) + cost.least_of_motion(b, c) + 1e-9);
+                const auto goal = f.space.sample_goal(random);
+                REQUIRE(goal);
+                const double way = cost.of_motion(a, *goal) + cost.of_hold(*goal, problem.goal.hold_s);
+                CHECK(cost.least_to_goal(a) <= way * (1 + 1e-12));
+                tightest = std::max(tightest, cost.least_to_goal(a) / way);
+            }
+            CHECK((objective == Objective::clearance || tightest > 0.5));
+        }
+    }
+}
