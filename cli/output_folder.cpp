@@ -27,8 +27,8 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
     const fs::path trial = path_ / "solution.json";
     try {
         require_writable(trial);
-    } catch (const FileError& error) {
-        throw UsageError(trial.string() + " " + error.what() + "; choose another folder with --out");
+    } catch (const FileError& failed) {
+        throw UsageError(trial.string() + " " + failed.what() + "; choose another folder with --out");
     }
 }
 

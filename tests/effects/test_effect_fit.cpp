@@ -370,7 +370,7 @@ TEST_CASE("Measurements keep all their columns and can be chosen by them") {
 }
 
 TEST_CASE("Measurements that cannot be used are refused with their line") {
-    const auto error = [](const std::string& text) -> std::string {
+    const auto error_of = [](const std::string& text) -> std::string {
         try {
             static_cast<void>(parse_measurements(text, "m.csv"));
         } catch (const InputError& error) {
@@ -378,13 +378,14 @@ TEST_CASE("Measurements that cannot be used are refused with their line") {
         }
         return "none";
     };
-    CHECK(error("z_over_r,ratio\n1,2\n") == "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
-    CHECK(error("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
-    CHECK(error("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
+    CHECK(error_of("z_over_r,ratio\n1,2\n") ==
+          "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
+    CHECK(error_of("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
+    CHECK(error_of("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
           "m.csv:2: z_over_r is '0'; expected a number from 1e-06 to 1000\n"
           "m.csv:3: thrust_ratio is '-1'; expected a number from 0 to 100\n"
           "m.csv:4: z_over_r is 'nan'; expected a number from 1e-06 to 1000");
-    CHECK(error("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
+    CHECK(error_of("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
           "m.csv:4: sigma is '0'; expected a number from 1e-09 to 100");
     CHECK_THROWS_WITH(read_measurements("/nowhere.csv"), "/nowhere.csv: cannot be read: there is no such file");
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "test_files.hpp"
+#include "../support/test_files.hpp"
 
 namespace downwash::test {
 

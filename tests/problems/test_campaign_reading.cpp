@@ -1,5 +1,5 @@
+#include "../support/test_files.hpp"
 #include "downwash/problems/campaign_reader.hpp"
-#include "test_files.hpp"
 
 using namespace downwash;
 using namespace downwash::test;

@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "../support/test_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/solution_file.hpp"
-#include "test_files.hpp"
 
 using downwash::Plan;
 using downwash::Problem;
