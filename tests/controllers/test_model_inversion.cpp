@@ -246,3 +246,26 @@ TEST_CASE("A frozen step keeps all integrals but goes on following the pitch ref
         CHECK(step.frozen.rate_reference == step.integrated.rate_reference);
     }
 }
+
+TEST_CASE("A clipped tilt stops the integrals of x and z, and of nothing else") {
+    const auto robot = offset_robot();
+    const PlantModel model = plant_of(robot);
+    const double q[4] = {0, 2, 0, 0.5};
+    const double u[4] = {0, 0, 0, 0};
+    Memory memory = controllers::rested_controller(0.0);
+    memory.position_integral[0] = 0.2;
+    memory.position_integral[1] = -0.1;
+    const auto integrated = [&](double x_m, double z_m) {
+        return controllers::model_inversion_control(model, robot.controller, q, u, memory, hold(x_m, z_m, 0.8), tick_s)
+            .integrated;
+    };
+    // Sideways beyond the greatest tilt; down faster than it can fall.
+    for (const Memory& clipped : {integrated(100, 1.7), integrated(-100, 1.7), integrated(0.1, -100)}) {
+        CHECK(clipped.position_integral[0] == 0.2);
+        CHECK(clipped.position_integral[1] == -0.1);
+        CHECK(clipped.arm_integral == Approx(0.3 * tick_s));
+    }
+    const Memory within = integrated(0.1, 1.7);
+    CHECK(within.position_integral[0] == Approx(0.2 + 0.1 * tick_s));
+    CHECK(within.position_integral[1] == Approx(-0.1 - 0.3 * tick_s));
+}

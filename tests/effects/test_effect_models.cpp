@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "../support/random.hpp"
 #include "downwash/base/text.hpp"
@@ -216,4 +218,15 @@ TEST_CASE("Models are found by the name that a problem file uses") {
     }
     CHECK(find_effect_model("cheeseman") == nullptr);
     CHECK(find_effect_model("") == nullptr);
+}
+
+TEST_CASE("A table over two distances is read far from the second surface where nothing is said of it") {
+    SurfaceEffect effect(EffectModel::table);
+    effect.table = std::make_shared<const EffectTable>(std::vector{0.5, 1.0}, std::vector{0.0, 2.0},
+                                                       std::vector{1.8, 1.4, 1.3, 1.1});
+    CHECK(formula_factor(effect, 0.5) == 1.4);
+    CHECK(formula_factor(effect, 1) == 1.1);
+    effect.d_over_r = 0;
+    CHECK(formula_factor(effect, 0.5) == 1.8);
+    CHECK(formula_factor(effect, 1) == 1.3);
 }

@@ -63,9 +63,18 @@ TEST_CASE("ROS messages hold the set-points of vehicle and arm at the same times
         const json& time = vehicle[i]["time_from_start"];
         CHECK(arm[i]["time_from_start"] == time);
         CHECK(time["sec"].get<double>() + 1e-9 * time["nanosec"].get<double>() == Approx(expected[i].t_s));
-        CHECK(vehicle[i]["transforms"][0]["translation"]["z"] == expected[i].position_m[2]);
-        CHECK(vehicle[i]["velocities"][0]["linear"]["x"] == expected[i].velocity_m_s[0]);
+        const char* const axes[] = {"x", "y", "z"};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            CHECK(vehicle[i]["transforms"][0]["translation"][axes[axis]] == expected[i].position_m[axis]);
+            CHECK(vehicle[i]["velocities"][0]["linear"][axes[axis]] == expected[i].velocity_m_s[axis]);
+            CHECK(vehicle[i]["accelerations"][0]["linear"][axes[axis]] == expected[i].acceleration_m_s2[axis]);
+            CHECK(vehicle[i]["velocities"][0]["angular"][axes[axis]] == 0);
+            CHECK(vehicle[i]["accelerations"][0]["angular"][axes[axis]] == 0);
+        }
+        CHECK(vehicle[i]["transforms"][0]["rotation"] == json({{"x", 0.}, {"y", 0.}, {"z", 0.}, {"w", 1.}}));
         CHECK(arm[i]["positions"][0] == expected[i].arm_rad);
+        CHECK(arm[i]["velocities"][0] == expected[i].arm_rate_rad_s);
+        CHECK(arm[i]["accelerations"][0] == expected[i].arm_acceleration_rad_s2);
     }
     CHECK(messages["multi_dof_joint_trajectory"]["joint_names"].size() == vehicle[0]["transforms"].size());
 }
@@ -106,6 +115,37 @@ TEST_CASE("a mission holds where the plan does") {
     const json& items = plan["mission"]["items"];
     REQUIRE(items.size() == record().plan->reference.size());
     CHECK(items[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
+}
+
+TEST_CASE("a mission climbs straight up where the plan does, and holds at its start where the plan does") {
+    RunRecord run = record();
+    Plan plan;
+    plan.tick_s = 0.01;
+    const double corners[][2] = {{-4, 2}, {-4, 2}, {-4, 3.5}, {1, 3.5}};
+    const std::int64_t ticks[] = {0, 300, 800, 1800};
+    for (std::size_t i = 0; i < 4; ++i) {
+        ReferenceKnot knot;
+        knot.tick = ticks[i];
+        knot.point.position[0] = corners[i][0];
+        knot.point.position[1] = corners[i][1];
+        plan.reference.push_back(knot);
+    }
+    run.plan = plan;
+    const json mission = json::parse(written("qgc", run, at(47, 8, 0)));
+    const json& items = mission["mission"]["items"];
+    REQUIRE(items.size() == 4);  // take-off, the stop of 3 s above it, the climb, the leg
+    const int commands[] = {22, 16, 16, 16};
+    const double heights_m[] = {2, 2, 3.5, 3.5};
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(items[i]["command"] == commands[i]);
+        CHECK(items[i]["params"][6] == heights_m[i]);
+        CHECK(items[i]["doJumpId"] == i + 1);
+    }
+    CHECK(items[0]["params"][0] == 0);
+    CHECK(items[1]["params"][0].get<double>() == Approx(3));
+    CHECK(items[2]["params"][0] == 0);
+    CHECK(items[2]["params"][4] == items[0]["params"][4]);
+    CHECK(items[3]["params"][4] != items[0]["params"][4]);
 }
 
 TEST_CASE("a mission without a sound origin is refused") {

@@ -1,5 +1,6 @@
 #include "downwash/report/run_figures.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -60,6 +61,26 @@ TEST_CASE("plots over time say what they show, with units") {
                              "power [W]", "time [s]", "rotor 1, 2"}) {
         CAPTURE(part);
         CHECK(holds(texts, part));
+    }
+}
+
+TEST_CASE("the tracking error is the distance of the multirotor from its reference, in x and in z") {
+    RunRecord run = record();
+    const auto column = [&run](const char* name) -> std::vector<double>& {
+        const auto found = std::find(run.flight.names.begin(), run.flight.names.end(), name);
+        REQUIRE(found != run.flight.names.end());
+        return run.flight.columns[static_cast<std::size_t>(found - run.flight.names.begin())];
+    };
+    const std::size_t rows = run.flight.rows();
+    column("x_m").assign(rows, 1.0);
+    column("z_m").assign(rows, 2.0);
+    column("ref_x_m").assign(rows, 1.3);
+    column("ref_z_m").assign(rows, 1.6);
+    const CurveFigure figure = time_figures(run).front();
+    REQUIRE(figure.curves.size() == 1);
+    REQUIRE(!figure.curves[0].points.empty());
+    for (const DiagramPoint& point : figure.curves[0].points) {
+        REQUIRE(point.y == Approx(0.5));  // of 0.3 and 0.4
     }
 }
 

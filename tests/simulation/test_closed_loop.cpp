@@ -364,3 +364,31 @@ TEST_CASE("hover holds with rotor lag up to 30 ms, whatever the arm's direction"
         }
     }
 }
+
+TEST_CASE("The joint torque balances the thrust that lagging rotors give in the middle of the tick") {
+    // Both bodies at rest, the joint at the multirotor's centre of mass, the arm at its reference: Newton and Euler for
+    // an arm that is to keep its angle to the multirotor while thrust F and pitch torque T turn and lift them.
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = 0.04;
+    const simulation::TickModel model = model_of(robot);
+    const double arm_rad = 0.4;
+    State state = resting_at(0, 2, arm_rad);
+    state.plant.thrust_n[0] *= 0.5;  // far from what will be commanded
+    state.plant.thrust_n[3] *= 0.7;
+    Record record{};
+    static_cast<void>(simulation::tick(model, state, hold(0, 2, arm_rad), FreeAir{}, record));
+    double thrust_n = 0;
+    double pitch_torque_nm = 0;
+    for (int i = 0; i < 4; ++i) {
+        // One implicit step of half a tick, 5 ms, towards the command: 5 / (5 + 40) of the way.
+        const double reached_n =
+            state.plant.thrust_n[i] + (record.command.thrust_n[i] - state.plant.thrust_n[i]) * 5 / 45;
+        thrust_n += reached_n;
+        pitch_torque_nm -= robot.rotors.positions_m[static_cast<std::size_t>(i)][0] * reached_n;
+    }
+    const double reduced_mass_kg = 4.5 * 0.45 / 4.95;
+    const double inertia_kg_m2 = 0.06 + reduced_mass_kg * 0.72 * 0.72;
+    const double lift_nm = -0.45 * 0.72 * std::cos(arm_rad) * thrust_n / 4.95;
+    const double expected_nm = (inertia_kg_m2 * pitch_torque_nm / 0.20 + lift_nm) / (1 + inertia_kg_m2 / 0.20);
+    CHECK(record.command.joint_torque_nm == Approx(expected_nm).epsilon(1e-9));
+}

@@ -179,3 +179,20 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
     const std::vector<ReferenceKnot> twice{{0, start}, {400, middle}, {600, middle}, {800, middle}, {1200, end}};
     CHECK(flown_by(twice, {stop, stop, problem.goal}).outcome == Outcome::ok);
 }
+
+TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for the last second") {
+    Problem problem = test::with_place(-3, 2);  // from (-4, 2)
+    problem.goal.configuration->tolerance_m = 0.05;
+    const std::vector<ReferenceKnot> quick = from_start(problem, rest(-3, 2, problem.start.arm_rad), 200);
+    const auto error_m = [](const FlightRow& row) { return std::hypot(row.q[0] + 3, row.q[1] - 2); };
+    problem.goal.hold_s = 0.5;
+    const Execution early = flown(problem, quick);
+    REQUIRE(error_m(early.rows.back()) < 0.05);
+    REQUIRE(std::hypot(early.rows.back().u[0], early.rows.back().u[1]) < 0.1);
+    REQUIRE(error_m(early.rows[early.rows.size() - 1 - 95]) > 0.05);
+    CHECK(early.outcome == Outcome::goal_missed);
+    CHECK_FALSE(early.goals[0].is_met);
+    CHECK(early.goal_error_m > 0.05);
+    problem.goal.hold_s = 4;
+    CHECK(flown(problem, quick).outcome == Outcome::ok);
+}
