@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <vector>
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
@@ -47,6 +48,9 @@ struct Fixture {
     planning::PlannedFlights flights;
     planning::FlightTree tree;
 };
+
+/// The vehicle 1.2 m below the goal of the ceiling problem, its arm upright.
+constexpr Configuration below_the_goal{3, 3.6, -1.5707963267948966};
 
 bool same_bytes(const FlightState& a, const FlightState& b) {
     return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
@@ -195,4 +199,73 @@ TEST_CASE("goal samples meet the goal with the arm on either side") {
     CHECK(exact > found / 4);
     CHECK(left);
     CHECK(right);
+}
+
+TEST_CASE("a parent that an earlier rewiring has moved is flown from anew, or not at all") {
+    Fixture f;
+    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
+    REQUIRE(detour != nullptr);
+    FlightNode* parent = f.fly(*detour, {-1, 2.5, 1});
+    FlightNode* longer_detour = f.fly(*detour, {-5, 1, 3});
+    REQUIRE(parent != nullptr);
+    REQUIRE(longer_detour != nullptr);
+    FlightNode* node = f.fly(*longer_detour, {1, 2, 1});
+    REQUIRE(node != nullptr);
+    // The second is flown from the parent's old state, and the first moves the parent.
+    const planning::FlightTree::Rewiring both[] = {{parent, &f.tree.root()}, {node, parent}};
+    CHECK(f.tree.rewire(both) >= 1);
+    CHECK(parent->parent == &f.tree.root());
+    for (const FlightNode* n : f.tree.nodes()) {
+        CHECK_NOTHROW(f.verify(*n));
+    }
+    CHECK((node->parent == parent || f.rewire(*node, *parent)));
+    CHECK_NOTHROW(f.verify(*node));
+}
+
+TEST_CASE("a discarded hold that is rewired has a new chance") {
+    Fixture f;
+    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
+    REQUIRE(detour != nullptr);
+    FlightNode* node = f.fly(*detour, {1, 2.5, 0});
+    REQUIRE(node != nullptr);
+    FlightNode* arrival = f.fly(*node, below_the_goal);
+    REQUIRE(arrival != nullptr);
+    FlightNode* hold = f.hold(*arrival);
+    REQUIRE(hold != nullptr);
+    hold->is_discarded = true;
+    const double cost = hold->cost;
+    REQUIRE(f.rewire(*node, f.tree.root()));
+    CHECK_FALSE(hold->is_discarded);
+    CHECK(hold->cost < cost);
+    CHECK_NOTHROW(f.verify(*hold));
+}
+
+TEST_CASE("a rewiring that fails in a descendant leaves every field as it was") {
+    Fixture f;
+    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
+    REQUIRE(detour != nullptr);
+    FlightNode* node = f.fly(*detour, {1, 2.5, 0});
+    REQUIRE(node != nullptr);
+    FlightNode* arrival = f.fly(*node, below_the_goal);
+    REQUIRE(arrival != nullptr);
+    FlightNode* hold = f.hold(*arrival);
+    FlightNode* last = f.fly(*arrival, {3, 2, 0});
+    REQUIRE(hold != nullptr);
+    REQUIRE(last != nullptr);
+    hold->is_discarded = true;
+    last->cost = 0;  // no flight can cost less, so the rewiring ends here when all before it has been flown again
+    const FlightNode* const nodes[] = {detour, node, arrival, hold, last};
+    const std::vector<FlightNode> before{*detour, *node, *arrival, *hold, *last};
+    CHECK_FALSE(f.rewire(*node, f.tree.root()));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        INFO("node " << i);
+        CHECK(same_bytes(nodes[i]->state, before[i].state));
+        CHECK(nodes[i]->cost == before[i].cost);
+        CHECK(nodes[i]->ticks == before[i].ticks);
+        CHECK(nodes[i]->ticks_from_start == before[i].ticks_from_start);
+        CHECK(nodes[i]->is_discarded == before[i].is_discarded);
+        CHECK(nodes[i]->parent == before[i].parent);
+        CHECK(nodes[i]->children == before[i].children);
+    }
+    CHECK_NOTHROW(f.verify(*hold));
 }

@@ -152,3 +152,18 @@ TEST_CASE("the tree can be read as OMPL's planner data") {
     CHECK(data.numEdges() == search.tree.size() - 1);
     CHECK(data.numStartVertices() == 1);
 }
+
+TEST_CASE("where nothing is in the way every flight begins at the start") {
+    // Every edge ends at rest, so that a stop on a straight way costs time and energy: where no obstacle or surface
+    // asks for a detour the start is the best parent of every node, but for flights that a bound stops.
+    Problem open = test::ceiling_problem();
+    open.obstacles.clear();
+    const Search search(
+        300, [](const planning::Candidate&) { return true; }, [] { return false; }, 1, open);
+    const auto& nodes = search.tree.nodes();
+    const auto from_start = std::count_if(nodes.begin(), nodes.end(), [&](const planning::FlightNode* node) {
+        return node->parent == nodes.front() || node == nodes.front();
+    });
+    REQUIRE(nodes.size() > 30);
+    CHECK(10 * from_start >= static_cast<std::ptrdiff_t>(9 * nodes.size()));
+}

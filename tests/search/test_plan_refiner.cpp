@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -12,11 +13,13 @@ namespace {
 
 /// The ceiling problem and a plan for it that stops at every corner of a detour.
 struct Fixture {
+    explicit Fixture(std::uint32_t seed = 4) : random(seed) {}
+
     Problem problem = test::ceiling_problem();
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
     planning::SearchSpace space{problem, *model};
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
-    planning::Random random{4};
+    planning::Random random;
     planning::PlannedFlights flights{problem, *model, space, map.get()};
     planning::PlanRefiner refiner{problem, space, flights, random};
 
@@ -99,4 +102,28 @@ TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped
     REQUIRE(f.refiner.champion() != nullptr);
     f.refiner.drop(f.refiner.champion_number());
     CHECK(f.refiner.champion() == nullptr);
+}
+
+TEST_CASE("every segment of a refined plan keeps the limits, however the number of corners changes") {
+    std::size_t least_corners = 100;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        Fixture f(seed);
+        f.refiner.take(f.stop_and_go());
+        REQUIRE(f.refiner.champion() != nullptr);
+        for (int wave = 0; wave < 60; ++wave) {
+            f.refiner.improve();
+            const planning::FlownPlan& plan = *f.refiner.champion();
+            REQUIRE(plan.points.size() == plan.ticks.size() + 1);
+            for (std::size_t i = 0; i < plan.ticks.size(); ++i) {
+                INFO("seed " << seed << ", wave " << wave << ", segment " << i);
+                const ReferenceSegment segment(plan.points[i], plan.points[i + 1], plan.ticks[i],
+                                               f.model->tick().tick_s);
+                REQUIRE(keeps_limits(segment, f.flights.limits()));
+                // Nor does it dawdle: each segment is as short as one between its ends can be.
+                REQUIRE(plan.ticks[i] == f.flights.fastest_segment(plan.points[i], plan.points[i + 1]).ticks());
+            }
+            least_corners = std::min(least_corners, plan.points.size());
+        }
+    }
+    CHECK(least_corners < 4);  // which the plan began with
 }
