@@ -95,7 +95,7 @@ while IFS= read -r line; do
         ,'| `mp-arm'*'` | '*' J'*)
             row=${line#"| "}
             IFS='|' read -r name first planned executed code <<<"${row//" | "/|}"
-            code=${code%" |"}
+            code=${code%% *}
             variant "${name//\`/}" "$first" "$planned" "$executed" "$code"
             ;;
     esac
