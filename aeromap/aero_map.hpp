@@ -39,9 +39,9 @@ inline constexpr double most_map_cells = 16777216;
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
 /// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
-/// flyable area (model 4.5); neighbours of equal values share them. A cell is `grid_m` wide, or a whole part of it that
-/// is at most 0.45 R and fine enough for 512 steps of refinement to resolve the models. Values are kept as float
-/// (relative error 2^-24). Immutable after construction.
+/// flyable area (docs/model.md 4.5); neighbours of equal values share them. A cell is `grid_m` wide, or a whole part of
+/// it that is at most 0.45 R and fine enough for 512 steps of refinement to resolve the models. Values are kept as
+/// float (relative error 2^-24). Immutable after construction.
 ///
 /// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.016 K over R / 25600
 /// (a max_factor far above 3 with a min_distance_radii near the model's pole) may exceed the 0.01 right at the surface.

@@ -13,7 +13,7 @@ class CurveMean;
 class Footprints;
 
 /// The exact surface effect on one rotor at any point of the world: the reference that a map interpolates and that the
-/// flight of a reported plan is flown with. The disc is level and rays are vertical (model 4.1). Immutable.
+/// flight of a reported plan is flown with. The disc is level and rays are vertical (docs/model.md 4.1). Immutable.
 class DOWNWASH_EXPORT DirectEffect {
  public:
     /// The effect on a rotor.
@@ -23,7 +23,7 @@ class DOWNWASH_EXPORT DirectEffect {
                  const RotorNeighbours& neighbours = {});
 
     /// The fountain's push on a vehicle's body at its centre between the rotors: 1 + (K_whole - K_images), averaged
-    /// over the disc through the rotors' axes (model 4.3). Defined everywhere, so that everything is flyable.
+    /// over the disc through the rotors' axes (docs/model.md 4.3). Defined everywhere, so that everything is flyable.
     /// @param neighbours of any of its rotors   @pre settings.ground.model is multirotor_body
     [[nodiscard]] static DirectEffect fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                                double rotor_radius_m, const RotorNeighbours& neighbours);
@@ -32,7 +32,7 @@ class DOWNWASH_EXPORT DirectEffect {
     struct Factors {
         double ground = 1;   ///< surfaces below; 1 + disc average of k - 1
         double ceiling = 1;  ///< surfaces above
-        double total = 1;    ///< 1 + (ground - 1) + (ceiling - 1), capped at max_factor (model 4.2)
+        double total = 1;    ///< 1 + (ground - 1) + (ceiling - 1), capped at max_factor (docs/model.md 4.2)
     };
 
     /// Factors at the world position of a rotor hub; 1 for a position that is not finite. A point of the disc inside an
@@ -47,9 +47,9 @@ class DOWNWASH_EXPORT DirectEffect {
     /// K, the factor on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
-    /// Whether the level disc keeps min_distance_radii * R from every obstacle (model 4.4), and a given map reaches
-    /// here and does not say otherwise (FactorGrid::is_flyable). With the effects disabled every finite position is
-    /// flyable.
+    /// Whether the level disc keeps min_distance_radii * R from every obstacle (docs/model.md 4.4), and a given map
+    /// reaches here and does not say otherwise (FactorGrid::is_flyable). With the effects disabled every finite
+    /// position is flyable.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
 
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }

@@ -22,8 +22,8 @@ inline constexpr std::size_t most_volume_boxes = 8388608;
 ///
 /// The block is a regular grid of cells at most 0.45 R wide. A cell is halved across x, lateral or z, and its halves
 /// again, until in every box the triquadratic interpolation between 27 values stays within 0.01 of the direct
-/// evaluation everywhere in the flyable area (model 4.5). Boxes that are forbidden throughout, or where K cannot differ
-/// by more than 0.006 from 1, count as 1. Coefficients are kept as float. Immutable after construction.
+/// evaluation everywhere in the flyable area (docs/model.md 4.5). Boxes that are forbidden throughout, or where K
+/// cannot differ by more than 0.006 from 1, count as 1. Coefficients are kept as float. Immutable after construction.
 ///
 /// Limits: an edge is halved at most 7 times, to R / 284. Where K jumps or rises more than 0.01 within that, inside the
 /// flyable area, the bound does not hold: right beside obstacles under a min_distance_radii of 0, or as said of

@@ -2,7 +2,7 @@
 
 namespace downwash {
 
-/// Gains of the model-inversion controllers (thesis figure C.2; model: v = acc_ref + kd e' + kp e + ki integral e).
+/// Gains of the model-inversion controllers (docs/model.md 5): v = acc_ref + kd e' + kp e + ki integral e.
 struct ControllerGains {
     double rate_hz = 100;  ///< control ticks per second; a command is held over one tick
 

@@ -4,8 +4,9 @@
 #include "downwash/controllers/gains.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 
-// Model-inversion PID of the multirotor and the arm (model 5.1 and 5.2; thesis figure C.2), one template over the lane
-// type. A control step is a pure function: what the controller remembers is a plain value beside the plant's state.
+// Model-inversion PID of the multirotor and the arm (docs/model.md 5.1, 5.2; thesis figure C.2), one template over the
+// lane type. A control step is a pure function: what the controller remembers is a plain value beside the plant's
+// state.
 
 namespace downwash::controllers {
 
@@ -49,9 +50,9 @@ struct ControlStep {
 };
 
 /// D7^-1: the joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give.
-/// Where they give what was demanded this is row 4 with the accelerations of the inversion (model 5.2). Where they lag
-/// or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the
-/// vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
+/// Where they give what was demanded this is row 4 with the accelerations of the inversion (docs/model.md 5.2). Where
+/// they lag or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip
+/// the vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
 template <class T>
 T joint_torque(const PlantModel& model, const dynamics::Motion<T>& motion, T arm_acceleration, T thrust_n,
                T pitch_torque_nm) {

@@ -49,7 +49,7 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
 }
 
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
-/// centre between them (model 4.3).
+/// centre between them (docs/model.md 4.3).
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body()
 template <class T, class Factor>
 RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
@@ -81,7 +81,7 @@ RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m
     return wrench;
 }
 
-/// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (thesis 4.2, 4.4 at constant PWM).
+/// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (docs/model.md 3; thesis (4.2)).
 template <class T>
 T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
     T sum(0);

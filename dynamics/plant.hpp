@@ -37,7 +37,7 @@ struct RotorParameters {
     double min_thrust_n = 0;              ///< least command, >= 0
     double max_thrust_n = 0;              ///< greatest command, > min
     double time_constant_s = 0;           ///< of the first-order thrust lag; 0 switches the lag off
-    double power_coefficient_w_n1p5 = 0;  ///< P = coefficient * thrust^1.5 (thesis 4.2, 4.4), > 0
+    double power_coefficient_w_n1p5 = 0;  ///< P = coefficient * thrust^1.5 (docs/model.md 3), > 0
 };
 
 }  // namespace downwash

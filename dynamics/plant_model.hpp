@@ -41,7 +41,8 @@ struct PlantModel {
                                                           const ArmParameters& arm, const RotorParameters& rotors,
                                                           bool has_fountain = false);
 
-/// Whether the rotor positions let total thrust and pitch torque be commanded apart (rank 2 of model 3's allocation).
+/// Whether the rotor positions let total thrust and pitch torque be commanded apart (rank 2 of the allocation of
+/// docs/model.md 3).
 [[nodiscard]] DOWNWASH_EXPORT bool allocation_has_full_rank(const RotorParameters& rotors);
 
 }  // namespace downwash

@@ -3,8 +3,8 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 
-// The two rigid bodies of the manipulator in closed form (model 2; thesis C.1, A.6), one template over the lane type.
-// Coordinates q = (x, z, pitch, arm) [m, m, rad, rad], speeds u = dq/dt; M du/dt + c = Q.
+// The two rigid bodies of the manipulator in closed form (docs/model.md 2; thesis C.1, A.6), one template over the lane
+// type. Coordinates q = (x, z, pitch, arm) [m, m, rad, rad], speeds u = dq/dt; M du/dt + c = Q.
 
 namespace downwash::dynamics {
 

@@ -13,8 +13,8 @@
 namespace downwash {
 
 /// Measured or computed K of a wide flat surface over zeta = z/R, or over (zeta, d/R) with a second distance d. What
-/// has no formula enters this way: tilted rotors, ground beside a wall, fountains under tandem rotors (model E7). K
-/// below one is possible. Immutable and safe to share.
+/// has no formula enters this way: tilted rotors, ground beside a wall, fountains under tandem rotors
+/// (docs/model.md 4.6). K below one is possible. Immutable and safe to share.
 ///
 /// Between the nodes K is interpolated by monotone cubics (PCHIP), along d first, then along zeta: continuous, with
 /// a continuous slope, and never outside the range of the surrounding nodes. Nearer than the first zeta the first value

@@ -12,8 +12,8 @@ namespace downwash {
 
 class EffectTable;
 
-/// A model of how a flat, wide surface changes the thrust of a rotor at distance z = zeta * R, at constant PWM. What
-/// each is, where it comes from and where it holds says info() in effect_models.hpp.
+/// A model of how a flat, wide surface changes the thrust of a rotor at distance z = zeta * R, at constant command.
+/// info() in effect_models.hpp says what each model is, where it comes from and where it holds.
 enum class EffectModel {
     none,
     cheeseman_bennett,

@@ -226,7 +226,7 @@ std::vector<KeyError> start_in_collision(const Problem& p) {
                           to_text(p.planner.safety_margin_m) + remedy}};
 }
 
-/// World position of a rotor's hub (model 1: body axes b1 = (cos p, -sin p), b3 = (sin p, cos p)).
+/// World position of a rotor's hub (docs/model.md 1: body axes b1 = (cos p, -sin p), b3 = (sin p, cos p)).
 Vector3 hub_m(const Problem& p, const Vector3& in_body_m) {
     const double c = std::cos(p.start.pitch_rad);
     const double s = std::sin(p.start.pitch_rad);

@@ -9,7 +9,8 @@
 namespace downwash {
 
 /// Where the robot's bodies are: planar position of the multirotor's centre of mass [m], pitch and arm angle relative
-/// to the multirotor [rad] (model: pitch positive nose down, arm direction (cos a, -sin a) with a = pitch + arm).
+/// to the multirotor [rad] (docs/model.md 1: pitch positive nose down, arm direction (cos a, -sin a) with a = pitch +
+/// arm).
 struct PlanarPose {
     double x_m = 0;
     double z_m = 0;

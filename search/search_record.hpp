@@ -32,7 +32,7 @@ struct Improvement {
 /// nearest to an obstacle or, if that is not why, ended.
 struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
-    Configuration at;                 ///< where it was refused
+    Configuration at;            ///< where it was refused
     double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
 };
 

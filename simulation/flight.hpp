@@ -15,7 +15,7 @@ namespace downwash {
 enum class Rejection : std::uint8_t {
     none,
     collision,     ///< nearer to an obstacle than allowed
-    flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (model 4.4)
+    flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (docs/model.md 4.4)
     saturation,    ///< a rotor or the joint was asked for more than it has
     tracking,      ///< the vehicle or the arm strayed too far from its reference
     unstable,      ///< tumbling, or numbers that are not finite

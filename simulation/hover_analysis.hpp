@@ -11,7 +11,7 @@ namespace downwash {
 
 /// Whether a vehicle can hover at a point.
 enum class HoldVerdict : std::uint8_t {
-    not_flyable,     ///< a rotor disc nearer to an obstacle than the effects are known (model 4.4)
+    not_flyable,     ///< a rotor disc nearer to an obstacle than the effects are known (docs/model.md 4.4)
     in_collision,    ///< touches an obstacle
     no_equilibrium,  ///< no reference makes the controller ask for what balances weight and surfaces
     unstable,        ///< balanced, but the smallest disturbance grows

@@ -17,7 +17,7 @@ struct VehicleEffect {
 /// flyable it is of no use.
 [[nodiscard]] DOWNWASH_EXPORT VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose);
 
-/// Whether every rotor of a vehicle at this pose is inside the flyable area (model 4.4), decided exactly.
+/// Whether every rotor of a vehicle at this pose is inside the flyable area (docs/model.md 4.4), decided exactly.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const PlanarPose& pose);
 
 }  // namespace downwash

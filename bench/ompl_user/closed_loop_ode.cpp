@@ -12,7 +12,7 @@ struct Bodies {
     Eigen::Vector4d bias;
 };
 
-/// Mass matrix and bias of the two bodies (model 2).
+/// Mass matrix and bias of the two bodies (docs/model.md 2).
 Bodies bodies(const PlantModel& p, const double q[4], const double u[4]) {
     const Eigen::Vector2d r(std::cos(q[2]) * p.joint_x_m + std::sin(q[2]) * p.joint_z_m,
                             -std::sin(q[2]) * p.joint_x_m + std::cos(q[2]) * p.joint_z_m);
@@ -53,7 +53,7 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     const double* u = &s[vx];
     const Bodies b = bodies(p, q, u);
 
-    // Position and arm (model 5.1, 5.2): the accelerations to impose.
+    // Position and arm (docs/model.md 5.1, 5.2): the accelerations to impose.
     const double error[3] = {s[reference_x] - q[0], s[reference_z] - q[1], s[reference_arm] - q[3]};
     Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
     for (int i = 0; i < 2; ++i) {
@@ -80,7 +80,7 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     wanted.head<2>() = given / p.total_mass_kg;
     const Eigen::Vector4d demand = b.mass * wanted + b.bias;
 
-    // Rotors, their limits, and surfaces near them (model 3).
+    // Rotors, their limits, and surfaces near them (docs/model.md 3).
     double acting_thrust = 0;
     double acting_torque = 0;
     double power = 0;

@@ -7,8 +7,8 @@
 namespace downwash::bench {
 
 /// The closed loop as a user of OMPL's ODESolver writes it down: one right-hand side with plant and controller,
-/// matrices by Eigen, an LDLT solve in every stage. Equations, gains and limits are those of our tick (model 2, 3, 5);
-/// the controller runs in continuous time, and the reference moves at the velocity that is the control.
+/// matrices by Eigen, an LDLT solve in every stage. Equations, gains and limits are those of our tick (docs/model.md 2,
+/// 3, 5); the controller runs in continuous time, and the reference moves at the velocity that is the control.
 class ClosedLoopOde {
  public:
     /// What a state consists of; SI units.

@@ -141,7 +141,7 @@ TEST_CASE("a vehicle cannot be sent into an obstacle, and the refusal is counted
 }
 
 TEST_CASE("hovering right under a wide ceiling is found out by flying, hold included") {
-    // The surface acts as a negative stiffness that the position loop cannot hold against (model 5.2).
+    // The surface acts as a negative stiffness that the position loop cannot hold against (docs/model.md 5.3).
     Fixture f;
     const double under_the_ceiling_m = 5 - 0.06 - 0.15;  // rotors 0.15 m below it
     FlightNode* node = f.fly(f.tree.root(), {-3, under_the_ceiling_m, 1.5});
