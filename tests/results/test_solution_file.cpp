@@ -113,6 +113,18 @@ TEST_CASE("The weights of a sum are written and read back") {
     CHECK(read(text).objective == solution.objective);
 }
 
+TEST_CASE("The cost of the flight is written, not that of the plan") {
+    Solution solution = sample();
+    solution.execution.emplace();
+    solution.execution->energy_j = 1234.5;
+    solution.execution_cost = 2345.25;
+    const std::string text = solution_json(solution, {"open_air", "open_air.yaml", ""});
+    const std::string flight = text.substr(text.find("\"execution\""));
+    CHECK(flight.find("\"energy_j\": 1234.5,") != std::string::npos);
+    CHECK(flight.find("\"cost\": 2345.25,") != std::string::npos);
+    CHECK(text.substr(0, text.size() - flight.size()).find("\"cost\": 142.857142857142") != std::string::npos);
+}
+
 TEST_CASE("What is not finite is written as null") {
     Solution solution = sample();
     solution.execution.emplace();
