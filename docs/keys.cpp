@@ -22,16 +22,15 @@ void print_table(FileKind kind) {
 int main() {
     fmt::print(
         "# Keys of problem, robot and campaign files\n\n"
-        "Printed from the tables that read them (`cmake --build build --target docs`). Angles are degrees in files. "
-        "`[]` stands for\nthe elements of a list. A robot may stand inline or in a file of its own with "
-        "`schema: downwash/robot/v1`.\n\n"
-        "`downwash explain KEY` says the same of one key; `downwash check --schema problem` (or robot, campaign) "
-        "prints a JSON "
-        "Schema,\nby which editors complete and check these files.\n\n");
+        "This page lists every key that you can write in a file, with its range and default. `downwash explain KEY` "
+        "prints the same for\none key. `downwash check --schema problem` (or robot, campaign) prints a JSON Schema, "
+        "with which editors complete and check files.\n\n"
+        "Angles in files are in degrees. `[]` stands for the elements of a list. A robot may be inline or in its own "
+        "file with\n`schema: downwash/robot/v1`. `cmake --build build --target docs` prints this page from the tables "
+        "that read the files.\n\n");
     print_table(FileKind::problem);
     fmt::print(
-        "\n## Campaigns\n\nWhat `downwash bench run` reads ([benchmarking.md](benchmarking.md)). Limits stand for "
-        "those of "
-        "the problem files.\n\n");
+        "\n## Campaigns\n\n`downwash bench run` reads these keys ([benchmarking.md](benchmarking.md)). Limits replace "
+        "those of the problem files.\n\n");
     print_table(FileKind::campaign);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws every figure of README.md and docs/*.md anew, and writes the tables between the marks in aeromap.md.
+# Draws every figure of README.md and docs/*.md, and writes the tables between the marks in aeromap.md.
 # Usage: docs/figures/make.sh [downwash]   (./dev figures builds the program first)
 set -euo pipefail
 
@@ -41,12 +41,12 @@ plot concepts_factor.svg --model cheeseman-bennett sanchez-cuevas --z-over-r 0.2
 plot concepts_map.svg "$work/my_problem.yaml" --width 900
 plot concepts_hold.svg "$work/my_problem.yaml" --what hold --arm-deg 0 --width 900
 
-# Runs: what geometry alone and dynamics alone plan, and what the aware planner does.
+# Runs of the three variants.
 run() { # VARIANT ITERATIONS EXIT-CODE: the picture of a flight, left in the folder work/run too
     local code=0
     "$downwash" solve "$bridge" --variant "$1" --max-iterations "$2" --quiet --out "$work/run" >/dev/null || code=$?
     if [[ $code != "$3" ]]; then
-        echo "make.sh: $1 ended with $code instead of $3: README.md and concepts.md would not say the truth of it" >&2
+        echo "make.sh: $1 ended with $code instead of $3, so the captions in README.md and concepts.md would be wrong" >&2
         exit 1
     fi
     "$downwash" report "$work/run" --svg --width 900 >/dev/null
@@ -57,7 +57,7 @@ run mp-arm-da 3000 3
 cp "$work/run/plots.svg" plots_mp_arm_da.svg
 run mp-arm-ada 3000 0
 
-# Tables: what stands between <!-- NAME --> and <!-- /NAME --> in the page is replaced.
+# Tables: replaces the text between <!-- NAME --> and <!-- /NAME --> in the page.
 replace() { # NAME, new text on standard input
     local text page
     text=$(mktemp)
