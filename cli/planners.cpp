@@ -21,14 +21,29 @@ nlohmann::ordered_json variants_of(const AlgorithmInfo& algorithm) {
     return names;
 }
 
+/// Calls visit(parameter, variants) for every parameter of an algorithm.
+template <class Visit>
+void for_each_parameter(const AlgorithmInfo& algorithm, const Visit& visit) {
+    for (const AlgorithmParameter& parameter : algorithm.line_parameters) {
+        visit(parameter, nlohmann::ordered_json{name_of(Variant::mp_arm)});
+    }
+    for (const AlgorithmParameter& parameter : algorithm.flight_parameters) {
+        visit(parameter, nlohmann::ordered_json{name_of(Variant::mp_arm_da), name_of(Variant::mp_arm_ada)});
+    }
+}
+
 void print_json() {
     auto list = nlohmann::ordered_json::array();
     for (const AlgorithmInfo& algorithm : algorithms()) {
         auto parameters = nlohmann::ordered_json::array();
-        for (const AlgorithmParameter& parameter : algorithm.parameters) {
-            parameters.push_back(
-                {{"name", parameter.name}, {"value", parameter.value}, {"description", parameter.description}});
-        }
+        for_each_parameter(algorithm, [&parameters](const AlgorithmParameter& parameter, const auto& variants) {
+            parameters.push_back({{"name", parameter.name},
+                                  {"value", parameter.value},
+                                  {"low", parameter.low},
+                                  {"high", parameter.high},
+                                  {"variants", variants},
+                                  {"description", parameter.description}});
+        });
         list.push_back({{"name", algorithm.name},
                         {"kind", algorithm.kind},
                         {"variants", variants_of(algorithm)},
@@ -42,14 +57,12 @@ void print_table() {
     for (const AlgorithmInfo& algorithm : algorithms()) {
         fmt::print("{}\n  kind        {}\n  about       {}\n  parameters  ", algorithm.name, algorithm.kind,
                    algorithm.description);
-        if (algorithm.parameters.empty()) {
-            fmt::print("none of its own\n");
-        }
         std::string_view indent;
-        for (const AlgorithmParameter& parameter : algorithm.parameters) {
-            fmt::print("{}{} {}: {}\n", indent, parameter.name, parameter.value, parameter.description);
+        for_each_parameter(algorithm, [&indent](const AlgorithmParameter& parameter, const auto& variants) {
+            fmt::print("{}{} {} ({} to {}{}): {}\n", indent, parameter.name, parameter.value, parameter.low,
+                       parameter.high, variants.size() == 1 ? ", mp-arm" : "", parameter.description);
             indent = "              ";
-        }
+        });
     }
 }
 

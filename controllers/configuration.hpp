@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "downwash/controllers/reference_point.hpp"
 
 namespace downwash {
@@ -21,6 +23,13 @@ struct Configuration {
     point.position[1] = configuration.z_m;
     point.position[2] = configuration.arm_rad;
     return point;
+}
+
+/// Whether nothing moves: neither speed nor acceleration.
+[[nodiscard]] inline bool is_at_rest(const ReferencePoint& point) noexcept {
+    ReferencePoint still;
+    std::copy_n(point.position, 3, still.position);
+    return point == still;
 }
 
 /// Where a reference is.

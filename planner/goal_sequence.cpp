@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/flight.hpp"
 
 namespace downwash::planning {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "downwash/planner/solution.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/problem.hpp"
 
 namespace downwash::planning {

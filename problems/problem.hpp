@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,6 +61,8 @@ struct PlannerSettings {
     std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
     std::uint32_t seed = 1;
     double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
+    /// Parameters of the algorithm that differ from their defaults, by the names that algorithms() lists.
+    std::map<std::string, double, std::less<>> parameters;
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.

@@ -279,7 +279,18 @@ std::vector<KeyError> algorithm_of_another_variant(const Problem& p) {
                                       hint}};
 }
 
-const std::array<Check<Problem>, 16> checks{{
+std::vector<KeyError> split_whole_numbers(const Problem& p) {
+    std::vector<KeyError> errors;
+    for (const auto& [name, value] : p.planner.parameters) {
+        const AlgorithmParameter* parameter = algorithm_parameter(p.planner, name);
+        if (parameter != nullptr && parameter->is_whole && value != std::floor(value)) {
+            errors.push_back({"planner.parameters." + name, "is " + to_text(value) + ": expected a whole number"});
+        }
+    }
+    return errors;
+}
+
+const std::array<Check<Problem>, 17> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -298,6 +309,7 @@ const std::array<Check<Problem>, 16> checks{{
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"planner.objective"}, weightless_objective},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
+    {{"planner.parameters"}, split_whole_numbers},
 }};
 
 }  // namespace

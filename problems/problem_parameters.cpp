@@ -1,10 +1,13 @@
 #include "downwash/problems/problem_parameters.hpp"
 
 #include <array>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/parameter_factories.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/aero_parameters.hpp"
 #include "downwash/problems/algorithms.hpp"
@@ -160,6 +163,38 @@ void add_objective(Rows& rows) {
     }
 }
 
+/// A row for each name; what it means depends on the algorithm, and so does its default.
+void add_algorithm_parameters(Rows& rows) {
+    rows.push_back(group("planner.parameters", "parameters of the algorithm, see `downwash planners`"));
+    std::map<std::string_view, std::pair<const AlgorithmParameter*, std::vector<std::string_view>>> known;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
+            for (const AlgorithmParameter& parameter : algorithm.parameters_for(variant)) {
+                auto& [first, names] =
+                    known.try_emplace(parameter.name, &parameter, std::vector<std::string_view>{}).first->second;
+                if (names.empty() || names.back() != algorithm.name) {
+                    names.push_back(algorithm.name);
+                }
+            }
+        }
+    }
+    for (const auto& [name, found] : known) {
+        const AlgorithmParameter& parameter = *found.first;
+        Parameter<Problem> row = parameters::row<Problem>(
+            ParameterKind::number, "planner.parameters." + std::string(name), parameter.description);
+        row.range = {parameter.low, parameter.high};
+        row.get = [name = name, usual = parameter.value](const Problem& p, std::size_t) {
+            return Value(algorithm_parameter(p.planner, name) != nullptr ? parameter_value(p.planner, name) : usual);
+        };
+        row.set = [name = std::string(name)](Problem& p, std::size_t, const Value& value) {
+            p.planner.parameters[name] = std::get<double>(value);
+        };
+        rows.push_back(std::move(row).only(
+            "with " + joined_names(found.second),
+            [name = name](const Problem& p, std::size_t) { return algorithm_parameter(p.planner, name) != nullptr; }));
+    }
+}
+
 void add_planner(Rows& rows) {
     std::vector<std::pair<Variant, std::string_view>> variants;
     for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
@@ -192,6 +227,7 @@ void add_planner(Rows& rows) {
                        [](auto& p) -> auto& { return p.planner.safety_margin_m; })
                        .at_least(0)
                        .at_most(100));
+    add_algorithm_parameters(rows);
 }
 
 Rows all_rows() {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "downwash/rivals/flight_space.hpp"
+#include "downwash/rivals/flight_controls.hpp"
 #include "downwash/rivals/ompl_parameters.hpp"
 #include "downwash/search/quiet_ompl.hpp"
 #include "downwash/search/search_tree.hpp"
@@ -160,7 +160,7 @@ class ControlSearch {
             return Review::no_better;
         }
         Plan plan = flights_.plan(moments, end);
-        flights_.verify(plan, moments, *end);
+        flights_.verify(moments, *end);
         if (!hooks_.accept(plan, end->cost, iterations_)) {
             flights_.flights().count_rejection("direct_flight");
             return Review::discarded;
@@ -179,20 +179,20 @@ class ControlSearch {
 
 }  // namespace
 
-ControlResult plan_by_controls(std::string_view algorithm, std::uint32_t seed, const SteeredFlights& flights,
-                               Random& random, const ControlHooks& hooks) {
+ControlResult plan_by_controls(const SteeredFlights& flights, Random& random, const ControlHooks& hooks) {
     const QuietOmpl quiet;
+    const PlannerSettings& settings = flights.task().problem.planner;
     const oc::SpaceInformationPtr information = make_flight_information(flights, random);
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start(information);
     point_of(start.get()) = flights.start();
     definition->addStartState(start);
-    definition->setGoal(make_flight_goal(information, flights, random));
+    definition->setGoal(make_closing_goal(information, flights, random));
     definition->setOptimizationObjective(make_flight_objective(information));
 
-    const PreparedPlanner prepared = prepared_planner(algorithm, information, definition, seed);
+    const PreparedPlanner prepared = prepared_planner(settings.algorithm, information, definition, settings.seed);
     prepared.planner->setProblemDefinition(definition);
-    set_parameters(*prepared.planner, algorithm);
+    set_parameters(*prepared.planner, settings);
     prepared.planner->setup();
     ControlSearch search(flights, hooks);
     search.run(prepared, definition);

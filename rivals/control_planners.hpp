@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <optional>
-#include <string_view>
 
 #include "downwash/rivals/steered_flights.hpp"
 #include "downwash/search/random.hpp"
@@ -29,9 +28,9 @@ struct ControlHooks {
     bool keep_tree = false;
 };
 
-/// OMPL's planners over controls on steered flights: `rrt`, `sst`, `kpiece1` or `est`. An iteration is one turn of the
-/// planner's own loop. `sst` goes on for better plans; the others end with the first that is accepted.
-[[nodiscard]] ControlResult plan_by_controls(std::string_view algorithm, std::uint32_t seed,
-                                             const SteeredFlights& flights, Random& random, const ControlHooks& hooks);
+/// OMPL's planners over controls on steered flights, with algorithm, seed and parameters of the task's problem: `rrt`,
+/// `sst`, `kpiece1` or `est`. An iteration is one turn of the planner's own loop. `sst` goes on for better plans; the
+/// others end with the first that is accepted.
+[[nodiscard]] ControlResult plan_by_controls(const SteeredFlights& flights, Random& random, const ControlHooks& hooks);
 
 }  // namespace downwash::planning

@@ -175,14 +175,15 @@ Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoin
     return plan;
 }
 
-GeometricResult plan_geometrically(const Problem& problem, const FlightModel& model, const SearchSpace& space,
-                                   Random& random, const GeometricHooks& hooks) {
+GeometricResult plan_geometrically(const SearchTask& task, Random& random, const GeometricHooks& hooks) {
+    const Problem& problem = task.problem;
+    const SearchSpace& space = task.space;
     const QuietOmpl quiet;
     QueryCounts counts;
     // A motion is checked so densely that the margin covers what happens between two checks.
     const double step_m = std::min(greatest_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
-    const FreeAirCost free_air_cost(problem, model, space);
+    const FreeAirCost free_air_cost(task);
     const Configuration start = problem.start.configuration();
 
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
@@ -197,7 +198,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
 
     const PreparedPlanner prepared = prepared_planner(problem.planner, information, definition);
-    set_parameters(*prepared.planner, problem.planner.algorithm);
+    set_parameters(*prepared.planner, problem.planner);
     prepared.planner->setup();
     GeometricResult result;
     std::optional<double> best_cost;
@@ -223,8 +224,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
     if (definition->getSolutionPath() != nullptr) {
         auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
         const std::vector<Configuration> waypoints = unwrapped(*path, space, start);
-        const Configuration& end = waypoints.back();
-        const double off_m = space.goal_distance_m({end.x_m, end.z_m, end.arm_rad});
+        const double off_m = space.goal_distance_m(waypoints.back());
         // The planner's status counts an approximate solution as one.
         const bool is_exact =
             definition->hasExactSolution() && definition->getGoal()->isSatisfied(path->getStates().back());
@@ -232,7 +232,7 @@ GeometricResult plan_geometrically(const Problem& problem, const FlightModel& mo
             result.status = is_exact ? Status::solved : Status::approximate;
             result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
             result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
-                                     model.tick().tick_s);
+                                     task.model.tick().tick_s);
             if (is_exact && !best_cost) {
                 improve(cost_of(waypoints, free_air_cost, space));
             }

@@ -6,7 +6,7 @@
 #include "downwash/controllers/plan.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_record.hpp"
-#include "downwash/search/search_space.hpp"
+#include "downwash/search/search_task.hpp"
 
 namespace downwash::planning {
 
@@ -39,8 +39,7 @@ struct GeometricHooks {
 
 /// MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics
 /// (thesis C.2). An iteration is one turn of the planner's own loop.
-[[nodiscard]] GeometricResult plan_geometrically(const Problem& problem, const FlightModel& model,
-                                                 const SearchSpace& space, Random& random, const GeometricHooks& hooks);
+[[nodiscard]] GeometricResult plan_geometrically(const SearchTask& task, Random& random, const GeometricHooks& hooks);
 
 /// The rest-to-rest reference through waypoints whose arm angles are unwrapped, the first at the start's motion.
 [[nodiscard]] Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start,

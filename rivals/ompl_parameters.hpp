@@ -2,15 +2,12 @@
 
 #include <ompl/base/Planner.h>
 
-#include <optional>
-#include <string_view>
+#include "downwash/problems/problem.hpp"
 
 namespace downwash::planning {
 
-/// The value of an algorithm's parameter as algorithms() lists it.
-[[nodiscard]] std::optional<double> parameter_of(std::string_view algorithm, std::string_view parameter);
-
-/// Gives one of OMPL's planners the parameters that algorithms() lists for it and that are OMPL's.
-void set_parameters(ompl::base::Planner& planner, std::string_view algorithm);
+/// Gives one of OMPL's planners the parameters of a problem's algorithm: the problem's own values, or the defaults that
+/// algorithms() lists.
+void set_parameters(ompl::base::Planner& planner, const PlannerSettings& settings);
 
 }  // namespace downwash::planning

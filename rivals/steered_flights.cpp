@@ -14,24 +14,12 @@ bool stands_still(const ReferencePoint& point) {
 
 }  // namespace
 
-SteeredFlights::SteeredFlights(const Problem& problem, const SearchSpace& space, PlannedFlights& flights)
-    : problem_(problem), space_(space), flights_(flights), steps_(flights.limits(), flights.model().tick().tick_s) {}
+SteeredFlights::SteeredFlights(PlannedFlights& flights)
+    : flights_(flights), task_(flights.task()), steps_(flights.limits(), task_.model.tick().tick_s) {}
 
 FlightPoint SteeredFlights::start() const {
-    FlightPoint point;
-    point.vehicle = flights_.start();
-    point.reference = reference_at(problem_.start);
+    FlightPoint point = start_point(task_);
     point.rest = steps_.rest_of(point.reference);
-    return point;
-}
-
-FlightPoint SteeredFlights::resting_at(const Configuration& c) const {
-    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
-    const double u[4] = {};
-    FlightPoint point;
-    point.vehicle = flights_.model().state_at(q, u);
-    point.reference = at_rest(c);
-    point.rest = c;
     return point;
 }
 
@@ -50,11 +38,11 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
         flights_.count_rejection("too_long");
         return next;
     }
-    if (!space_.is_inside(next.rest)) {  // it could only stop, or turn, outside
+    if (!task_.space.is_inside(next.rest)) {  // it could only stop, or turn, outside
         flights_.count_rejection(Rejection::bounds);
         return next;
     }
-    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), flights_.model().tick().tick_s);
+    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s);
     FlightJob job{from.vehicle, {{segment}}};
     flights_.fly(std::span(&job, 1));
     next.vehicle = job.end();
@@ -69,8 +57,8 @@ FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double 
     FlightPoint next = steered(from, velocity);
     FlightRules rules = flights_.rules();
     rules.is_over = {};
-    FlightLeg leg{ReferenceSegment(from.reference, next.reference, steps_.ticks(), flights_.model().tick().tick_s)};
-    leg.flight = fly(flights_.model(), flights_.map(), rules, leg.segment, next.vehicle);
+    FlightLeg leg{ReferenceSegment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s)};
+    leg.flight = fly(task_.model, task_.map, rules, leg.segment, next.vehicle);
     leg.end = next.vehicle;
     next.is_valid = leg.flight.rejection == Rejection::none;
     next.cost = flights_.cost_after(from.cost, from.vehicle, leg);
@@ -78,22 +66,21 @@ FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double 
 }
 
 bool SteeredFlights::is_worth_closing(const FlightPoint& point) const {
-    return space_.goal_distance_m(point.rest) <= closing_range_m;
+    return task_.space.goal_distance_m(point.rest) <= closing_range_m;
 }
 
 std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
     // The middle of the goal leaves the whole tolerance to the flight; where an obstacle stands there, its rim does
     // too.
-    Configuration goal = space_.moved_into_goal(from.rest, 0);
-    if (!space_.is_valid(goal)) {
-        goal = space_.moved_into_goal(from.rest, usable_tolerance_share);
+    Configuration goal = task_.space.moved_into_goal(from.rest, 0);
+    if (!task_.space.is_valid(goal)) {
+        goal = task_.space.moved_into_goal(from.rest, usable_tolerance_share);
     }
-    if (const Rejection rejection = space_.rejection_at(goal); rejection != Rejection::none) {
+    if (const Rejection rejection = task_.space.rejection_at(goal); rejection != Rejection::none) {
         flights_.count_rejection(rejection);
         return std::nullopt;
     }
-    const double* place = from.reference.position;
-    goal = space_.seen_from({place[0], place[1], place[2]}, goal);
+    goal = task_.space.seen_from(configuration_of(from.reference), goal);
     const ReferenceSegment segment = flights_.fastest_segment(from.reference, at_rest(goal));
     if (segment.ticks() > max_plan_ticks - from.ticks) {
         flights_.count_rejection("too_long");
@@ -111,7 +98,7 @@ std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
 
 Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
     Plan plan;
-    plan.tick_s = flights_.model().tick().tick_s;
+    plan.tick_s = task_.model.tick().tick_s;
     for (const FlightPoint& point : points) {
         plan.reference.push_back({point.ticks, point.reference});
     }
@@ -127,15 +114,12 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
     return plan;
 }
 
-void SteeredFlights::verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const {
-    std::vector<FlightState> states;
-    states.reserve(points.size() + 2);
-    for (const FlightPoint& point : points) {
-        states.push_back(point.vehicle);
-    }
-    states.push_back(end.arrival);
-    states.push_back(end.end);
-    flights_.verify(plan.reference, states);
+void SteeredFlights::verify(const std::vector<FlightPoint>& points, const Closing& end) const {
+    std::vector<FlightPoint> moments = points;
+    moments.push_back({end.arrival, end.goal.point, {}, 0, end.goal.tick});
+    const std::int64_t hold_ticks = flights_.hold_leg(end.goal.point).segment.ticks();
+    moments.push_back({end.end, end.goal.point, {}, end.cost, end.goal.tick + hold_ticks});
+    flights_.verify(moments);
 }
 
 }  // namespace downwash::planning

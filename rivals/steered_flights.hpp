@@ -10,17 +10,6 @@
 
 namespace downwash::planning {
 
-/// A moment of a flight that is steered by reference velocities: all of it that the future depends on, and its past
-/// only as a sum. A plain value; flying on from it is a pure function.
-struct FlightPoint {
-    FlightState vehicle;       ///< bodies, rotor lag, energy and the controller's memory
-    ReferencePoint reference;  ///< without acceleration
-    Configuration rest;        ///< where the reference would come to rest; stands for the place of this moment
-    double cost = 0;           ///< of the flight from the start, in the objective's unit
-    std::int64_t ticks = 0;    ///< since the start
-    bool is_valid = true;      ///< false: the step to here was refused, and nothing flies on from it
-};
-
 /// How a flight ends: a reference segment to rest at the goal, and the hold there.
 struct Closing {
     ReferenceKnot goal;   ///< at rest, in ticks since the start
@@ -32,17 +21,16 @@ struct Closing {
 /// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick.
 class SteeredFlights {
  public:
-    SteeredFlights(const Problem& problem, const SearchSpace& space, PlannedFlights& flights);
+    /// @param flights must outlive it
+    explicit SteeredFlights(PlannedFlights& flights);
 
-    [[nodiscard]] const SearchSpace& space() const noexcept { return space_; }
+    [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
+    [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
     [[nodiscard]] const ReferenceSteps& steps() const noexcept { return steps_; }
     [[nodiscard]] PlannedFlights& flights() const noexcept { return flights_; }
 
     /// The vehicle at the start of the problem.
     [[nodiscard]] FlightPoint start() const;
-
-    /// The vehicle level and at rest at a configuration, as planners sample it.
-    [[nodiscard]] FlightPoint resting_at(const Configuration& configuration) const;
 
     /// Flies one step with the reference taking on a velocity. The tick at which a rule is broken ends the step.
     /// @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s]
@@ -62,15 +50,14 @@ class SteeredFlights {
     [[nodiscard]] Plan plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const;
 
     /// Flies the plan through moments to an end again; see PlannedFlights::verify.
-    void verify(const Plan& plan, const std::vector<FlightPoint>& points, const Closing& end) const;
+    void verify(const std::vector<FlightPoint>& points, const Closing& end) const;
 
  private:
     /// Where a step leads but for its flight: the reference, and the place where that would rest.
     [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[3]) const;
 
-    const Problem& problem_;
-    const SearchSpace& space_;
     PlannedFlights& flights_;
+    const SearchTask& task_;
     ReferenceSteps steps_;
 };
 

@@ -4,21 +4,17 @@
 #include <cmath>
 
 namespace downwash::planning {
-namespace {
 
-bool is_at_rest(const ReferencePoint& point) {
-    return point == at_rest(configuration_of(point));
+FlightPoint moment_at(const FlightNode& node) {
+    return {node.state, node.reference, node.configuration, node.cost, node.ticks_from_start};
 }
 
-}  // namespace
-
-FlightTree::FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space,
-                       PlannedFlights& flights)
-    : model_(model), space_(space), flights_(flights), free_air_cost_(problem, model, space) {
+FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
+    : flights_(flights), space_(flights.task().space), free_air_cost_(flights.task()) {
     FlightNode root;
-    root.configuration = problem.start.configuration();
-    root.reference = reference_at(problem.start);
-    root.state = flights.start();
+    root.configuration = configuration_of(start.reference);
+    root.reference = start.reference;
+    root.state = start.vehicle;
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
     places_.push_back(moving_.back()->configuration);
 }
@@ -70,7 +66,7 @@ double FlightTree::least_cost_to_goal(const Configuration& from) const {
 }
 
 ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferencePoint& to, std::int64_t ticks) const {
-    return {from.reference, to, ticks, model_.tick().tick_s};
+    return {from.reference, to, ticks, flights_.task().model.tick().tick_s};
 }
 
 std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) {
@@ -242,29 +238,21 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     return true;
 }
 
-Plan FlightTree::plan_to(const FlightNode& node) const {
-    std::vector<const FlightNode*> way;
-    for (const FlightNode* n = node.is_hold ? node.parent : &node; n != nullptr; n = n->parent) {
-        way.push_back(n);
+std::vector<FlightPoint> FlightTree::moments_to(const FlightNode& node) {
+    std::vector<FlightPoint> moments;
+    for (const FlightNode* n = &node; n != nullptr; n = n->parent) {
+        moments.push_back(moment_at(*n));
     }
-    Plan plan;
-    plan.tick_s = model_.tick().tick_s;
-    std::reverse(way.begin(), way.end());
-    std::int64_t tick = 0;
-    for (const FlightNode* n : way) {
-        tick += n->ticks;
-        plan.reference.push_back({tick, n->reference});
-    }
-    return plan;
+    std::reverse(moments.begin(), moments.end());
+    return moments;
 }
 
-std::vector<FlightState> FlightTree::states_to(const FlightNode& node) const {
-    std::vector<FlightState> states;
-    for (const FlightNode* n = &node; n != nullptr; n = n->parent) {
-        states.push_back(n->state);
+Plan FlightTree::plan_to(const FlightNode& node) const {
+    std::vector<FlightPoint> moments = moments_to(node);
+    if (!node.is_hold) {
+        moments.push_back(moments.back());  // a plan leaves out what comes after its last knot
     }
-    std::reverse(states.begin(), states.end());
-    return states;
+    return plan_through(moments, flights_.task().model.tick().tick_s);
 }
 
 }  // namespace downwash::planning

@@ -29,11 +29,15 @@ struct FlightNode {
     bool is_discarded = false;  ///< a hold whose direct flight failed
 };
 
+/// The moment at which a vehicle is at a node.
+[[nodiscard]] FlightPoint moment_at(const FlightNode& node);
+
 /// The tree of closed-loop flights: every edge is a flight from the parent's whole vehicle state along a reference
 /// segment that starts at the parent's reference point. Holds at the goal are edges as well. Knows no search strategy.
 class FlightTree {
  public:
-    FlightTree(const Problem& problem, const FlightModel& model, const SearchSpace& space, PlannedFlights& flights);
+    /// @param start the moment that becomes the root   @param flights must outlive it
+    FlightTree(const FlightPoint& start, PlannedFlights& flights);
 
     [[nodiscard]] FlightNode& root() noexcept { return nodes_.front(); }
     [[nodiscard]] std::size_t size() const noexcept { return moving_.size(); }
@@ -82,11 +86,11 @@ class FlightTree {
     /// would not fall. Returns how many were done.
     std::size_t rewire(std::span<const Rewiring> rewirings);
 
+    /// The moments from the root to a node, at the end of each edge; the last is moment_at(node).
+    [[nodiscard]] static std::vector<FlightPoint> moments_to(const FlightNode& node);
+
     /// The plan that leads to a node (for a hold: to its parent).
     [[nodiscard]] Plan plan_to(const FlightNode& node) const;
-
-    /// The whole vehicle at the knots of that plan; for a hold also after it.
-    [[nodiscard]] std::vector<FlightState> states_to(const FlightNode& node) const;
 
  private:
     [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,
@@ -96,9 +100,8 @@ class FlightTree {
     [[nodiscard]] FlightJob edge_job(const FlightNode& from, const FlightNode& to) const;
     bool move_below(FlightNode& node, FlightNode& parent, const Flown& flight);
 
-    const FlightModel& model_;
-    const SearchSpace& space_;
     PlannedFlights& flights_;
+    const SearchSpace& space_;
     FreeAirCost free_air_cost_;
     std::deque<FlightNode> nodes_;
     std::vector<FlightNode*> moving_;

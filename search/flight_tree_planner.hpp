@@ -8,58 +8,68 @@
 #include <vector>
 
 #include "downwash/search/flight_tree.hpp"
+#include "downwash/search/flight_tree_parameters.hpp"
 #include "downwash/search/plan_refiner.hpp"
 #include "downwash/search/random.hpp"
 
 namespace downwash::planning {
 
-/// A plan that the planner's own model accepts, hold included.
+/// A plan that the planner's own model accepts, with the hover at the goal.
 struct Candidate {
-    Plan plan;
-    double cost;
-    std::uint64_t iteration;
+    std::vector<FlightPoint> moments;  ///< at the plan's knots, then after the hover
+    double cost = 0;
+    std::uint64_t iteration = 0;
 };
 
-/// What a search asks about its plans.
+/// What a search asks about its plans. Without functions every plan counts.
 struct CandidateHooks {
-    /// Whether a plan counts, if need be after a direct flight; false discards it and the search goes on. Asked of one
-    /// plan at a time, but on any thread and beside the search: it may touch nothing that the search works on.
-    std::function<bool(const Candidate&)> counts;
+    /// Executes a plan, if need be, and says whether it counts; false discards it and the search goes on. Called with
+    /// one plan at a time, but on any thread and beside the search: it may touch nothing that the search works on.
+    std::function<bool(const Candidate&)> survives_execution = {};
     /// Told of every plan that counts, when the search takes it on; each is cheaper than the one before.
-    std::function<void(const Candidate&)> accept;
+    std::function<void(const Candidate&)> accept = {};
 };
 
 /// RRT* whose edges are closed-loop flights (variants MP-ARM-DA and MP-ARM-ADA): parents are chosen and nodes rewired
-/// by flown cost. Samples come in waves, whose flights are flown side by side. What the tree finds is refined to plans
-/// that do not stop at their corners. Once there is a plan the search goes on in rounds, in which the tree grows, plans
-/// are refined and the best one is flown directly, side by side; what each of them has found the others see after the
-/// round. A round ends by what was flown in it, so threads change nothing but the time. Anytime: the incumbent only
-/// gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
+/// by simulated cost. Samples come in batches, whose edges are simulated side by side. What the tree finds is refined
+/// to plans that do not stop at their corners. Once there is a plan the search goes on in rounds, in which the tree
+/// grows, plans are refined and the best one is executed, side by side; what each of them has found the others see
+/// after the round. A round ends by the work done in it, so threads change nothing but the time. Anytime: the best plan
+/// only gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
+///
+/// Keeps the contract of ompl::base::Planner. States are moments of flights (see flight_space.hpp). solve() continues
+/// with the tree there is; after clear() it does again what it did the first time. Numbers are parameters by the names
+/// that algorithms() lists for rrt-star; params() sets them.
 class FlightTreePlanner : public ompl::base::Planner {
  public:
-    /// @param flights of the tree; those of the refiner are made like them
-    /// @param threads that the search may use: those of `flights`
-    FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const Problem& problem, FlightTree& tree,
-                      const SearchSpace& space, PlannedFlights& flights, Random& random, CandidateHooks hooks,
-                      int threads);
+    /// @param information of make_flight_space() for the same task; solve() wants one start and the task's FlightGoal
+    /// @param task gives seed and parameters too; must outlive the planner
+    /// @param threads that the search may use, at least 1; the result does not depend on it
+    FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const SearchTask& task, int threads = 1);
 
+    void setup() override;
+    void clear() override;
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& terminated) override;
+    /// Nodes of the tree; the ends of the hovers at the goal are the goal vertices.
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
-    /// The search ends after so many iterations, whatever the termination condition says.
+    void set_hooks(CandidateHooks hooks) { hooks_ = std::move(hooks); }
+    /// The search ends after so many iterations since the last clear(), whatever the termination condition says.
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
     /// The search ends with the first plan that counts.
     void set_stops_at_first_plan(bool stops) { stops_at_first_plan_ = stops; }
-    /// Called after every wave, or round.
+    /// Called after every batch, or round.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
     [[nodiscard]] std::uint64_t iterations() const noexcept { return iterations_; }
-    [[nodiscard]] const std::optional<Candidate>& incumbent() const noexcept { return incumbent_; }
-    /// The node whose reference comes nearest to the goal.
+    [[nodiscard]] const std::optional<Candidate>& best() const noexcept { return best_; }
+    /// @pre solve() was called and found a start
+    [[nodiscard]] const FlightTree& tree() const noexcept { return *tree_; }
+    /// The node whose reference comes nearest to the goal. @pre as for tree()
     [[nodiscard]] const FlightNode& nearest_to_goal() const noexcept { return *nearest_to_goal_; }
     /// How near that is [m]; 0 within the goal region.
     [[nodiscard]] double nearest_distance_m() const noexcept { return nearest_distance_m_; }
-    /// Of everything that was flown in the planner's own model.
+    /// Of everything that was simulated in the planner's own model since the last clear().
     [[nodiscard]] FlightStatistics statistics() const;
 
  private:
@@ -77,60 +87,64 @@ class FlightTreePlanner : public ompl::base::Planner {
         FlightNode* best_parent = nullptr;
     };
 
-    /// A plan on its way to become the incumbent, of the refiner or of the tree, as it was flown.
+    /// A plan on its way to become the best, of the refiner or of the tree.
     struct Proposal {
         Candidate candidate;
-        std::vector<FlightState> states;  ///< at the plan's knots, and after the hold
-        int refined = 0;                  ///< number of the refiner's plan, or
-        FlightNode* hold = nullptr;       ///< of the tree
-        bool is_good = false;             ///< it counts
+        int refined = 0;             ///< number of the refiner's plan, or
+        FlightNode* hold = nullptr;  ///< of the tree
+        bool is_good = false;        ///< it counts
     };
 
+    void begin(const FlightPoint& start);
     void grow();
     [[nodiscard]] std::optional<Growth> sampled();
-    void choose_parents(std::vector<Growth>& wave);
-    [[nodiscard]] std::vector<FlightNode*> add(const std::vector<Growth>& wave);
-    void rewire_through(const std::vector<Growth>& wave, const std::vector<FlightNode*>& added);
+    void choose_parents(std::vector<Growth>& batch);
+    [[nodiscard]] std::vector<FlightNode*> add(const std::vector<Growth>& batch);
+    void rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added);
     [[nodiscard]] std::optional<Configuration> target();
-    [[nodiscard]] std::optional<Configuration> target_beside_incumbent();
+    [[nodiscard]] std::optional<Configuration> target_beside_best();
     void refine();
     void go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated);
     void hand_to_refiner();
     [[nodiscard]] FlightNode* best_hold() const;
     [[nodiscard]] const FlightNode* other_way();
-    /// Whether there is a plan, of the tree or the incumbent, that was not discarded.
-    [[nodiscard]] bool has_plan() const noexcept { return incumbent_ || best_hold_cost_ < HUGE_VAL; }
+    /// Whether there is a plan, of the tree or the best one, that was not discarded.
+    [[nodiscard]] bool has_plan() const noexcept { return best_ || best_hold_cost_ < HUGE_VAL; }
     void note_best_hold();
     [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
-    [[nodiscard]] std::optional<Proposal> proposal(double least_gain) const;
-    void fly(Proposal& proposal) const;
+    [[nodiscard]] std::optional<Proposal> proposal(double min_gain) const;
+    void execute(Proposal& proposal) const;
     void settle(Proposal proposal);
     void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
-    [[nodiscard]] double work_beside(const Plan& plan) const;
+    [[nodiscard]] double work_beside(const Candidate& candidate) const;
     [[nodiscard]] std::size_t neighbour_count() const;
+    ompl::base::PlannerStatus report_solution();
 
-    FlightTree& tree_;
+    const SearchTask& task_;
     const SearchSpace& space_;
-    PlannedFlights& flights_;         ///< of the tree
-    PlannedFlights refined_flights_;  ///< of the refiner
-    Random& random_;                  ///< of the tree, and between rounds
-    Random refiner_random_;
-    PlanRefiner refiner_;
-    CandidateHooks hooks_;
+    FlightTreeParameters parameters_;
     int threads_;
+    CandidateHooks hooks_;
     std::function<void()> observer_;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
+    const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< of the solve() under way
+
+    PlannedFlights flights_;          ///< of the tree
+    PlannedFlights refined_flights_;  ///< of the refiner
+    Random random_;                   ///< of the tree, and between rounds
+    Random refiner_random_;
+    std::optional<FlightTree> tree_;
+    std::optional<PlanRefiner> refiner_;
     std::uint64_t iterations_ = 0;
-    std::optional<Candidate> incumbent_;
+    std::optional<Candidate> best_;
     std::vector<Plan> handed_over_;       ///< the refiner takes them on in the next round
     double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds that were not discarded
     double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
     double refiner_left_ = 0;             ///< the same of the refiner
-    const FlightNode* nearest_to_goal_;
-    double nearest_distance_m_;
-    double range_m_;
+    const FlightNode* nearest_to_goal_ = nullptr;
+    double nearest_distance_m_ = HUGE_VAL;
 };
 
 }  // namespace downwash::planning

@@ -26,13 +26,13 @@ ReferenceLimits reference_limits(const MotionLimits& motion) {
             motion.max_arm_acceleration_rad_s2};
 }
 
-FreeAirCost::FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space)
-    : objective_(problem.planner.objective),
+FreeAirCost::FreeAirCost(const SearchTask& task)
+    : objective_(task.problem.planner.objective),
       counts_clearance_(objective_.weight(Objective::clearance) > 0),
-      model_(model),
-      space_(space),
-      limits_(reference_limits(problem.motion)),
-      hover_power_w_(hover_power_w(model)) {}
+      model_(task.model),
+      space_(task.space),
+      limits_(reference_limits(task.problem.motion)),
+      hover_power_w_(hover_power_w(task.model)) {}
 
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));

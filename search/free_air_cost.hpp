@@ -1,7 +1,7 @@
 #pragma once
 
 #include "downwash/controllers/reference_segment.hpp"
-#include "downwash/search/search_space.hpp"
+#include "downwash/search/search_task.hpp"
 
 namespace downwash::planning {
 
@@ -9,7 +9,8 @@ namespace downwash::planning {
 /// by which the tree of flights decides what is worth flying.
 class FreeAirCost {
  public:
-    FreeAirCost(const Problem& problem, const FlightModel& model, const SearchSpace& space);
+    /// @param task must outlive it
+    explicit FreeAirCost(const SearchTask& task);
 
     /// Along the rest-to-rest reference between two configurations, the arm by the shorter turn.
     [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;

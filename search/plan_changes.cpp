@@ -21,8 +21,11 @@ constexpr double shortest_split_s = 1.0;      ///< a shorter segment gets no cor
 
 }  // namespace
 
-PlanChanges::PlanChanges(const Problem& problem, const SearchSpace& space, Random& random)
-    : space_(space), random_(random), motion_(problem.motion), tick_s_(1 / problem.robot.controller.rate_hz) {}
+PlanChanges::PlanChanges(const SearchTask& task, Random& random)
+    : space_(task.space),
+      random_(random),
+      motion_(task.problem.motion),
+      tick_s_(1 / task.problem.robot.controller.rate_hz) {}
 
 double PlanChanges::noise(double size) {
     // A sum of uniform numbers: bell-shaped, bounded, and the same on every machine.

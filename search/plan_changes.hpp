@@ -3,9 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "downwash/problems/problem.hpp"
 #include "downwash/search/random.hpp"
-#include "downwash/search/search_space.hpp"
+#include "downwash/search/search_task.hpp"
 
 namespace downwash::planning {
 
@@ -18,7 +17,8 @@ struct ChangedPoints {
 /// Draws random changes of a reference's points: what a pilot might try instead.
 class PlanChanges {
  public:
-    PlanChanges(const Problem& problem, const SearchSpace& space, Random& random);
+    /// @param task and `random` must outlive it
+    PlanChanges(const SearchTask& task, Random& random);
 
     /// One change, drawn at random; nothing when it cannot be made.
     /// @param points at least two; the first stays   @param ticks from each to the next

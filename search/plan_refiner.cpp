@@ -24,8 +24,8 @@ constexpr double most_cost_ratio = 1.5;
 
 }  // namespace
 
-PlanRefiner::PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random)
-    : flights_(flights), changes_(problem, space, random) {}
+PlanRefiner::PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random)
+    : start_(start), flights_(flights), changes_(flights.task(), random) {}
 
 const FlownPlan* PlanRefiner::champion() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
@@ -37,7 +37,7 @@ void PlanRefiner::drop(int number) {
 
 FlightJob PlanRefiner::job_for(const FlightState& from, const Change& change, std::size_t first,
                                std::size_t last) const {
-    const double tick_s = flights_.model().tick().tick_s;
+    const double tick_s = flights_.task().model.tick().tick_s;
     FlightJob job{from, {}, 0};
     for (std::size_t i = first; i <= last; ++i) {
         job.legs.push_back({{change.points[i], change.points[i + 1], change.ticks[i], tick_s}});
@@ -87,7 +87,7 @@ void PlanRefiner::take(const Plan& plan) {
         }
     }
     FlownPlan base;
-    base.states.push_back(flights_.start());
+    base.states.push_back(start_.vehicle);
     base.costs.push_back(0);
     std::vector<FlightJob> jobs{job_for(base.states[0], change, 0, change.ticks.size() - 1)};
     flights_.fly(jobs);
@@ -215,15 +215,19 @@ void PlanRefiner::improve() {
     }
 }
 
-Plan PlanRefiner::plan_of(const FlownPlan& flown) const {
-    Plan plan;
-    plan.tick_s = flights_.model().tick().tick_s;
+std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
+    std::vector<FlightPoint> moments;
     std::int64_t tick = 0;
     for (std::size_t i = 0; i < flown.points.size(); ++i) {
-        plan.reference.push_back({tick, flown.points[i]});
+        moments.push_back({flown.states[i], flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
         tick += i < flown.ticks.size() ? flown.ticks[i] : 0;
     }
-    return plan;
+    FlightPoint end = moments.back();
+    end.vehicle = flown.states.back();
+    end.cost = flown.cost;
+    end.ticks += flights_.hold_leg(end.reference).segment.ticks();
+    moments.push_back(end);
+    return moments;
 }
 
 }  // namespace downwash::planning

@@ -27,7 +27,8 @@ struct FlownPlan {
 /// cheaper one is the champion; the other one is given a chance to overtake it before it is dropped.
 class PlanRefiner {
  public:
-    PlanRefiner(const Problem& problem, const SearchSpace& space, PlannedFlights& flights, Random& random);
+    /// @param start the moment at which all plans begin   @param flights and `random` must outlive it
+    PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random);
 
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < most_tracks; }
@@ -43,7 +44,8 @@ class PlanRefiner {
     [[nodiscard]] int champion_number() const noexcept { return tracks_.front().number; }
     /// Forgets what became of a plan that was taken on, which flies in the planner's model only.
     void drop(int number);
-    [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
+    /// The moments at the knots of a plan; then the one after the hold.
+    [[nodiscard]] std::vector<FlightPoint> moments_of(const FlownPlan& flown) const;
 
  private:
     static constexpr std::size_t most_tracks = 2;
@@ -70,6 +72,7 @@ class PlanRefiner {
                                                    std::vector<FlightJob>& jobs);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
 
+    FlightPoint start_;
     PlannedFlights& flights_;
     PlanChanges changes_;
     std::vector<Track> tracks_;  ///< the champion first

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-#include <type_traits>
 
-#include "downwash/problems/algorithms.hpp"
-#include "downwash/problems/problem_model.hpp"
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -21,11 +17,6 @@ FlightRules planning_rules(const Problem& problem, std::function<bool()> is_over
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
     return rules;
-}
-
-bool same_bytes(const FlightState& a, const FlightState& b) {
-    static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
-    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
 }
 
 }  // namespace
@@ -72,27 +63,16 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
     return *this;
 }
 
-PlannedFlights::PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space,
-                               const AeroMap* map, std::function<bool()> is_over, int threads,
-                               std::optional<FlightState> start)
-    : problem_(problem),
-      model_(model),
-      space_(space),
-      map_(map),
-      limits_(reference_limits(problem.motion)),
-      start_(start ? *start : start_state(model, problem.start)),
-      crew_(model, map, planning_rules(problem, std::move(is_over)), &problem.goal, threads) {
-    statistics_.rejected = no_rejections();
+PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_over, int threads)
+    : task_(task),
+      limits_(reference_limits(task.problem.motion)),
+      tick_s_(task.model.tick().tick_s),
+      crew_(task.model, task.map, planning_rules(task.problem, std::move(is_over)), &task.problem.goal, threads) {
+    forget_statistics();
 }
 
-PlannedFlights::PlannedFlights(const PlannedFlights& others, int threads)
-    : problem_(others.problem_),
-      model_(others.model_),
-      space_(others.space_),
-      map_(others.map_),
-      limits_(others.limits_),
-      start_(others.start_),
-      crew_(model_, map_, others.rules(), &problem_.goal, threads) {
+void PlannedFlights::forget_statistics() {
+    statistics_ = {};
     statistics_.rejected = no_rejections();
 }
 
@@ -108,7 +88,7 @@ void PlannedFlights::count_rejection(Rejection rejection) {
 }
 
 bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
-    return space_.is_near_goal(configuration_of(segment.to()));
+    return task_.space.is_near_goal(configuration_of(segment.to()));
 }
 
 void PlannedFlights::refuse(const ReferenceSegment& segment, Rejection rejection, const Configuration& at) {
@@ -116,7 +96,7 @@ void PlannedFlights::refuse(const ReferenceSegment& segment, Rejection rejection
     if (rejection == Rejection::interrupted || !leads_to_goal(segment)) {
         return;
     }
-    const double distance_m = space_.goal_distance_m(at);
+    const double distance_m = task_.space.goal_distance_m(at);
     std::optional<Obstruction>& nearest = statistics_.obstruction;
     if (!nearest || distance_m < nearest->goal_distance_m) {
         nearest = {cause_of(rejection), at, distance_m};
@@ -127,7 +107,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     constexpr double spacing_m = 0.1;
     const ReferencePoint& a = segment.from();
     const ReferencePoint& b = segment.to();
-    const double arm_m = problem_.robot.arm.length_m;
+    const double arm_m = task_.problem.robot.arm.length_m;
     const auto weighted = [arm_m](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + arm_m * std::abs(v[2]); };
     const double step[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
                             b.position[2] - a.position[2]};
@@ -139,7 +119,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;
          --i) {  // the new end first: likelier to collide
         ++statistics_.states_checked;
-        rejection = space_.rejection_at(at(i));
+        rejection = task_.space.rejection_at(at(i));
     }
     if (rejection == Rejection::none) {
         return true;
@@ -150,10 +130,10 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     }
     // Of a way to the goal the place matters where a flight would have been stopped.
     std::int64_t first = 1;
-    while (space_.rejection_at(at(first)) == Rejection::none) {
+    while (task_.space.rejection_at(at(first)) == Rejection::none) {
         ++first;
     }
-    refuse(segment, space_.rejection_at(at(first)), at(first));
+    refuse(segment, task_.space.rejection_at(at(first)), at(first));
     return false;
 }
 
@@ -171,41 +151,38 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
     }
 }
 
-void PlannedFlights::verify(std::span<const ReferenceKnot> knots, std::span<const FlightState> states) const {
+void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
     FlightRules to_the_end = rules();
     to_the_end.is_over = {};
-    FlightState state = start_;
-    for (std::size_t i = 1; i < states.size(); ++i) {
-        const ReferenceKnot& from = knots[i - 1];
-        const ReferenceSegment segment =
-            i < knots.size()
-                ? ReferenceSegment(from.point, knots[i].point, knots[i].tick - from.tick, model_.tick().tick_s)
-                : hold_leg(from.point).segment;
-        const SegmentFlight flight = downwash::fly(model_, map_, to_the_end, segment, state);
-        if (flight.rejection != Rejection::none || !same_bytes(state, states[i])) {
+    FlightPoint point = moments.front();
+    for (std::size_t i = 1; i < moments.size(); ++i) {
+        const FlightPoint& next = moments[i];
+        const ReferenceSegment segment(point.reference, next.reference, next.ticks - point.ticks, tick_s_);
+        const SegmentFlight flight = downwash::fly(task_.model, task_.map, to_the_end, segment, point.vehicle);
+        point.reference = segment.to();
+        point.ticks = next.ticks;
+        if (flight.rejection != Rejection::none || !is_same_moment(point, next)) {
             throw std::logic_error("flying a plan again did not reproduce the planner's flight bit for bit");
         }
     }
 }
 
 FlightLeg PlannedFlights::hold_leg(const ReferencePoint& at) const {
-    const double tick_s = model_.tick().tick_s;
-    return {{at, at, hold_ticks(problem_.goal, model_, at), tick_s}};
+    return {{at, at, hold_ticks(task_.problem.goal, task_.model, at), tick_s_}};
 }
 
 std::int64_t PlannedFlights::judged_ticks() const {
-    return std::llround(goal_settling_s / model_.tick().tick_s);
+    return std::llround(goal_settling_s / tick_s_);
 }
 
 double PlannedFlights::cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
-    const double time_s = static_cast<double>(leg.flight.ticks) * model_.tick().tick_s;
-    return cost_before + problem_.planner.objective({leg.end.plant.energy_j - from.plant.energy_j, time_s,
-                                                     leg.flight.length_m, leg.flight.clearance_integral});
+    const double time_s = static_cast<double>(leg.flight.ticks) * tick_s_;
+    return cost_before + task_.problem.planner.objective({leg.end.plant.energy_j - from.plant.energy_j, time_s,
+                                                          leg.flight.length_m, leg.flight.clearance_integral});
 }
 
 ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {
-    const double tick_s = model_.tick().tick_s;
-    return {from, to, shortest_ticks(from, to, limits_, tick_s), tick_s};
+    return {from, to, shortest_ticks(from, to, limits_, tick_s_), tick_s_};
 }
 
 }  // namespace downwash::planning

@@ -6,9 +6,8 @@
 #include <span>
 #include <string>
 
-#include "downwash/problems/problem.hpp"
+#include "downwash/search/flight_point.hpp"
 #include "downwash/search/search_record.hpp"
-#include "downwash/search/search_space.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 
 namespace downwash::planning {
@@ -28,15 +27,10 @@ struct FlightStatistics {
 /// How the flights of one search are flown, judged, paid for and counted.
 class PlannedFlights {
  public:
-    /// @param map surface effects of the planner's own model; nullptr for none
+    /// @param task must outlive it
     /// @param is_over asked now and then within flights, from all threads; true ends them without a result
     /// @param threads at least 1; nothing but the time depends on it
-    /// @param start the whole vehicle with which the search begins; empty: as the problem's start says
-    PlannedFlights(const Problem& problem, const FlightModel& model, const SearchSpace& space, const AeroMap* map,
-                   std::function<bool()> is_over = {}, int threads = 1, std::optional<FlightState> start = {});
-
-    /// Flights of the same search, to be flown beside the others and counted on their own.
-    PlannedFlights(const PlannedFlights& others, int threads);
+    explicit PlannedFlights(const SearchTask& task, std::function<bool()> is_over = {}, int threads = 1);
 
     /// From its next batch on flies with so many of its threads. May be called from any thread.
     void use_threads(int threads) { crew_.use_threads(threads); }
@@ -48,11 +42,10 @@ class PlannedFlights {
     /// Flies jobs, and counts ticks and refusals.
     void fly(std::span<FlightJob> jobs);
 
-    /// Flies a reference again, from the start of the search through the planner's own model, by the plain loop over
-    /// ticks. May be called from any thread.
-    /// @param states the whole vehicle at each knot; one more: after the hold at the last of them
-    /// @throws std::logic_error when something is refused, or a state does not come out bit for bit
-    void verify(std::span<const ReferenceKnot> knots, std::span<const FlightState> states) const;
+    /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
+    /// called from any thread.
+    /// @throws std::logic_error when something is rejected, or a vehicle does not come out bit for bit
+    void verify(std::span<const FlightPoint> moments) const;
 
     /// The hold at the goal as the last leg of a job; the job's judged_ticks have to be judged_ticks().
     [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
@@ -66,11 +59,10 @@ class PlannedFlights {
     [[nodiscard]] const ReferenceLimits& limits() const noexcept { return limits_; }
 
     [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
-    [[nodiscard]] const FlightModel& model() const noexcept { return model_; }
-    /// The vehicle at the start of the search.
-    [[nodiscard]] const FlightState& start() const noexcept { return start_; }
-    [[nodiscard]] const AeroMap* map() const noexcept { return map_; }
+    [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
+    /// Begins to count anew.
+    void forget_statistics();
     void count_rejection(const std::string& cause);
     /// An interrupted flight is none.
     void count_rejection(Rejection rejection);
@@ -80,12 +72,9 @@ class PlannedFlights {
     /// Counts a refusal at a place of a segment.
     void refuse(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
 
-    const Problem& problem_;
-    const FlightModel& model_;
-    const SearchSpace& space_;
-    const AeroMap* map_;
+    const SearchTask& task_;
     ReferenceLimits limits_;
-    FlightState start_;
+    double tick_s_;
     FlightCrew crew_;
     FlightStatistics statistics_;
 };

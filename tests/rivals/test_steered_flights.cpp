@@ -8,7 +8,7 @@
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/rivals/control_planners.hpp"
-#include "downwash/rivals/flight_space.hpp"
+#include "downwash/rivals/flight_controls.hpp"
 
 using namespace downwash;
 using planning::Closing;
@@ -20,15 +20,15 @@ struct Fixture {
     explicit Fixture(Problem given = test::ceiling_problem())
         : problem(std::move(given)),
           model(make_flight_model(problem)),
-          space(problem, *model),
           map(model->make_map(problem.bounds)),
-          planned(problem, *model, space, map.get()),
-          flights(problem, space, planned) {}
+          task(problem, *model, map.get()),
+          planned(task),
+          flights(planned) {}
 
     Problem problem;
     std::shared_ptr<const FlightModel> model;
-    planning::SearchSpace space;
     std::shared_ptr<const AeroMap> map;
+    planning::SearchTask task;
     planning::PlannedFlights planned;
     planning::SteeredFlights flights;
 };
@@ -63,7 +63,7 @@ TEST_CASE("a step is a pure function, and flies as the same segment does") {
 
 TEST_CASE("a step into an obstacle is refused and counted") {
     const Fixture f(test::walled_problem());  // a wall at x = 0
-    FlightPoint point = f.flights.resting_at({-1.2, 2, 1.5707963267948966});
+    FlightPoint point = planning::resting_at(*f.model, {-1.2, 2, 1.5707963267948966});
     const double forward[3] = {1, 0, 0};
     int steps = 0;
     while (point.is_valid && steps < 20) {
@@ -76,7 +76,7 @@ TEST_CASE("a step into an obstacle is refused and counted") {
 
 TEST_CASE("a step from which the reference could not stop inside the bounds is not flown") {
     const Fixture f;  // x up to 6
-    FlightPoint point = f.flights.resting_at({5.9, 2, 1.5707963267948966});
+    FlightPoint point = planning::resting_at(*f.model, {5.9, 2, 1.5707963267948966});
     const double forward[3] = {1, 0, 0};
     point = f.flights.stepped(point, forward);
     REQUIRE(point.is_valid);
@@ -115,7 +115,7 @@ TEST_CASE("a flight closes from nearby, at rest within the goal, hold included")
     const Plan plan = f.flights.plan(moments, end);
     REQUIRE(plan.reference.size() == 3);
     CHECK(plan.reference[1].tick == 50);
-    CHECK_NOTHROW(f.flights.verify(plan, moments, *end));
+    CHECK_NOTHROW(f.flights.verify(moments, *end));
 
     SECTION("the reported flight of that plan is the same flight, to what the map and one step a tick leave out") {
         const Execution flight = execute(*f.model, f.flights.start().vehicle, plan.reference, f.problem.goal, true);
@@ -126,13 +126,13 @@ TEST_CASE("a flight closes from nearby, at rest within the goal, hold included")
     SECTION("a vehicle that differs in one bit is noticed") {
         std::vector<FlightPoint> wrong = moments;
         wrong.back().vehicle.controller.arm_integral = std::nextafter(wrong.back().vehicle.controller.arm_integral, 1);
-        CHECK_THROWS_AS(f.flights.verify(plan, wrong, *end), std::logic_error);
+        CHECK_THROWS_AS(f.flights.verify(wrong, *end), std::logic_error);
         Closing wrong_end = *end;
         wrong_end.end.plant.q[2] = std::nextafter(wrong_end.end.plant.q[2], 1);
-        CHECK_THROWS_AS(f.flights.verify(plan, moments, wrong_end), std::logic_error);
+        CHECK_THROWS_AS(f.flights.verify(moments, wrong_end), std::logic_error);
     }
     SECTION("far away it is not tried") {
-        CHECK_FALSE(f.flights.is_worth_closing(f.flights.resting_at({-4, 2, 1.5})));
+        CHECK_FALSE(f.flights.is_worth_closing(planning::resting_at(*f.model, {-4, 2, 1.5})));
     }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("OMPL propagates what steps fly, and ends before the step that is refu
     ompl::base::State* from = information->allocState();
     ompl::base::State* to = information->allocState();
     ompl::control::Control* control = information->allocControl();
-    planning::point_of(from) = f.flights.resting_at({-3, 2, 1.5707963267948966});
+    planning::point_of(from) = planning::resting_at(*f.model, {-3, 2, 1.5707963267948966});
     const double forward[3] = {1, 0, 0};
     std::copy(forward, forward + 3, control->as<ompl::control::RealVectorControlSpace::ControlType>()->values);
     const unsigned int steps = information->propagateWhileValid(from, control, 100, to);
@@ -177,13 +177,15 @@ TEST_CASE("OMPL propagates what steps fly, and ends before the step that is refu
 TEST_CASE("a discarded plan is counted and each planner goes on to another") {
     for (const char* algorithm : {"rrt", "sst", "kpiece1", "est"}) {
         CAPTURE(algorithm);
-        Fixture f;
+        Problem problem = test::ceiling_problem();
+        problem.planner.algorithm = algorithm;
+        Fixture f(problem);
         planning::Random random(1);
         int asked = 0;
         planning::ControlHooks hooks;
         hooks.is_over = [&](std::uint64_t iteration) { return iteration >= 20000 || asked >= 3; };
         hooks.accept = [&](const Plan&, double, std::uint64_t) { return ++asked == 3; };
-        const auto result = planning::plan_by_controls(algorithm, 1, f.flights, random, hooks);
+        const auto result = planning::plan_by_controls(f.flights, random, hooks);
         CHECK(asked == 3);
         CHECK(f.planned.statistics().rejected.at("direct_flight") == 2);
         CHECK(result.status == Status::solved);
@@ -191,12 +193,14 @@ TEST_CASE("a discarded plan is counted and each planner goes on to another") {
 }
 
 TEST_CASE("when every plan is discarded the nearest flight is approximate, never a solution") {
-    Fixture f;
+    Problem problem = test::ceiling_problem();
+    problem.planner.algorithm = "rrt";
+    Fixture f(problem);
     planning::Random random(1);
     planning::ControlHooks hooks;
     hooks.is_over = [](std::uint64_t iteration) { return iteration >= 3000; };
     hooks.accept = [](const Plan&, double, std::uint64_t) { return false; };
-    const auto result = planning::plan_by_controls("rrt", 1, f.flights, random, hooks);
+    const auto result = planning::plan_by_controls(f.flights, random, hooks);
     CHECK(f.planned.statistics().rejected.at("direct_flight") > 0);
     CHECK(result.status == Status::approximate);
     CHECK(result.plan);

@@ -15,13 +15,13 @@ struct Fixture {
     explicit Fixture(Problem given = test::ceiling_problem())
         : problem(std::move(given)),
           model(make_flight_model(problem)),
-          space(problem, *model),
           map(model->make_map(problem.bounds)),
-          flights(problem, *model, space, map.get()),
-          tree(problem, *model, space, flights) {}
+          task(problem, *model, map.get()),
+          flights(task),
+          tree(planning::start_point(task), flights) {}
 
     std::optional<planning::FlightTree::Flown> flown(const FlightNode& from, const Configuration& to) {
-        const planning::FlightTree::Edge edge{&from, space.seen_from(from.configuration, to)};
+        const planning::FlightTree::Edge edge{&from, task.space.seen_from(from.configuration, to)};
         return tree.flown({&edge, 1}).front();
     }
     FlightNode* fly(FlightNode& from, const Configuration& to) {
@@ -32,7 +32,7 @@ struct Fixture {
         const planning::FlightTree::Rewiring rewiring{&node, &parent};
         return tree.rewire({&rewiring, 1}) == 1;
     }
-    void verify(const FlightNode& node) const { flights.verify(tree.plan_to(node).reference, tree.states_to(node)); }
+    void verify(const FlightNode& node) const { flights.verify(planning::FlightTree::moments_to(node)); }
     /// The hold at a node, or nullptr.
     FlightNode* hold(FlightNode& node) {
         const std::size_t before = tree.holds().size();
@@ -43,8 +43,8 @@ struct Fixture {
 
     Problem problem;
     std::shared_ptr<const FlightModel> model;
-    planning::SearchSpace space;
     std::shared_ptr<const AeroMap> map;
+    planning::SearchTask task;
     planning::PlannedFlights flights;
     planning::FlightTree tree;
 };
@@ -63,7 +63,7 @@ TEST_CASE("re-flying from the start reproduces every node of a random tree bit f
     planning::Random random(7);
     int rewired = 0;
     for (int i = 0; i < 120; ++i) {
-        const Configuration to = f.space.sample(random);
+        const Configuration to = f.task.space.sample(random);
         const auto near = f.tree.nearest(to, 8);
         FlightNode* node = f.fly(*near.front(), to);
         if (node == nullptr) {
@@ -174,8 +174,9 @@ TEST_CASE("the nearest nodes come in the order of distance, an unlimited arm goi
     const Configuration query{-2, 2, -3.0};
     const auto nearest = f.tree.nearest(query, 2);
     REQUIRE(nearest.size() == 2);
-    CHECK(f.space.distance_m(nearest[0]->configuration, query) == Approx(0.6 * (2 * 3.14159265358979 - 6)));
-    CHECK(f.space.distance_m(nearest[0]->configuration, query) <= f.space.distance_m(nearest[1]->configuration, query));
+    CHECK(f.task.space.distance_m(nearest[0]->configuration, query) == Approx(0.6 * (2 * 3.14159265358979 - 6)));
+    CHECK(f.task.space.distance_m(nearest[0]->configuration, query) <=
+          f.task.space.distance_m(nearest[1]->configuration, query));
 }
 
 TEST_CASE("goal samples meet the goal with the arm on either side") {
@@ -186,11 +187,11 @@ TEST_CASE("goal samples meet the goal with the arm on either side") {
     int found = 0;
     int exact = 0;
     for (int i = 0; i < 200; ++i) {
-        if (const auto sample = f.space.sample_goal(random)) {
+        if (const auto sample = f.task.space.sample_goal(random)) {
             ++found;
-            CHECK(f.space.is_near_goal(*sample));
-            exact += f.space.error(*sample).distance_m < 1e-9 ? 1 : 0;
-            CHECK(f.space.is_valid(*sample));
+            CHECK(f.task.space.is_near_goal(*sample));
+            exact += f.task.space.error(*sample).distance_m < 1e-9 ? 1 : 0;
+            CHECK(f.task.space.is_valid(*sample));
             left = left || sample->x_m < f.problem.goal.end_effector->x_m;
             right = right || sample->x_m > f.problem.goal.end_effector->x_m;
         }

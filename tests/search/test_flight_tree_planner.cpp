@@ -1,3 +1,6 @@
+#include <ompl/base/goals/GoalState.h>
+#include <ompl/geometric/PathGeometric.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <utility>
@@ -5,8 +8,9 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/search/flight_space.hpp"
 #include "downwash/search/flight_tree_planner.hpp"
-#include "downwash/search/ompl_space.hpp"
+#include "downwash/search/quiet_ompl.hpp"
 
 using namespace downwash;
 
@@ -22,25 +26,23 @@ Problem with_wall() {
 /// Searches a problem, asking `counts` about every better plan.
 struct Search {
     Search(
-        std::uint64_t iterations, std::function<bool(const planning::Candidate&)> counts,
+        std::uint64_t iterations, std::function<bool(const planning::Candidate&)> survives,
         const std::function<bool()>& is_over = [] { return false; }, int threads = 1,
         Problem searched = test::ceiling_problem())
-        : problem(std::move(searched)),
-          flights(problem, *model, space, map.get(), {}, threads),
-          planner(planning::make_space_information(space, random, 0.1, queries), problem, tree, space, flights, random,
-                  {std::move(counts), [](const planning::Candidate&) {}}, threads) {
+        : problem(std::move(searched)), planner(ompl.information, task, threads) {
+        planner.setProblemDefinition(ompl.definition);
+        planner.set_hooks({std::move(survives), {}});
         planner.set_max_iterations(iterations);
         static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition(is_over)));
     }
+    [[nodiscard]] const planning::FlightTree& tree() const { return planner.tree(); }
 
     Problem problem;
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    planning::SearchSpace space{problem, *model};
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    planning::SearchTask task{problem, *model, map.get()};
     planning::Random random{1};
-    planning::PlannedFlights flights;
-    planning::FlightTree tree{problem, *model, space, flights};
-    planning::QueryCounts queries;
+    planning::OmplTask ompl{task, random};
     planning::FlightTreePlanner planner;
 };
 
@@ -58,7 +60,7 @@ TEST_CASE("a refused plan is counted and discarded, and the search goes on to an
     const Search search(300, counts);
     CHECK(refused.size() == 3);
     CHECK(search.planner.statistics().rejected.at("direct_flight") == 3);
-    REQUIRE(search.planner.incumbent());
+    REQUIRE(search.planner.best());
     CHECK(search.planner.iterations() == 300);
 }
 
@@ -71,8 +73,8 @@ TEST_CASE("what is refused does not depend on threads, nor does what comes of it
         };
         const Search search(
             1600, every_third, [] { return false; }, threads, with_wall());
-        REQUIRE(search.planner.incumbent());
-        asked.push_back(search.planner.incumbent()->cost);
+        REQUIRE(search.planner.best());
+        asked.push_back(search.planner.best()->cost);
         asked.push_back(static_cast<double>(search.planner.statistics().ticks));
         return asked;
     };
@@ -83,17 +85,17 @@ TEST_CASE("what is refused does not depend on threads, nor does what comes of it
 }
 
 TEST_CASE(
-    "a plan found with the last iterations counts as well, and no plan of the tree is cheaper than the incumbent") {
+    "a plan found with the last iterations counts as well, and no plan of the tree is cheaper than the best plan") {
     int with_plan = 0;
     for (std::uint64_t iterations = 1; iterations <= 120; iterations += iterations < 40 ? 1 : 20) {
         CAPTURE(iterations);
         const Search search(
             iterations, [](const planning::Candidate&) { return true; }, [] { return false; }, 1, with_wall());
-        const auto& holds = search.tree.holds();
-        REQUIRE(search.planner.incumbent().has_value() == !holds.empty());
+        const auto& holds = search.tree().holds();
+        REQUIRE(search.planner.best().has_value() == !holds.empty());
         with_plan += holds.empty() ? 0 : 1;
         for (const auto* hold : holds) {
-            CHECK(search.planner.incumbent()->cost <= hold->cost * (1 + 1e-6));
+            CHECK(search.planner.best()->cost <= hold->cost * (1 + 1e-6));
         }
     }
     CHECK(with_plan > 10);
@@ -103,7 +105,7 @@ TEST_CASE(
 TEST_CASE("when every plan is refused there is none, however many were found") {
     const Search search(60, [](const planning::Candidate&) { return false; });
     CHECK(search.planner.statistics().rejected.at("direct_flight") > 1);
-    CHECK_FALSE(search.planner.incumbent());
+    CHECK_FALSE(search.planner.best());
 }
 
 TEST_CASE("a plan that was accepted stays, although cheaper ones are refused") {
@@ -118,8 +120,8 @@ TEST_CASE("a plan that was accepted stays, although cheaper ones are refused") {
     };
     const Search search(200, only_the_first);
     REQUIRE(asked > 1);
-    REQUIRE(search.planner.incumbent());
-    CHECK(search.planner.incumbent()->cost == accepted);
+    REQUIRE(search.planner.best());
+    CHECK(search.planner.best()->cost == accepted);
 }
 
 TEST_CASE("a search whose time is over flies a few plans more, not all that it found") {
@@ -133,14 +135,14 @@ TEST_CASE("a search whose time is over flies a few plans more, not all that it f
             return false;
         },
         [&] {
-            const bool is_over = ++looks > 400;
+            const bool is_over = ++looks > 20000;  // flights ask too
             asked_in_time = is_over ? asked_in_time : asked;
             return is_over;
         });
-    CHECK_FALSE(search.planner.incumbent());
+    CHECK_FALSE(search.planner.best());
     CHECK(asked > asked_in_time);
     CHECK(asked - asked_in_time <= 5);  // one of them in the round that was under way
-    const auto& holds = search.tree.holds();
+    const auto& holds = search.tree().holds();
     CHECK(std::count_if(holds.begin(), holds.end(), [](const auto* hold) { return !hold->is_discarded; }) > 5);
 }
 
@@ -148,8 +150,8 @@ TEST_CASE("the tree can be read as OMPL's planner data") {
     const Search search(40, [](const planning::Candidate&) { return true; });
     ompl::base::PlannerData data(search.planner.getSpaceInformation());
     search.planner.getPlannerData(data);
-    CHECK(data.numVertices() == search.tree.size());
-    CHECK(data.numEdges() == search.tree.size() - 1);
+    CHECK(data.numVertices() == search.tree().size());
+    CHECK(data.numEdges() == search.tree().size() - 1);
     CHECK(data.numStartVertices() == 1);
 }
 
@@ -160,10 +162,145 @@ TEST_CASE("where nothing is in the way every flight begins at the start") {
     open.obstacles.clear();
     const Search search(
         300, [](const planning::Candidate&) { return true; }, [] { return false; }, 1, open);
-    const auto& nodes = search.tree.nodes();
+    const auto& nodes = search.tree().nodes();
     const auto from_start = std::count_if(nodes.begin(), nodes.end(), [&](const planning::FlightNode* node) {
         return node->parent == nodes.front() || node == nodes.front();
     });
     REQUIRE(nodes.size() > 30);
     CHECK(10 * from_start >= static_cast<std::ptrdiff_t>(9 * nodes.size()));
+}
+
+namespace {
+
+/// The planner as somebody else's program uses it: all that the contract of ompl::base::Planner offers, nothing else.
+struct AsPlanner {
+    explicit AsPlanner(Problem given = test::ceiling_problem()) : problem(std::move(given)) {
+        planner.setProblemDefinition(ompl.definition);
+    }
+    /// After so many evaluations of its termination condition the search is over.
+    ompl::base::PlannerStatus solve(int looks) {
+        return planner.solve(ompl::base::PlannerTerminationCondition([&looks] { return --looks < 0; }));
+    }
+    [[nodiscard]] std::size_t vertices() const {
+        ompl::base::PlannerData data(planner.getSpaceInformation());
+        planner.getPlannerData(data);
+        return data.numVertices();
+    }
+
+    Problem problem;
+    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    planning::SearchTask task{problem, *model, map.get()};
+    planning::Random random{1};
+    planning::OmplTask ompl{task, random};
+    planning::FlightTreePlanner planner{ompl.information, task};
+};
+
+}  // namespace
+
+TEST_CASE("a solution is handed to the problem definition with its cost, every moment of it on the way") {
+    AsPlanner search;
+    REQUIRE(search.solve(3000) == ompl::base::PlannerStatus::EXACT_SOLUTION);
+    REQUIRE(search.ompl.definition->hasExactSolution());
+    auto* path = search.ompl.definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
+    REQUIRE(path->getStateCount() >= 3);
+    CHECK(planning::is_same_moment(planning::point_of(path->getState(0)), planning::start_point(search.task)));
+    CHECK(path->cost(search.ompl.definition->getOptimizationObjective()).value() ==
+          Approx(search.planner.best()->cost).epsilon(1e-12));
+    CHECK(search.ompl.definition->getGoal()->isSatisfied(path->getStates().back()));
+    CHECK(path->check());
+    std::vector<planning::FlightPoint> moments;
+    for (const ompl::base::State* state : path->getStates()) {
+        moments.push_back(planning::point_of(state));
+    }
+    CHECK_NOTHROW(planning::PlannedFlights(search.task).verify(moments));
+}
+
+TEST_CASE("a search that is over before it found a plan says how near it came") {
+    AsPlanner search(with_wall());
+    REQUIRE(search.solve(60) == ompl::base::PlannerStatus::APPROXIMATE_SOLUTION);
+    CHECK_FALSE(search.ompl.definition->hasExactSolution());
+    CHECK(search.ompl.definition->hasApproximateSolution());
+    CHECK(search.ompl.definition->getSolutionDifference() == search.planner.nearest_distance_m());
+}
+
+TEST_CASE("a search that is resumed keeps its tree and its best plan") {
+    AsPlanner search;
+    REQUIRE(search.solve(2000) == ompl::base::PlannerStatus::EXACT_SOLUTION);
+    const double cost = search.planner.best()->cost;
+    const std::size_t vertices = search.vertices();
+    const std::uint64_t iterations = search.planner.iterations();
+    REQUIRE(search.solve(4000) == ompl::base::PlannerStatus::EXACT_SOLUTION);
+    CHECK(search.planner.best()->cost < cost);
+    CHECK(search.vertices() > vertices);
+    CHECK(search.planner.iterations() > iterations);
+}
+
+TEST_CASE("after clear() a planner does again what it did the first time") {
+    AsPlanner search;
+    search.planner.set_max_iterations(200);
+    const auto run = [&search] {
+        search.planner.solve(ompl::base::plannerNonTerminatingCondition());
+        return std::vector<double>{search.planner.best()->cost, static_cast<double>(search.vertices()),
+                                   static_cast<double>(search.planner.statistics().ticks)};
+    };
+    const std::vector<double> first = run();
+    search.planner.clear();
+    CHECK(search.vertices() == 0);
+    CHECK_FALSE(search.planner.best());
+    CHECK(search.planner.statistics().ticks == 0);
+    search.ompl.definition->clearSolutionPaths();
+    CHECK(run() == first);
+}
+
+TEST_CASE("a definition without the task's start or goal is no problem for this planner") {
+    AsPlanner search;
+    const planning::QuietOmpl quiet;
+    SECTION("a goal of another kind") {
+        search.ompl.definition->setGoal(std::make_shared<ompl::base::GoalState>(search.ompl.information));
+        CHECK(search.solve(100) == ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE);
+    }
+    SECTION("the goal of another task") {
+        AsPlanner other;
+        search.ompl.definition->setGoal(other.ompl.definition->getGoal());
+        CHECK(search.solve(100) == ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE);
+    }
+    SECTION("no valid start") {
+        planning::point_of(search.ompl.definition->getStartState(0)).is_valid = false;
+        CHECK(search.solve(100) == ompl::base::PlannerStatus::INVALID_START);
+    }
+}
+
+TEST_CASE("the planner's parameters are those of the algorithm, can be set, and are checked by setup()") {
+    Problem problem = test::ceiling_problem();
+    problem.planner.parameters["goal_bias"] = 0.25;
+    AsPlanner search(problem);
+    std::map<std::string, std::string> values;
+    search.planner.params().getParams(values);
+    const auto known = algorithm_parameters(problem.planner);
+    REQUIRE(values.size() == known.size());
+    for (const AlgorithmParameter& parameter : known) {
+        CAPTURE(parameter.name);
+        const double expected = parameter.name == "goal_bias" ? 0.25 : parameter.value;
+        CHECK(std::stod(values.at(std::string(parameter.name))) == Approx(expected));
+    }
+    search.planner.params().setParam("batch_size", "0");
+    CHECK_THROWS_WITH(search.planner.setup(), Catch::Contains("batch_size is 0: expected a number from 1"));
+    search.planner.params().setParam("batch_size", "8");
+    CHECK_NOTHROW(search.planner.setup());
+}
+
+TEST_CASE("a parameter changes the search, and its default does not") {
+    const auto ticks_with = [](std::map<std::string, double, std::less<>> parameters) {
+        Problem problem = test::ceiling_problem();
+        problem.planner.parameters = std::move(parameters);
+        AsPlanner search(problem);
+        search.planner.set_max_iterations(150);
+        search.planner.solve(ompl::base::plannerNonTerminatingCondition());
+        return search.planner.statistics().ticks;
+    };
+    const std::uint64_t usual = ticks_with({});
+    CHECK(ticks_with({{"batch_size", 32}, {"optimism", 0.9}}) == usual);
+    CHECK(ticks_with({{"batch_size", 8}}) != usual);
+    CHECK(ticks_with({{"first_goal_bias", 0.1}}) != usual);
 }

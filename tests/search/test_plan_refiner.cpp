@@ -17,11 +17,11 @@ struct Fixture {
 
     Problem problem = test::ceiling_problem();
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    planning::SearchSpace space{problem, *model};
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
     planning::Random random;
-    planning::PlannedFlights flights{problem, *model, space, map.get()};
-    planning::PlanRefiner refiner{problem, space, flights, random};
+    planning::SearchTask task{problem, *model, map.get()};
+    planning::PlannedFlights flights{task};
+    planning::PlanRefiner refiner{planning::start_point(task), flights, random};
 
     [[nodiscard]] Plan stop_and_go() const {
         const double up = -1.5707963267948966;  // the arm, from a vehicle 1.2 m below the goal
@@ -67,7 +67,7 @@ TEST_CASE(
         f.refiner.improve();
     }
     const planning::FlownPlan& flown = *f.refiner.champion();
-    const Plan plan = f.refiner.plan_of(flown);
+    const Plan plan = planning::plan_through(f.refiner.moments_of(flown), f.model->tick().tick_s);
     FlightState state = start_state(*f.model, f.problem.start);
     for (std::size_t i = 1; i < plan.reference.size(); ++i) {
         const ReferenceSegment segment(plan.reference[i - 1].point, plan.reference[i].point,

@@ -21,8 +21,8 @@ struct Fixture {
 
     Problem problem;
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    planning::SearchSpace space{problem, *model};
-    planning::PlannedFlights flights{problem, *model, space, nullptr};
+    planning::SearchTask task{problem, *model, nullptr};
+    planning::PlannedFlights flights{task};
 };
 
 }  // namespace
@@ -100,7 +100,7 @@ TEST_CASE("a flight that comes nearer than the margin is rejected") {
         problem.start.z_m = from.z_m;
         problem.start.arm_rad = from.arm_rad;
         Fixture f(std::move(problem));
-        FlightJob job{f.flights.start(), {{f.segment(from, to)}}, 0};
+        FlightJob job{f.task.start, {{f.segment(from, to)}}, 0};
         f.flights.fly({&job, 1});
         CHECK(f.flights.statistics().rejected.at("collision") == (job.rejection() == Rejection::collision ? 1 : 0));
         CHECK(f.flights.statistics().edges == 1);

@@ -242,7 +242,8 @@ TEST_CASE("no motion is cheaper than the least that is said of it, however it is
         for (Problem problem : {test::ceiling_problem(), with_configuration_goal()}) {
             problem.planner.objective = objective;
             const Fixture f(problem);
-            const planning::FreeAirCost cost(f.problem, *f.model, f.space);
+            const planning::SearchTask task(f.problem, *f.model, nullptr);
+            const planning::FreeAirCost cost(task);
             planning::Random random(5);
             double tightest = 0;
             for (int i = 0; i < 200; ++i) {

@@ -1,0 +1,203 @@
+#include "downwash/planner/flight_search.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "downwash/planner/search_clock.hpp"
+#include "downwash/rivals/control_planners.hpp"
+#include "downwash/search/flight_space.hpp"
+#include "downwash/search/flight_tree_planner.hpp"
+#include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/search_tree.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
+Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
+    const auto nearest =
+        std::min_element(flight.rows.begin(), flight.rows.end(),
+                         [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
+    const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
+    const double(&q)[4] = (is_too_near ? *nearest : flight.rows.back()).q;
+    return {"direct_flight", configuration_of(q), space.goal_distance_m(configuration_of(q))};
+}
+
+/// A search whose edges are flights: every better plan of MP-ARM-ADA is executed with direct aerodynamics before it
+/// counts, and everything that was simulated is accounted for.
+class FlightSearch {
+ public:
+    FlightSearch(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
+                 const Course& before, const SolveOptions& options, Solution& solution)
+        : options_(options),
+          before_(before),
+          goals_(before.goals),
+          solution_(solution),
+          clock_(part, options, solution),
+          task_(part, model, map, before.vehicle),
+          start_(start_state(model, whole.start)) {
+        goals_.push_back(part.goal);
+    }
+
+    /// RRT* of flights.
+    void run_tree();
+    /// OMPL's planners over controls.
+    void run_controls();
+
+ private:
+    [[nodiscard]] bool survives_execution(const Plan& plan);
+    void accept(const Plan& plan, double cost, std::uint64_t iteration);
+    void account(std::uint64_t iterations, const FlightStatistics& statistics);
+    void report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan, double cost,
+                        std::optional<double> nearest_approach_m);
+
+    const SolveOptions& options_;
+    const Course& before_;
+    std::vector<Goal> goals_;  ///< up to the one that is searched for
+    Solution& solution_;
+    SearchClock clock_;
+    SearchTask task_;
+    FlightState start_;                   ///< of the whole flight
+    std::optional<Execution> execution_;  ///< made last
+    double execution_wall_s_ = 0;
+    std::optional<Obstruction> discarded_;  ///< what discarded the last plan that was
+    double known_at_s_ = 0;                 ///< when it was known whether the last plan counts
+};
+
+/// Executes a plan and says whether it counts: that of MP-ARM-ADA has to reach its goal and to keep the margin.
+bool FlightSearch::survives_execution(const Plan& plan) {
+    clock_.found_first(clock_.seconds());
+    const PlannerSettings& settings = task_.problem.planner;
+    if (settings.variant == Variant::mp_arm_ada) {
+        execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_);
+    }
+    known_at_s_ = clock_.seconds();
+    if (!execution_ ||
+        (execution_->outcome == Outcome::ok && execution_->min_clearance_m >= settings.safety_margin_m)) {
+        return true;
+    }
+    discarded_ = obstruction_of(*execution_, task_.space);
+    return false;
+}
+
+/// Takes on the plan that survived last; it has counted since that was known. One that is cheaper in the planner's
+/// model only, and not when executed, is no better.
+void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration) {
+    const CostFunction& objective = task_.problem.planner.objective;
+    std::optional<double> executed_cost;
+    if (execution_) {
+        executed_cost = cost_of(*execution_, objective);
+        if (solution_.execution && *executed_cost >= cost_of(*solution_.execution, objective)) {
+            return;
+        }
+        solution_.execution = std::move(*std::exchange(execution_, std::nullopt));
+        solution_.planning.flight_wall_s = execution_wall_s_;
+    }
+    solution_.status = Status::solved;
+    solution_.plan = plan;
+    solution_.cost = cost;
+    clock_.improved(known_at_s_, cost, iteration, executed_cost);
+}
+
+void FlightSearch::account(std::uint64_t iterations, const FlightStatistics& statistics) {
+    SearchRecord& record = solution_.planning;
+    record.wall_s = clock_.seconds();
+    record.iterations = iterations;
+    record.edges_simulated = statistics.edges;
+    record.simulated_s = static_cast<double>(statistics.ticks) * task_.model.tick().tick_s;
+    record.states_checked = statistics.states_checked;
+    record.rejected = statistics.rejected;
+}
+
+/// Of a search that found no plan that counts: what it came to, and what stood before the goal. If it had a plan, that
+/// is what became of its execution.
+void FlightSearch::report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan,
+                                  double cost, std::optional<double> nearest_approach_m) {
+    solution_.planning.obstruction = discarded_ ? discarded_ : statistics.obstruction;
+    solution_.planning.nearest_approach_m = nearest_approach_m;
+    solution_.status = status;
+    solution_.plan = std::move(plan);
+    solution_.cost = cost;
+}
+
+void FlightSearch::run_controls() {
+    const PlannerSettings& settings = task_.problem.planner;
+    Random random(settings.seed);
+    PlannedFlights planned(
+        task_, [this] { return clock_.is_over(); }, options_.threads);
+    const SteeredFlights flights(planned);
+    ControlHooks hooks;
+    hooks.keep_tree = options_.keep_tree;
+    hooks.is_over = [&](std::uint64_t iteration) {
+        clock_.report(iteration, planned.statistics().edges, planned.statistics().rejections);
+        return clock_.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
+    };
+    hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
+        if (!survives_execution(plan)) {
+            return false;
+        }
+        accept(plan, cost, iteration);
+        return true;
+    };
+    ControlResult result = plan_by_controls(flights, random, hooks);
+    account(result.iterations, planned.statistics());
+    solution_.tree = std::move(result.tree);
+    if (solution_.status != Status::solved) {
+        report_failure(planned.statistics(), result.status, std::move(result.plan), result.cost,
+                       result.nearest_approach_m);
+    }
+}
+
+void FlightSearch::run_tree() {
+    const QuietOmpl quiet;
+    const PlannerSettings& settings = task_.problem.planner;
+    const double tick_s = task_.model.tick().tick_s;
+    Random random(settings.seed);  // of OMPL's samplers, which the tree does not ask
+    const OmplTask task(task_, random);
+    FlightTreePlanner planner(task.information, task_, options_.threads);
+    planner.setProblemDefinition(task.definition);
+    planner.set_hooks(
+        {[&](const Candidate& candidate) { return survives_execution(plan_through(candidate.moments, tick_s)); },
+         [&](const Candidate& candidate) {
+             accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
+         }});
+    planner.set_max_iterations(settings.max_iterations);
+    planner.set_stops_at_first_plan(options_.stop_at_first_solution);
+    planner.set_observer(
+        [&] { clock_.report(planner.iterations(), planner.tree().size(), planner.statistics().rejections); });
+    planner.setup();
+    planner.solve(ompl::base::PlannerTerminationCondition([this] { return clock_.is_over(); }));
+
+    const FlightStatistics statistics = planner.statistics();
+    account(planner.iterations(), statistics);
+    if (options_.keep_tree) {
+        solution_.tree = tree_of(
+            planner, [](const ompl::base::State* state) { return configuration_of(point_of(state).reference); });
+    }
+    if (solution_.status != Status::solved) {
+        const FlightNode& nearest = planner.nearest_to_goal();
+        const bool has_moved = nearest.parent != nullptr;
+        report_failure(statistics, has_moved ? Status::approximate : Status::none,
+                       has_moved ? std::optional(planner.tree().plan_to(nearest)) : std::nullopt,
+                       has_moved ? nearest.cost : 0, planner.nearest_distance_m());
+    }
+}
+
+}  // namespace
+
+Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
+                           const std::vector<Goal>& goals, double& wall_s) {
+    const Stopwatch clock;
+    Execution execution = execute(model, start, plan.reference, goals, true);
+    wall_s = clock.seconds();
+    return execution;
+}
+
+void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
+                    const Course& before, const SolveOptions& options, Solution& solution) {
+    FlightSearch search(part, whole, model, map, before, options, solution);
+    part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "downwash/planner/goal_sequence.hpp"
+
+namespace downwash::planning {
+
+/// Executes a plan with direct aerodynamics, from the start through all goals.
+/// @param wall_s set to how long that took [s]
+[[nodiscard]] Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
+                                         const std::vector<Goal>& goals, double& wall_s);
+
+/// MP-ARM-DA and MP-ARM-ADA: searches a flight to the goal of a problem without stops.
+/// @param part the problem up to that goal   @param whole the problem that it is a part of, or itself
+/// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
+void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
+                    const Course& before, const SolveOptions& options, Solution& solution);
+
+}  // namespace downwash::planning

@@ -1,0 +1,50 @@
+#include "downwash/planner/line_search.hpp"
+
+#include <utility>
+
+#include "downwash/planner/search_clock.hpp"
+#include "downwash/rivals/mp_arm.hpp"
+#include "downwash/search/planned_flights.hpp"
+
+namespace downwash::planning {
+
+void search_lines(const Problem& problem, const FlightModel& model, const SolveOptions& options, Solution& solution) {
+    const SearchTask task(problem, model, nullptr);
+    Random random(problem.planner.seed);
+    SearchClock search(problem, options, solution);
+    GeometricHooks hooks;
+    hooks.keep_tree = options.keep_tree;
+    hooks.is_over = [&](const GeometricProgress& progress) {
+        search.report(progress.iteration, progress.nodes, progress.refused);
+        return search.is_over() ||
+               (problem.planner.max_iterations && progress.iteration >= *problem.planner.max_iterations);
+    };
+    hooks.on_improvement = [&](double cost, std::uint64_t iteration) {
+        const double now_s = search.seconds();
+        search.found_first(now_s);
+        search.improved(now_s, cost, iteration, {});
+    };
+    GeometricResult result = plan_geometrically(task, random, hooks);
+    solution.tree = std::move(result.tree);
+    SearchRecord& record = solution.planning;
+    record.wall_s = search.seconds();
+    record.iterations = result.iterations;
+    record.states_checked = result.states_checked;
+    record.rejected = no_rejections();
+    record.rejected["collision"] = result.refused_collision;
+    record.rejected["bounds"] = result.refused_bounds;
+    if (result.status != Status::solved) {
+        record.nearest_approach_m = result.nearest_approach_m;
+    }
+    if (result.plan && result.plan->reference.back().tick > max_plan_ticks) {
+        record.rejected["too_long"] = 1;
+        record.improvements.clear();
+        record.first_solution_wall_s.reset();
+        return;
+    }
+    solution.status = result.status;
+    solution.plan = std::move(result.plan);
+    solution.cost = result.cost;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve_options.hpp"
+
+namespace downwash::planning {
+
+/// Wall time since it was made.
+class Stopwatch {
+ public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+ private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// What every search has in common: its limits, its clock, and whom it tells.
+class SearchClock {
+ public:
+    SearchClock(const Problem& problem, const SolveOptions& options, Solution& solution)
+        : settings_(problem.planner), options_(options), solution_(solution) {
+        if (settings_.time_limit_s || !settings_.max_iterations) {
+            limit_s_ = settings_.time_limit_s.value_or(default_time_limit_s);
+        }
+    }
+
+    /// Since construction [s].
+    [[nodiscard]] double seconds() const { return clock_.seconds(); }
+
+    /// Whether time, the caller or a first solution ends the search.
+    [[nodiscard]] bool is_over() const {
+        return options_.stop.stop_requested() || (limit_s_ && clock_.seconds() >= *limit_s_) ||
+               (options_.stop_at_first_solution && !solution_.planning.improvements.empty());
+    }
+
+    /// The planner's own model has accepted a plan.
+    void found_first(double at_s) {
+        if (!solution_.planning.first_solution_wall_s) {
+            solution_.planning.first_solution_wall_s = at_s;
+        }
+    }
+
+    /// A better plan counts.
+    void improved(double at_s, double cost, std::uint64_t iteration, std::optional<double> flown_cost) {
+        solution_.planning.improvements.push_back({at_s, iteration, cost, flown_cost});
+    }
+
+    /// Tells the caller how the search goes, up to ten times a second.
+    void report(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
+        constexpr double period_s = 0.1;
+        const double now_s = clock_.seconds();
+        if (!options_.on_progress || now_s < reported_s_ + period_s) {
+            return;
+        }
+        reported_s_ = now_s;
+        const auto& improvements = solution_.planning.improvements;
+        options_.on_progress({now_s, iterations, nodes, rejected,
+                              improvements.empty() ? std::nullopt : std::optional(improvements.back().cost)});
+    }
+
+ private:
+    const PlannerSettings& settings_;
+    const SolveOptions& options_;
+    Solution& solution_;
+    Stopwatch clock_;
+    std::optional<double> limit_s_;
+    double reported_s_ = 0;
+};
+
+}  // namespace downwash::planning

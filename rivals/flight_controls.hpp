@@ -1,0 +1,26 @@
+#pragma once
+
+#include <ompl/base/Goal.h>
+#include <ompl/control/SpaceInformation.h>
+
+#include "downwash/rivals/steered_flights.hpp"
+#include "downwash/search/flight_space.hpp"
+
+// Steered flights as OMPL's planners over controls see them: controls are reference velocities held over whole steps.
+
+namespace downwash::planning {
+
+/// Longest time for which a planner holds a control, in steps.
+inline constexpr unsigned int max_control_steps = 8;
+
+/// State space, control space, samplers, validity and propagation. The arguments must outlive it.
+[[nodiscard]] ompl::control::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, Random& random);
+
+/// The goal: moments from which a flight can close. isSatisfied() flies.
+[[nodiscard]] ompl::base::GoalPtr make_closing_goal(const ompl::control::SpaceInformationPtr& information,
+                                                    const SteeredFlights& flights, Random& random);
+
+/// The reference velocity that a control of that space asks for: (x, z, arm) [m/s, m/s, rad/s].
+[[nodiscard]] const double* velocity_of(const ompl::control::Control* control);
+
+}  // namespace downwash::planning

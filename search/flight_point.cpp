@@ -1,0 +1,40 @@
+#include "downwash/search/flight_point.hpp"
+
+#include <cstring>
+#include <type_traits>
+
+namespace downwash::planning {
+
+FlightPoint start_point(const SearchTask& task) {
+    FlightPoint point;
+    point.vehicle = task.start;
+    point.reference = reference_at(task.problem.start);
+    point.rest = task.problem.start.configuration();
+    return point;
+}
+
+FlightPoint resting_at(const FlightModel& model, const Configuration& c) {
+    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
+    const double u[4] = {};
+    FlightPoint point;
+    point.vehicle = model.state_at(q, u);
+    point.reference = at_rest(c);
+    point.rest = c;
+    return point;
+}
+
+bool is_same_moment(const FlightPoint& a, const FlightPoint& b) {
+    static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
+    return std::memcmp(&a.vehicle, &b.vehicle, sizeof(FlightState)) == 0 && a.reference == b.reference;
+}
+
+Plan plan_through(const std::vector<FlightPoint>& moments, double tick_s) {
+    Plan plan;
+    plan.tick_s = tick_s;
+    for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
+        plan.reference.push_back({moments[i].ticks, moments[i].reference});
+    }
+    return plan;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,195 @@
+#include "downwash/search/flight_space.hpp"
+
+#include <ompl/base/ProjectionEvaluator.h>
+#include <ompl/base/ScopedState.h>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/StateSampler.h>
+
+#include <limits>
+
+#include "downwash/base/lane_math.hpp"
+
+namespace downwash::planning {
+namespace {
+
+namespace ob = ompl::base;
+
+class Moment : public ob::State {
+ public:
+    FlightPoint point;
+};
+
+/// Samples moments of rest with the caller's generator.
+class Sampler : public ob::StateSampler {
+ public:
+    Sampler(const ob::StateSpace* states, const SearchTask& task, Random& random)
+        : ob::StateSampler(states), task_(task), random_(random) {}
+
+    void sampleUniform(ob::State* state) override {
+        point_of(state) = resting_at(task_.model, task_.space.sample(random_));
+    }
+    void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
+        point_of(state) = resting_at(task_.model, task_.space.sample_near(point_of(near).rest, distance, random_));
+    }
+    void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
+        sampleUniformNear(state, mean, 2 * deviation);
+    }
+
+ private:
+    const SearchTask& task_;
+    Random& random_;
+};
+
+/// (x, z, arm) of the place of rest, the arm as a length.
+class PlaceOfRest : public ob::ProjectionEvaluator {
+ public:
+    PlaceOfRest(const ob::StateSpace* states, const SearchSpace& space)
+        : ob::ProjectionEvaluator(states), search_(space) {}
+
+    unsigned int getDimension() const override { return 3; }
+    void defaultCellSizes() override {
+        constexpr double cell_m = 1.0;
+        cellSizes_ = {cell_m, cell_m, cell_m};
+    }
+    void project(const ob::State* state, Eigen::Ref<Eigen::VectorXd> projection) const override {
+        const Configuration& rest = point_of(state).rest;
+        projection[0] = rest.x_m;
+        projection[1] = rest.z_m;
+        projection[2] =
+            search_.arm_weight_m() * (search_.arm_is_limited() ? rest.arm_rad : lane::wrap_angle(rest.arm_rad));
+    }
+
+ private:
+    const SearchSpace& search_;
+};
+
+class FlightSpace : public ob::StateSpace {
+ public:
+    FlightSpace(const SearchTask& task, Random& random) : task_(task), random_(random) {
+        setName("Flights");
+        type_ = ob::STATE_SPACE_UNKNOWN;
+    }
+
+    unsigned int getDimension() const override { return 3; }
+    double getMaximumExtent() const override { return space().extent_m(); }
+    double getMeasure() const override {
+        const Bounds& b = space().bounds();
+        return (b.x_high_m - b.x_low_m) * (b.z_high_m - b.z_low_m) * space().arm_weight_m() *
+               (space().arm_high_rad() - space().arm_low_rad());
+    }
+    /// Not one: moments of rest at the same place differ in cost and time. OMPL then searches neighbours in a way that
+    /// draws no random numbers.
+    bool isMetricSpace() const override { return false; }
+    bool hasSymmetricInterpolate() const override { return false; }
+    void enforceBounds(ob::State*) const override {}  // samples keep them, and a flight cannot be moved
+    /// Of the reference; a start in motion may come to rest outside.
+    bool satisfiesBounds(const ob::State* state) const override {
+        return space().is_inside(configuration_of(point_of(state).reference));
+    }
+    void copyState(ob::State* to, const ob::State* from) const override { point_of(to) = point_of(from); }
+    double distance(const ob::State* a, const ob::State* b) const override {
+        return space().distance_m(point_of(a).rest, point_of(b).rest);
+    }
+    bool equalStates(const ob::State* a, const ob::State* b) const override {
+        return is_same_moment(point_of(a), point_of(b));
+    }
+    /// Between two moments there is only flight: the nearer one stands for it.
+    void interpolate(const ob::State* from, const ob::State* to, double s, ob::State* state) const override {
+        point_of(state) = s < 0.5 ? point_of(from) : point_of(to);
+    }
+    ob::StateSamplerPtr allocDefaultStateSampler() const override {
+        return std::make_shared<Sampler>(this, task_, random_);
+    }
+    ob::State* allocState() const override { return new Moment; }
+    void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
+    void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
+
+ private:
+    [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
+
+    const SearchTask& task_;
+    Random& random_;
+};
+
+class Validity : public ob::StateValidityChecker {
+ public:
+    using ob::StateValidityChecker::StateValidityChecker;
+    bool isValid(const ob::State* state) const override { return point_of(state).is_valid; }
+};
+
+class FlightObjective : public ob::OptimizationObjective {
+ public:
+    explicit FlightObjective(const ob::SpaceInformationPtr& information) : ob::OptimizationObjective(information) {
+        // SST ends with any solution, and is sent on to the next better one.
+        setCostThreshold(infiniteCost());
+    }
+    ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
+    ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
+        return ob::Cost(point_of(to).cost - point_of(from).cost);
+    }
+    bool isSymmetric() const override { return false; }
+};
+
+}  // namespace
+
+FlightPoint& point_of(ob::State* state) {
+    return static_cast<Moment*>(state)->point;
+}
+
+const FlightPoint& point_of(const ob::State* state) {
+    return static_cast<const Moment*>(state)->point;
+}
+
+ob::StateSpacePtr make_flight_space(const SearchTask& task, Random& random) {
+    return std::make_shared<FlightSpace>(task, random);
+}
+
+ob::StateValidityCheckerPtr make_flight_validity(const ob::SpaceInformationPtr& information) {
+    return std::make_shared<Validity>(information);
+}
+
+ob::OptimizationObjectivePtr make_flight_objective(const ob::SpaceInformationPtr& information) {
+    return std::make_shared<FlightObjective>(information);
+}
+
+FlightGoal::FlightGoal(const ob::SpaceInformationPtr& information, const SearchTask& task, Random& random)
+    : ob::GoalSampleableRegion(information), task_(task), random_(random) {}
+
+double FlightGoal::distanceGoal(const ob::State* state) const {
+    return task_.space.goal_distance_m(point_of(state).rest);
+}
+
+bool FlightGoal::isSatisfied(const ob::State* state) const {
+    const FlightPoint& point = point_of(state);
+    return is_at_rest(point.reference) && task_.space.is_near_goal(configuration_of(point.reference));
+}
+
+bool FlightGoal::isSatisfied(const ob::State* state, double* distance) const {
+    if (distance != nullptr) {
+        *distance = distanceGoal(state);
+    }
+    return isSatisfied(state);
+}
+
+void FlightGoal::sampleGoal(ob::State* state) const {
+    const std::optional<Configuration> sample = task_.space.sample_goal(random_);
+    point_of(state) = resting_at(task_.model, sample ? *sample : task_.space.sample(random_));
+}
+
+unsigned int FlightGoal::maxSampleCount() const {
+    return std::numeric_limits<unsigned int>::max();
+}
+
+OmplTask::OmplTask(const SearchTask& task, Random& random)
+    : information(std::make_shared<ob::SpaceInformation>(make_flight_space(task, random))),
+      definition(std::make_shared<ob::ProblemDefinition>(information)) {
+    information->setStateValidityChecker(make_flight_validity(information));
+    information->setup();
+    ob::ScopedState<> start(information);
+    point_of(start.get()) = start_point(task);
+    definition->addStartState(start);
+    definition->setGoal(std::make_shared<FlightGoal>(information, task, random));
+    definition->setOptimizationObjective(make_flight_objective(information));
+}
+
+}  // namespace downwash::planning
