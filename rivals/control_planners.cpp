@@ -7,13 +7,13 @@
 #include <ompl/control/planners/kpiece/KPIECE1.h>
 #include <ompl/control/planners/rrt/RRT.h>
 #include <ompl/control/planners/sst/SST.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
 
 #include <cmath>
 #include <stdexcept>
 
 #include "downwash/rivals/flight_controls.hpp"
 #include "downwash/rivals/ompl_parameters.hpp"
+#include "downwash/rivals/seeded.hpp"
 #include "downwash/search/quiet_ompl.hpp"
 #include "downwash/search/search_tree.hpp"
 
@@ -23,15 +23,6 @@ namespace {
 namespace ob = ompl::base;
 namespace oc = ompl::control;
 
-/// A planner of OMPL's with a generator of its own seed.
-template <class Planner>
-class Seeded : public Planner {
- public:
-    Seeded(const oc::SpaceInformationPtr& information, std::uint32_t seed) : Planner(information) {
-        this->rng_.setLocalSeed(seed);
-    }
-};
-
 class SeededSst : public Seeded<oc::SST> {
  public:
     using Seeded::Seeded;
@@ -40,27 +31,19 @@ class SeededSst : public Seeded<oc::SST> {
     void forget_solution() { prevSolutionCost_ = opt_->infiniteCost(); }
 };
 
-/// Gives a planner its problem, and an exact neighbour search that draws no random numbers.
-template <class Planner>
-std::shared_ptr<Planner> with_neighbours(std::shared_ptr<Planner> planner, const ob::ProblemDefinitionPtr& definition) {
-    planner->setProblemDefinition(definition);  // SST's set-up needs the objective
-    planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
-    return planner;
-}
-
-struct PreparedPlanner {
+struct ResumablePlanner {
     ob::PlannerPtr planner;
     bool is_anytime = false;
     std::function<void()> forget_solution = [] {};  ///< after one was discarded
 };
 
-PreparedPlanner prepared_planner(std::string_view algorithm, const oc::SpaceInformationPtr& information,
+ResumablePlanner prepared_planner(std::string_view algorithm, const oc::SpaceInformationPtr& information,
                                  const ob::ProblemDefinitionPtr& definition, std::uint32_t seed) {
     if (algorithm == "rrt") {
-        return {with_neighbours(std::make_shared<Seeded<oc::RRT>>(information, seed), definition)};
+        return {with_linear_neighbours(std::make_shared<Seeded<oc::RRT>>(information, seed), definition)};
     }
     if (algorithm == "sst") {
-        const auto sst = with_neighbours(std::make_shared<SeededSst>(information, seed), definition);
+        const auto sst = with_linear_neighbours(std::make_shared<SeededSst>(information, seed), definition);
         return {sst, true, [sst] { sst->forget_solution(); }};
     }
     if (algorithm == "kpiece1") {
@@ -94,7 +77,7 @@ class ControlSearch {
     ControlSearch(const SteeredFlights& flights, const ControlHooks& hooks)
         : flights_(flights), hooks_(hooks), nearest_{flights.start()} {}
 
-    void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
+    void run(const ResumablePlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
         review({flights_.start()});
         while (!(result_.plan && !prepared.is_anytime) && !is_over_) {
             const std::uint64_t before = iterations_;
@@ -190,7 +173,7 @@ ControlResult plan_by_controls(const SteeredFlights& flights, Random& random, co
     definition->setGoal(make_closing_goal(information, flights, random));
     definition->setOptimizationObjective(make_flight_objective(information));
 
-    const PreparedPlanner prepared = prepared_planner(settings.algorithm, information, definition, settings.seed);
+    const ResumablePlanner prepared = prepared_planner(settings.algorithm, information, definition, settings.seed);
     prepared.planner->setProblemDefinition(definition);
     set_parameters(*prepared.planner, settings);
     prepared.planner->setup();

@@ -4,7 +4,6 @@
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/samplers/InformedStateSampler.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/rrt/InformedRRTstar.h>
@@ -14,9 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 
 #include "downwash/rivals/ompl_parameters.hpp"
+#include "downwash/rivals/seeded.hpp"
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/search/ompl_space.hpp"
 #include "downwash/search/quiet_ompl.hpp"
@@ -30,22 +29,6 @@ namespace ob = ompl::base;
 
 namespace og = ompl::geometric;
 
-/// A planner of OMPL's with a generator of its own seed.
-template <class Planner>
-class Seeded : public Planner {
- public:
-    Seeded(const ob::SpaceInformationPtr& information, std::uint32_t seed) : Planner(information) {
-        this->rng_.setLocalSeed(seed);
-    }
-
-    [[nodiscard]] std::size_t nodes() const requires std::is_base_of_v<og::RRTstar, Planner> {
-        return this->nn_ ? this->nn_->size() : 0;
-    }
-    [[nodiscard]] std::size_t nodes() const requires std::is_same_v<og::RRTConnect, Planner> {
-        return this->tStart_->size() + this->tGoal_->size();
-    }
-};
-
 struct PreparedPlanner {
     ob::PlannerPtr planner;
     std::function<std::size_t()> nodes;
@@ -54,10 +37,7 @@ struct PreparedPlanner {
 template <class Planner>
 PreparedPlanner prepared(const ob::SpaceInformationPtr& information, const ob::ProblemDefinitionPtr& definition,
                          std::uint32_t seed) {
-    const auto planner = std::make_shared<Seeded<Planner>>(information, seed);
-    planner->setProblemDefinition(definition);
-    // Exact, and draws no random numbers.
-    planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
+    const auto planner = with_linear_neighbours(std::make_shared<Seeded<Planner>>(information, seed), definition);
     return {planner, [planner] { return planner->nodes(); }};
 }
 

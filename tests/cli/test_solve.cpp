@@ -197,14 +197,19 @@ TEST_CASE("Rotors that lag have a column of their own") {
 }
 
 TEST_CASE("A folder that cannot be written is refused before planning") {
-    if (geteuid() == 0) {
-        return;  // nothing is forbidden to root
-    }
     const ScratchFolder folder;
-    std::filesystem::create_directory(folder / "locked");
-    chmod((folder / "locked").c_str(), 0500);
-    const Result result = run(folder, {"solve", problem_file("open_air"), "--out", folder / "locked"});
-    CHECK(result.code == 2);
-    CHECK(result.err.find("locked") != std::string::npos);
-    CHECK(result.err.find("planning") == std::string::npos);
+    write_file(folder / "file", "not a folder");
+    std::vector<std::string> unwritable{folder / "file", std::string(folder / "file") + "/below"};
+    if (geteuid() != 0) {  // nothing is forbidden to root
+        std::filesystem::create_directory(folder / "locked");
+        chmod((folder / "locked").c_str(), 0500);
+        unwritable.push_back(folder / "locked");
+    }
+    for (const std::string& out : unwritable) {
+        CAPTURE(out);
+        const Result result = run(folder, {"solve", problem_file("open_air"), "--out", out});
+        CHECK(result.code == 2);
+        CHECK(result.err.find(out) != std::string::npos);
+        CHECK(result.err.find("planning") == std::string::npos);
+    }
 }
