@@ -25,15 +25,24 @@ endif()
 get_property(modules GLOBAL PROPERTY DOWNWASH_MODULES)
 set(DOWNWASH_PKGCONFIG_LIBS "")
 foreach(module IN LISTS modules)
-  install(TARGETS downwash_${module} EXPORT downwash_targets
+  # The component ompl needs OMPL, so it is exported apart.
+  set(export downwash_targets)
+  if(module STREQUAL ompl)
+    set(export downwash_ompl_targets)
+  endif()
+  install(TARGETS downwash_${module} EXPORT ${export}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${module})
-  string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${module} ")
+  if(NOT module STREQUAL ompl)
+    string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${module} ")
+  endif()
 endforeach()
 string(STRIP "${DOWNWASH_PKGCONFIG_LIBS}" DOWNWASH_PKGCONFIG_LIBS)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/downwash)
 install(EXPORT downwash_targets NAMESPACE downwash:: DESTINATION ${package_dir})
+install(EXPORT downwash_ompl_targets NAMESPACE downwash:: DESTINATION ${package_dir})
+install(FILES cmake/libompl.cmake DESTINATION ${package_dir})
 configure_package_config_file(cmake/downwash-config.cmake.in ${PROJECT_BINARY_DIR}/cmake/downwash-config.cmake
   INSTALL_DESTINATION ${package_dir}
   PATH_VARS DOWNWASH_INSTALL_DATADIR)

@@ -31,10 +31,8 @@ find_package(SQLite3 REQUIRED)
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
 find_package(GeographicLib REQUIRED)
 
-# OMPL 1.5.2 exports no target of its own.
-add_library(downwash_ompl INTERFACE)
-target_include_directories(downwash_ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
-target_link_libraries(downwash_ompl INTERFACE ${OMPL_LIBRARIES} Boost::serialization Boost::filesystem Boost::system)
+include(cmake/libompl.cmake)
+downwash_add_libompl(downwash_libompl)
 
 # Headers stand beside their sources and are included as <downwash/module/header.hpp>, here as after installation.
 set(DOWNWASH_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)

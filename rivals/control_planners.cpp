@@ -8,7 +8,6 @@
 #include <ompl/control/planners/rrt/RRT.h>
 #include <ompl/control/planners/sst/SST.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "downwash/rivals/flight_controls.hpp"
@@ -38,7 +37,7 @@ struct ResumablePlanner {
 };
 
 ResumablePlanner prepared_planner(std::string_view algorithm, const oc::SpaceInformationPtr& information,
-                                 const ob::ProblemDefinitionPtr& definition, std::uint32_t seed) {
+                                  const ob::ProblemDefinitionPtr& definition, std::uint32_t seed) {
     if (algorithm == "rrt") {
         return {with_linear_neighbours(std::make_shared<Seeded<oc::RRT>>(information, seed), definition)};
     }
@@ -53,22 +52,6 @@ ResumablePlanner prepared_planner(std::string_view algorithm, const oc::SpaceInf
         return {std::make_shared<Seeded<oc::EST>>(information, seed)};
     }
     throw std::logic_error("no planner over controls has this name");
-}
-
-/// Every moment of a path, one step apart. OMPL keeps only those at which the control changes.
-std::vector<FlightPoint> moments_of(const oc::PathControl& path, const SteeredFlights& flights) {
-    std::vector<FlightPoint> moments{point_of(path.getState(0))};
-    for (std::size_t i = 0; i < path.getControlCount(); ++i) {
-        const auto number = static_cast<unsigned int>(i);
-        const auto steps = std::llround(path.getControlDuration(number) / flights.steps().duration_s());
-        for (long long step = 0; step < steps; ++step) {
-            moments.push_back(flights.stepped_again(moments.back(), velocity_of(path.getControl(number))));
-        }
-        if (!is_same_moment(point_of(path.getState(number + 1)), moments.back())) {
-            throw std::logic_error("flying a path again did not reproduce it bit for bit");
-        }
-    }
-    return moments;
 }
 
 /// The search for a plan and then for better ones, one OMPL solution at a time.
@@ -86,7 +69,7 @@ class ControlSearch {
             if (const ob::PathPtr path = definition->getSolutionPath()) {
                 // The planner's status counts an approximate solution as one.
                 const bool is_exact = status == ob::PlannerStatus::EXACT_SOLUTION;
-                std::vector<FlightPoint> moments = moments_of(*path->as<oc::PathControl>(), flights_);
+                std::vector<FlightPoint> moments = moments_along(*path->as<oc::PathControl>(), flights_);
                 const Review review_of = is_exact ? review(moments) : Review::not_closed;
                 if (review_of == Review::discarded) {
                     prepared.forget_solution();

@@ -3,11 +3,53 @@
 #include <ompl/control/StatePropagator.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 namespace downwash::planning {
 namespace {
 
 namespace ob = ompl::base;
 namespace oc = ompl::control;
+
+/// A reference velocity or, for our own planner, a reference segment.
+class FlightControl : public oc::RealVectorControlSpace::ControlType {
+ public:
+    std::int64_t segment_ticks = 0;  ///< 0: a velocity
+    ReferencePoint segment_end;
+};
+
+class FlightControlSpace : public oc::RealVectorControlSpace {
+ public:
+    explicit FlightControlSpace(const ob::StateSpacePtr& states) : oc::RealVectorControlSpace(states, 3) {}
+
+    oc::Control* allocControl() const override {
+        auto* control = new FlightControl;
+        control->values = new double[dimension_];
+        return control;
+    }
+    void freeControl(oc::Control* control) const override {
+        auto* own = static_cast<FlightControl*>(control);
+        delete[] own->values;
+        delete own;
+    }
+    void copyControl(oc::Control* to, const oc::Control* from) const override {
+        oc::RealVectorControlSpace::copyControl(to, from);
+        static_cast<FlightControl*>(to)->segment_ticks = static_cast<const FlightControl*>(from)->segment_ticks;
+        static_cast<FlightControl*>(to)->segment_end = static_cast<const FlightControl*>(from)->segment_end;
+    }
+    bool equalControls(const oc::Control* a, const oc::Control* b) const override {
+        const auto* first = static_cast<const FlightControl*>(a);
+        const auto* second = static_cast<const FlightControl*>(b);
+        return oc::RealVectorControlSpace::equalControls(a, b) && first->segment_ticks == second->segment_ticks &&
+               first->segment_end == second->segment_end;
+    }
+    void nullControl(oc::Control* control) const override {
+        oc::RealVectorControlSpace::nullControl(control);
+        static_cast<FlightControl*>(control)->segment_ticks = 0;
+    }
+};
 
 /// Velocities in all directions alike, and durations, with the caller's generator.
 class VelocitySampler : public oc::ControlSampler {
@@ -16,6 +58,7 @@ class VelocitySampler : public oc::ControlSampler {
         : oc::ControlSampler(controls), limits_(limits), random_(random) {}
 
     void sample(oc::Control* control) override {
+        static_cast<FlightControl*>(control)->segment_ticks = 0;
         double* velocity = control->as<oc::RealVectorControlSpace::ControlType>()->values;
         do {
             velocity[0] = random_.uniform(-1, 1);
@@ -41,7 +84,9 @@ class Propagator : public oc::StatePropagator {
 
     /// OMPL propagates one step at a time.
     void propagate(const ob::State* from, const oc::Control* control, double, ob::State* to) const override {
-        point_of(to) = flights_.stepped(point_of(from), velocity_of(control));
+        const auto* own = static_cast<const FlightControl*>(control);
+        point_of(to) = own->segment_ticks > 0 ? flights_.followed(point_of(from), own->segment_end, own->segment_ticks)
+                                              : flights_.stepped(point_of(from), velocity_of(control));
     }
     bool canPropagateBackward() const override { return false; }
 
@@ -67,13 +112,20 @@ class ClosingGoal : public FlightGoal {
 
 }  // namespace
 
+void follow(oc::Control* control, const ReferencePoint& to, std::int64_t ticks) {
+    auto* own = static_cast<FlightControl*>(control);
+    std::fill_n(own->values, 3, 0.0);
+    own->segment_end = to;
+    own->segment_ticks = ticks;
+}
+
 const double* velocity_of(const oc::Control* control) {
     return control->as<oc::RealVectorControlSpace::ControlType>()->values;
 }
 
 oc::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, Random& random) {
     const auto states = make_flight_space(flights.task(), random);
-    const auto controls = std::make_shared<oc::RealVectorControlSpace>(states, 3);
+    const auto controls = std::make_shared<FlightControlSpace>(states);
     const ReferenceLimits& limits = flights.flights().limits();
     ob::RealVectorBounds bounds(3);
     const double most[3] = {limits.max_speed_m_s, limits.max_speed_m_s, limits.max_arm_rate_rad_s};
@@ -97,6 +149,27 @@ oc::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, R
 ob::GoalPtr make_closing_goal(const oc::SpaceInformationPtr& information, const SteeredFlights& flights,
                               Random& random) {
     return std::make_shared<ClosingGoal>(information, flights, random);
+}
+
+std::vector<FlightPoint> moments_along(const oc::PathControl& path, const SteeredFlights& flights) {
+    std::vector<FlightPoint> moments{point_of(path.getState(0))};
+    for (std::size_t i = 0; i < path.getControlCount(); ++i) {
+        const auto number = static_cast<unsigned int>(i);
+        const auto* control = static_cast<const FlightControl*>(path.getControl(number));
+        if (control->segment_ticks > 0) {
+            moments.push_back(flights.followed(moments.back(), control->segment_end, control->segment_ticks));
+        }
+        const auto steps = control->segment_ticks > 0
+                               ? 0
+                               : std::llround(path.getControlDuration(number) / flights.steps().duration_s());
+        for (long long step = 0; step < steps; ++step) {
+            moments.push_back(flights.stepped_again(moments.back(), velocity_of(path.getControl(number))));
+        }
+        if (!is_same_moment(point_of(path.getState(number + 1)), moments.back())) {
+            throw std::logic_error("flying a path again did not reproduce it bit for bit");
+        }
+    }
+    return moments;
 }
 
 }  // namespace downwash::planning

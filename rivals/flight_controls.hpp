@@ -1,7 +1,10 @@
 #pragma once
 
 #include <ompl/base/Goal.h>
+#include <ompl/control/PathControl.h>
 #include <ompl/control/SpaceInformation.h>
+
+#include <vector>
 
 #include "downwash/rivals/steered_flights.hpp"
 #include "downwash/search/flight_space.hpp"
@@ -20,7 +23,17 @@ inline constexpr unsigned int max_control_steps = 8;
 [[nodiscard]] ompl::base::GoalPtr make_closing_goal(const ompl::control::SpaceInformationPtr& information,
                                                     const SteeredFlights& flights, Random& random);
 
+/// Makes a control of that space ask for a whole reference segment instead: from the moment at which it begins to
+/// `to`, in a single step whatever its length. So our planner's edges are controls too.
+void follow(ompl::control::Control* control, const ReferencePoint& to, std::int64_t ticks);
+
 /// The reference velocity that a control of that space asks for: (x, z, arm) [m/s, m/s, rad/s].
 [[nodiscard]] const double* velocity_of(const ompl::control::Control* control);
+
+/// Every moment of a path, one step or reference segment apart, simulated once more: OMPL keeps only those at which the
+/// control changes.
+/// @throws std::logic_error when a moment does not come out bit for bit
+[[nodiscard]] std::vector<FlightPoint> moments_along(const ompl::control::PathControl& path,
+                                                     const SteeredFlights& flights);
 
 }  // namespace downwash::planning

@@ -54,14 +54,24 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
 }
 
 FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[3]) const {
-    FlightPoint next = steered(from, velocity);
+    const FlightPoint next = steered(from, velocity);
+    FlightPoint flown = followed(from, next.reference, steps_.ticks());
+    flown.rest = next.rest;
+    return flown;
+}
+
+FlightPoint SteeredFlights::followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const {
     FlightRules rules = flights_.rules();
     rules.is_over = {};
-    FlightLeg leg{ReferenceSegment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s)};
+    FlightPoint next = from;
+    FlightLeg leg{ReferenceSegment(from.reference, to, ticks, task_.model.tick().tick_s)};
     leg.flight = fly(task_.model, task_.map, rules, leg.segment, next.vehicle);
     leg.end = next.vehicle;
-    next.is_valid = leg.flight.rejection == Rejection::none;
+    next.reference = to;
+    next.rest = configuration_of(to);
     next.cost = flights_.cost_after(from.cost, from.vehicle, leg);
+    next.ticks = from.ticks + ticks;
+    next.is_valid = leg.flight.rejection == Rejection::none;
     return next;
 }
 

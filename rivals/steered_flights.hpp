@@ -39,6 +39,10 @@ class SteeredFlights {
     /// A step that was flown before, flown again: neither counted, nor cut short when the search is over.
     [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double velocity[3]) const;
 
+    /// Flies a whole reference segment, as our own planner's edges are. Not counted. It is the caller's business that
+    /// the segment keeps the limits of motion.
+    [[nodiscard]] FlightPoint followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const;
+
     /// Whether a moment is so near the goal that closing is worth a flight.
     [[nodiscard]] bool is_worth_closing(const FlightPoint& point) const;
 

@@ -5,7 +5,10 @@
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/StateSampler.h>
 
+#include <cstring>
 #include <limits>
+#include <ostream>
+#include <type_traits>
 
 #include "downwash/base/lane_math.hpp"
 
@@ -102,6 +105,18 @@ class FlightSpace : public ob::StateSpace {
     }
     ob::State* allocState() const override { return new Moment; }
     void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
+    unsigned int getSerializationLength() const override { return sizeof(FlightPoint); }
+    void serialize(void* bytes, const ob::State* state) const override {
+        std::memcpy(bytes, &point_of(state), sizeof(FlightPoint));
+    }
+    void deserialize(ob::State* state, const void* bytes) const override {
+        static_assert(std::is_trivially_copyable_v<FlightPoint>);
+        std::memcpy(&point_of(state), bytes, sizeof(FlightPoint));
+    }
+    void printState(const ob::State* state, std::ostream& out) const override {
+        const Configuration at = configuration_of(point_of(state).vehicle.plant.q);
+        out << "vehicle at x " << at.x_m << " m, z " << at.z_m << " m, arm at " << at.arm_rad << " rad\n";
+    }
     void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
 
  private:

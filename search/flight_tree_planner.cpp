@@ -181,20 +181,24 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
     return report_solution();
 }
 
+ompl::base::PathPtr FlightTreePlanner::make_path(const std::vector<FlightPoint>& moments) const {
+    const auto path = std::make_shared<ompl::geometric::PathGeometric>(si_);
+    for (const FlightPoint& moment : moments) {
+        ompl::base::ScopedState<> state(si_);
+        point_of(state.get()) = moment;
+        path->append(state.get());
+    }
+    return path;
+}
+
 /// Adds what there is to the problem definition.
 ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
     const bool is_exact = best_.has_value();
     if (!is_exact && nearest_to_goal_->parent == nullptr) {
         return ompl::base::PlannerStatus::TIMEOUT;
     }
-    const auto path = std::make_shared<ompl::geometric::PathGeometric>(si_);
-    const std::vector<FlightPoint> moments = is_exact ? best_->moments : FlightTree::moments_to(*nearest_to_goal_);
-    for (const FlightPoint& moment : moments) {
-        ompl::base::ScopedState<> state(si_);
-        point_of(state.get()) = moment;
-        path->append(state.get());
-    }
-    ompl::base::PlannerSolution solution(path);
+    ompl::base::PlannerSolution solution(
+        make_path(is_exact ? best_->moments : FlightTree::moments_to(*nearest_to_goal_)));
     solution.setPlannerName(getName());
     if (is_exact) {
         const auto objective =

@@ -72,6 +72,10 @@ class FlightTreePlanner : public ompl::base::Planner {
     /// Of everything that was simulated in the planner's own model since the last clear().
     [[nodiscard]] FlightStatistics statistics() const;
 
+ protected:
+    /// A solution as the planner hands it to its problem definition.
+    [[nodiscard]] virtual ompl::base::PathPtr make_path(const std::vector<FlightPoint>& moments) const;
+
  private:
     /// A sample on its way to become a node.
     struct Growth {

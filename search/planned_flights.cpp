@@ -151,6 +151,15 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
     }
 }
 
+bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights) {
+    const FlightPoint& end = moments.back();
+    const FlightPoint& arrival = moments[moments.size() - 2];
+    const FlightLeg hover = flights.hold_leg(arrival.reference);
+    return is_at_rest(end.reference) && end.reference == arrival.reference &&
+           end.ticks - arrival.ticks == hover.segment.ticks() &&
+           meets_goal(flights.task().problem.goal, flights.task().model.tick().plant, end.vehicle);
+}
+
 void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
     FlightRules to_the_end = rules();
     to_the_end.is_over = {};

@@ -79,6 +79,9 @@ class PlannedFlights {
     FlightStatistics statistics_;
 };
 
+/// Whether moments end with the hover that the goal asks for: without it they are a way, not a plan.
+[[nodiscard]] bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights);
+
 /// A count of nothing for every cause of refusal.
 [[nodiscard]] std::map<std::string, std::uint64_t> no_rejections();
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs a build of Downwash into a temporary prefix and uses it from outside: compiles every installed header alone,
-# builds and runs this example plainly and with -march=native, and calls the installed program and its completion.
+# builds and runs this example plainly and with -march=native, runs OMPL's planners and benchmark on our flights
+# (examples/ompl), and calls the installed program and its completion.
 # Usage: examples/embed/run_consumer_test.sh [build folder, default: build]
 set -euo pipefail
 
@@ -25,7 +26,7 @@ while read -r header; do
         exit 1
     fi
     count=$((count + 1))
-done < <(find "$prefix/include" -name '*.hpp' | LC_ALL=C sort)
+done < <(find "$prefix/include" -name '*.hpp' ! -path '*/downwash/ompl/*' | LC_ALL=C sort)
 [[ $count -gt 0 ]] || {
     echo "no header was installed"
     exit 1
@@ -53,6 +54,16 @@ if command -v pkg-config >/dev/null; then
     g++ -std=c++20 "$root/examples/embed/main.cpp" "${flags[@]}" -Wl,-rpath,"$prefix/lib" -o "$work/embed_pkg_config"
     "$work/embed_pkg_config"
 fi
+
+echo "OMPL's planners on our flights, and ours, by OMPL's benchmark"
+{
+    cmake -S "$root/examples/ompl" -B "$work/ompl" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" &&
+        cmake --build "$work/ompl"
+} >"$work/log" 2>&1 || {
+    cat "$work/log"
+    exit 1
+}
+(cd "$work" && ompl/flights_with_ompl "$problem" 1 2)
 
 echo "the installed program"
 "$prefix/bin/downwash" --version

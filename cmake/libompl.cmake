@@ -1,0 +1,10 @@
+# OMPL as one target. OMPL 1.5.2 exports none of its own.
+# Sets up the INTERFACE library NAME; for this build and, installed, for programs that use the component ompl.
+function(downwash_add_libompl NAME)
+  find_package(Eigen3 REQUIRED)
+  find_package(ompl REQUIRED)
+  find_package(Boost REQUIRED COMPONENTS serialization filesystem system)
+  add_library(${NAME} INTERFACE ${ARGN})
+  target_include_directories(${NAME} SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
+  target_link_libraries(${NAME} INTERFACE ${OMPL_LIBRARIES} Boost::serialization Boost::filesystem Boost::system)
+endfunction()
