@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +36,7 @@ inline void append(std::vector<KeyError>& errors, const std::vector<KeyError>& m
 template <class Model>
 struct Check {
     std::vector<std::string_view> needs;  ///< key paths; the check makes no sense when one of them is wrong
-    std::vector<KeyError> (*find)(const Model&);
+    std::function<std::vector<KeyError>(const Model&)> find;
 };
 
 /// Runs every check whose needs are sound; what one finds is wrong for those after it.

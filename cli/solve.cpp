@@ -39,7 +39,9 @@ std::string announcement(const Problem& problem) {
 
 ExitCode run(const SolveArguments& arguments) {
     const Interruption interruption;
-    const Problem problem = read_problem(arguments.problem, [&](Problem& read) { arguments.planner.apply(read); });
+    const PlannableProblem plannable =
+        read_plannable_problem(arguments.problem, [&](Problem& read) { arguments.planner.apply(read); });
+    const Problem& problem = plannable.problem;
     const OutputFolder folder(arguments.out ? std::filesystem::path(*arguments.out) : default_folder(problem));
 
     SolveOptions options;
@@ -54,7 +56,7 @@ ExitCode run(const SolveArguments& arguments) {
         display.say(announcement(problem));
         options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
-        solution = solve(problem, options);
+        solution = solve(plannable, options);
     }
     const std::string json = write_results(folder, problem, arguments.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // building a map now would keep who interrupted waiting

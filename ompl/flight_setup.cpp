@@ -17,15 +17,11 @@ namespace {
 namespace ob = ::ompl::base;
 namespace oc = ::ompl::control;
 
-Problem checked(Problem problem) {
-    std::vector<KeyError> errors = problem_errors(problem);
+PlannableProblem with_one_goal(Problem problem) {
     if (!problem.stops.empty()) {
-        errors.push_back({"goal", "is a list of goals to visit in turn: expected one goal"});
+        throw InputError({KeyError{"goal", "is a list of goals to visit in turn: expected one goal"}});
     }
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
-    return problem;
+    return plannable(std::move(problem));
 }
 
 /// Our planner among those over controls: the edges of its solutions are controls.
@@ -55,13 +51,12 @@ class ControlledFlightTree : public planning::FlightTreePlanner {
 
 struct FlightSetup::Impl {
     Impl(Problem given, std::shared_ptr<const AeroMap> given_map)
-        : problem(checked(std::move(given))),
+        : plannable(with_one_goal(std::move(given))),
           map(std::move(given_map)),
-          model(make_flight_model(problem)),
-          task(problem, *model, map.get()),
+          task(plannable.problem, *plannable.model, map.get()),
           planned(task),
           flights(planned),
-          random(problem.planner.seed),
+          random(plannable.problem.planner.seed),
           setup(std::make_shared<oc::SimpleSetup>(planning::make_flight_information(flights, random))) {
         const auto& information = setup->getSpaceInformation();
         ob::ScopedState<> start(information);
@@ -71,9 +66,8 @@ struct FlightSetup::Impl {
         setup->setOptimizationObjective(planning::make_flight_objective(information));
     }
 
-    Problem problem;
+    PlannableProblem plannable;
     std::shared_ptr<const AeroMap> map;
-    std::shared_ptr<const FlightModel> model;
     planning::SearchTask task;
     planning::PlannedFlights planned;
     planning::SteeredFlights flights;
@@ -92,7 +86,7 @@ const oc::SimpleSetupPtr& FlightSetup::simple_setup() const noexcept {
 
 ob::PlannerPtr FlightSetup::make_flight_tree_planner() const {
     const auto planner = std::make_shared<ControlledFlightTree>(impl_->setup->getSpaceInformation(), impl_->task);
-    planner->set_max_iterations(impl_->problem.planner.max_iterations);
+    planner->set_max_iterations(impl_->plannable.problem.planner.max_iterations);
     return planner;
 }
 
@@ -103,18 +97,18 @@ std::optional<Plan> FlightSetup::plan_of(const ob::Path& path) const {
     }
     const std::vector<planning::FlightPoint> moments = planning::moments_along(*way, impl_->flights);
     if (moments.size() > 1 && planning::ends_with_hover(moments, impl_->planned)) {
-        return planning::plan_through(moments, impl_->model->tick().tick_s);
+        return planning::plan_through(moments, impl_->plannable.model->tick().tick_s);
     }
     const std::optional<planning::Closing> closing = impl_->flights.closing(moments.back());
     return closing ? std::optional(impl_->flights.plan(moments, closing)) : std::nullopt;
 }
 
 const Problem& FlightSetup::problem() const noexcept {
-    return impl_->problem;
+    return impl_->plannable.problem;
 }
 
 const FlightModel& FlightSetup::model() const noexcept {
-    return *impl_->model;
+    return *impl_->plannable.model;
 }
 
 }  // namespace downwash

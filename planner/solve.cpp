@@ -9,14 +9,15 @@
 
 namespace downwash {
 
-Solution solve(const Problem& problem, const SolveOptions& asked) {
-    const planning::Stopwatch since_call;
+namespace {
+
+/// @param since_call counts from the caller's call on, checks included
+Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& asked,
+                       const planning::Stopwatch& since_call) {
+    const Problem& problem = plannable.problem;
+    const auto& model = plannable.model;
     SolveOptions options = asked;
     options.threads = std::max(1, options.threads);
-    if (std::vector<KeyError> errors = problem_errors(problem); !errors.empty()) {
-        throw InputError(std::move(errors));
-    }
-    const auto model = make_flight_model(problem);
     Solution solution;
     solution.variant = problem.planner.variant;
     solution.algorithm = problem.planner.algorithm;
@@ -56,6 +57,17 @@ Solution solve(const Problem& problem, const SolveOptions& asked) {
         solution.execution_cost = cost_of(*solution.execution, solution.objective);
     }
     return solution;
+}
+
+}  // namespace
+
+Solution solve(const PlannableProblem& plannable, const SolveOptions& options) {
+    return solve_checked(plannable, options, planning::Stopwatch());
+}
+
+Solution solve(const Problem& problem, const SolveOptions& options) {
+    const planning::Stopwatch since_call;
+    return solve_checked(plannable(problem), options, since_call);
 }
 
 }  // namespace downwash

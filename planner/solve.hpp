@@ -13,6 +13,9 @@ namespace downwash {
 /// discarded and the search goes on; the other variants' plans are reported with their failed flight. Never prints,
 /// never exits. While it runs OMPL's log, one for the whole process, is silent; OMPL's global seeds are neither needed
 /// nor set.
+[[nodiscard]] DOWNWASH_EXPORT Solution solve(const PlannableProblem& plannable, const SolveOptions& options = {});
+
+/// The same for a problem that is checked first.
 /// @throws InputError with every error when the problem cannot be planned
 [[nodiscard]] DOWNWASH_EXPORT Solution solve(const Problem& problem, const SolveOptions& options = {});
 

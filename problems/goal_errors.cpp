@@ -126,9 +126,9 @@ std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
     });
 }
 
-std::vector<KeyError> configurations_in_collision(const Problem& p) {
-    return in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
-        if (!goal.configuration || has_clear_configuration(p, goal)) {
+std::vector<KeyError> configurations_in_collision(const ProblemCheck& check) {
+    return in_each_goal(check, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+        if (!goal.configuration || has_clear_configuration(check, goal)) {
             return {};
         }
         return {{key + ".configuration",
@@ -137,7 +137,8 @@ std::vector<KeyError> configurations_in_collision(const Problem& p) {
     });
 }
 
-std::vector<KeyError> end_effector_out_of_reach(const Problem& p, const Goal& goal, const std::string& key) {
+std::vector<KeyError> end_effector_out_of_reach(const ProblemCheck& check, const Goal& goal, const std::string& key) {
+    const Problem& p = check.problem();
     if (!goal.end_effector) {
         return {};
     }
@@ -146,7 +147,7 @@ std::vector<KeyError> end_effector_out_of_reach(const Problem& p, const Goal& go
         return {{key, "is out of reach: from anywhere within the bounds the arm of " + to_text(p.robot.arm.length_m) +
                           " m misses it by " + rounded(missing_m) + " m; widen environment.bounds or move the goal"}};
     }
-    switch (reach_of_end_effector(p, goal)) {
+    switch (reach_of_end_effector(check, goal)) {
         case Reach::clear:
             return {};
         case Reach::none:
@@ -161,13 +162,13 @@ std::vector<KeyError> end_effector_out_of_reach(const Problem& p, const Goal& go
              "nearer to it than planner.safety_margin_m"}};
 }
 
-std::vector<KeyError> end_effectors_out_of_reach(const Problem& p) {
-    return in_each_goal(p, [&](const Goal& goal, const std::string& key) {
-        return end_effector_out_of_reach(p, goal, key + ".end_effector");
+std::vector<KeyError> end_effectors_out_of_reach(const ProblemCheck& check) {
+    return in_each_goal(check, [&](const Goal& goal, const std::string& key) {
+        return end_effector_out_of_reach(check, goal, key + ".end_effector");
     });
 }
 
-const std::array<Check<Problem>, 7> checks{{
+const std::array<Check<ProblemCheck>, 7> checks{{
     {{"goal"}, too_many_goals},
     {{"goal"}, unclear_goals},
     {{"goal", "robot.controller"}, holds_beyond_longest_plan},
@@ -181,7 +182,7 @@ const std::array<Check<Problem>, 7> checks{{
 
 }  // namespace
 
-std::span<const Check<Problem>> goal_checks() {
+std::span<const Check<ProblemCheck>> goal_checks() {
     return checks;
 }
 

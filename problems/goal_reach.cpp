@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -82,10 +81,6 @@ bool is_within(const Bounds& bounds, double x_m, double z_m) {
            z_m >= bounds.z_low_m - rounding_m && z_m <= bounds.z_high_m + rounding_m;
 }
 
-CollisionChecker checker_of(const Problem& problem) {
-    return {std::make_shared<const Scene>(problem.obstacles), problem.plane, problem.robot.shape()};
-}
-
 }  // namespace
 
 bool arm_can_turn_to(const ArmParameters& arm, double angle_rad, double tolerance_rad) {
@@ -119,10 +114,11 @@ double missing_reach_m(const Problem& problem, const Goal& wanted) {
     return std::max(too_far_m, too_near_m);
 }
 
-Reach reach_of_end_effector(const Problem& problem, const Goal& wanted) {
+Reach reach_of_end_effector(const ProblemCheck& check, const Goal& wanted) {
+    const Problem& problem = check.problem();
     const EndEffectorGoal& goal = *wanted.end_effector;
     const ArmParameters& arm = problem.robot.arm;
-    const CollisionChecker checker = checker_of(problem);
+    const CollisionChecker& checker = check.collisions();
     const double tolerance_rad = goal.direction_rad ? goal.direction_tolerance_rad : turn_rad;
     const std::vector<double> angles = angles_within(goal.direction_rad.value_or(0), tolerance_rad, arm);
     Reach reach = Reach::none;
@@ -142,13 +138,14 @@ Reach reach_of_end_effector(const Problem& problem, const Goal& wanted) {
     return is_too_wide_to_try(tolerance_of(wanted)) ? Reach::clear : reach;
 }
 
-bool has_clear_configuration(const Problem& problem, const Goal& wanted) {
+bool has_clear_configuration(const ProblemCheck& check, const Goal& wanted) {
+    const Problem& problem = check.problem();
     const ConfigurationGoal& goal = *wanted.configuration;
     const GoalTolerance tolerance = tolerance_of(wanted);
     if (!goal.x_m || !goal.z_m || !goal.arm_rad || is_too_wide_to_try(tolerance)) {
         return true;
     }
-    const CollisionChecker checker = checker_of(problem);
+    const CollisionChecker& checker = check.collisions();
     const std::vector<double> angles = angles_within(*goal.arm_rad, goal.tolerance_rad, problem.robot.arm);
     for (const Offset& offset : offsets_within(tolerance)) {
         for (const double angle_rad : angles) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_check.hpp"
 
 namespace downwash {
 
@@ -19,10 +19,10 @@ enum class Reach {
 [[nodiscard]] double missing_reach_m(const Problem& problem, const Goal& wanted);
 
 /// Tries poses around an end-effector goal, half a degree of arm apart. @pre wanted.end_effector is set
-[[nodiscard]] Reach reach_of_end_effector(const Problem& problem, const Goal& wanted);
+[[nodiscard]] Reach reach_of_end_effector(const ProblemCheck& check, const Goal& wanted);
 
 /// Tries poses within the tolerances of a configuration goal; true when a coordinate is free, as then there are too
 /// many to say no. @pre wanted.configuration is set
-[[nodiscard]] bool has_clear_configuration(const Problem& problem, const Goal& wanted);
+[[nodiscard]] bool has_clear_configuration(const ProblemCheck& check, const Goal& wanted);
 
 }  // namespace downwash

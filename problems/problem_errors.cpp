@@ -15,6 +15,7 @@
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/goal_errors.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/scene/collision_checker.hpp"
@@ -65,10 +66,10 @@ std::vector<KeyError> shapeless_cylinders(const Problem& p) {
 }
 
 /// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
-std::vector<KeyError> unplaceable_obstacles(const Problem& p) {
+std::vector<KeyError> unplaceable_obstacles(const ProblemCheck& check) {
     std::vector<KeyError> errors;
     try {
-        static_cast<void>(Scene(p.obstacles));
+        static_cast<void>(check.scene());
     } catch (const InputError& invalid) {
         for (const KeyError& error : invalid.errors()) {
             errors.push_back({"environment." + error.key, error.message});
@@ -211,9 +212,10 @@ std::vector<KeyError> start_beyond_arm_limits(const Problem& p) {
     return {{"start.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
 }
 
-std::vector<KeyError> start_in_collision(const Problem& p) {
+std::vector<KeyError> start_in_collision(const ProblemCheck& check) {
+    const Problem& p = check.problem();
     const PlanarPose pose{p.start.x_m, p.start.z_m, p.start.pitch_rad, p.start.arm_rad};
-    const CollisionChecker checker(std::make_shared<const Scene>(p.obstacles), p.plane, p.robot.shape());
+    const CollisionChecker& checker = check.collisions();
     if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
         return {};
     }
@@ -234,11 +236,12 @@ Vector3 hub_m(const Problem& p, const Vector3& in_body_m) {
                             p.start.z_m - in_body_m[0] * s + in_body_m[2] * c);
 }
 
-std::vector<KeyError> start_not_flyable(const Problem& p) {
+std::vector<KeyError> start_not_flyable(const ProblemCheck& check) {
+    const Problem& p = check.problem();
     if (!p.aero.enabled) {
         return {};
     }
-    const auto scene = std::make_shared<const Scene>(p.obstacles);
+    const std::shared_ptr<const Scene>& scene = check.scene();
     const DirectEffect effect(scene, p.aero, p.robot.rotors.radius_m);
     for (std::size_t i = 0; i < p.robot.rotors.positions_m.size(); ++i) {
         const Vector3 hub = hub_m(p, p.robot.rotors.positions_m[i]);
@@ -290,7 +293,7 @@ std::vector<KeyError> split_whole_numbers(const Problem& p) {
     return errors;
 }
 
-const std::array<Check<Problem>, 17> checks{{
+const std::array<Check<ProblemCheck>, 17> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -314,12 +317,22 @@ const std::array<Check<Problem>, 17> checks{{
 
 }  // namespace
 
-std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys wrong) {
+std::vector<KeyError> further_errors(const ProblemCheck& check, WrongKeys wrong) {
+    const Problem& problem = check.problem();
     std::vector<KeyError> errors = value_errors(problem_parameters(), problem, "", wrong);
     append(errors, further_robot_errors(problem.robot, wrong, "robot."));
-    append(errors, run_checks(std::span<const Check<Problem>>(checks), problem, "", wrong));
-    append(errors, run_checks(goal_checks(), problem, "", wrong));
+    append(errors, run_checks(std::span<const Check<ProblemCheck>>(checks), check, "", wrong));
+    append(errors, run_checks(goal_checks(), check, "", wrong));
     return errors;
+}
+
+std::shared_ptr<const FlightModel> model_of(const ProblemCheck& check) {
+    const Problem& problem = check.problem();
+    return std::make_shared<const FlightModel>(problem.robot, problem.plane, check.scene(), problem.aero);
+}
+
+std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys wrong) {
+    return further_errors(ProblemCheck(problem), std::move(wrong));
 }
 
 std::vector<Goal> goals_of(const Problem& problem) {
@@ -330,6 +343,15 @@ std::vector<Goal> goals_of(const Problem& problem) {
 
 std::vector<KeyError> problem_errors(const Problem& problem) {
     return further_problem_errors(problem, {});
+}
+
+PlannableProblem plannable(Problem problem) {
+    const ProblemCheck check(problem);
+    if (std::vector<KeyError> errors = further_errors(check, {}); !errors.empty()) {
+        throw InputError(std::move(errors));
+    }
+    auto model = model_of(check);
+    return {std::move(problem), std::move(model)};
 }
 
 }  // namespace downwash

@@ -8,6 +8,15 @@
 
 namespace downwash {
 
+/// A problem without errors, and the robot and scene of it bound together: made once and handed on.
+struct PlannableProblem {
+    Problem problem;
+    std::shared_ptr<const FlightModel> model;
+};
+
+/// Checks a problem. @throws InputError with every error when it cannot be planned
+[[nodiscard]] DOWNWASH_EXPORT PlannableProblem plannable(Problem problem);
+
 /// The robot and scene of a problem, bound together.
 /// @pre problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
@@ -26,6 +27,21 @@ void throw_errors(const ProblemTreeReader& reader) {
     }
 }
 
+/// Reads a problem and checks it as a whole. @return the check, of the reader's model
+ProblemCheck read_checked(ProblemTreeReader& reader, const std::filesystem::path& file,
+                          const std::function<void(Problem&)>& adjust) {
+    reader.read(file);
+    if (adjust) {
+        reader.adjust(adjust);
+    }
+    ProblemCheck check(reader.model());
+    if (!reader.is_full()) {
+        reader.add(further_errors(check, reader.wrong_keys()));
+    }
+    throw_errors(reader);
+    return check;
+}
+
 }  // namespace
 
 std::string to_text(const LocatedError& error) {
@@ -37,15 +53,15 @@ ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
 
 Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust) {
     ProblemTreeReader reader(problem_parameters());
-    reader.read(file);
-    if (adjust) {
-        reader.adjust(adjust);
-    }
-    if (!reader.is_full()) {
-        reader.add(further_problem_errors(reader.model(), reader.wrong_keys()));
-    }
-    throw_errors(reader);
+    read_checked(reader, file, adjust);
     return reader.model();
+}
+
+PlannableProblem read_plannable_problem(const std::filesystem::path& file,
+                                        const std::function<void(Problem&)>& adjust) {
+    ProblemTreeReader reader(problem_parameters());
+    const ProblemCheck check = read_checked(reader, file, adjust);
+    return {reader.model(), model_of(check)};
 }
 
 Robot read_robot(const std::filesystem::path& file) {

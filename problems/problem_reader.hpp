@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_model.hpp"
 
 namespace downwash {
 
@@ -40,6 +40,10 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
 /// @throws ProblemFileError with every error that can be found in one reading (a hundred at most), and what adjust does
 [[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file,
                                                    const std::function<void(Problem&)>& adjust = {});
+
+/// The same, with the flight model in the scene that was made for the checks.
+[[nodiscard]] DOWNWASH_EXPORT PlannableProblem read_plannable_problem(const std::filesystem::path& file,
+                                                                      const std::function<void(Problem&)>& adjust = {});
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
 [[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file);

@@ -187,7 +187,7 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "problem.yaml:16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n"
      "problem.yaml:16:101: unknown key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, "
-     "max_iterations, seed or safety_margin_m\n"
+     "max_iterations, seed, safety_margin_m or parameters\n"
      "problem.yaml:16:112: unknown key 'max_iteration' in planner: did you mean 'max_iterations'?"},
     {"aero:\n", "aero: none\naero2:\n", "problem.yaml:10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
     {"seed: 1", "seed: -1", "problem.yaml:16:78: planner.seed is '-1': expected a whole number from 0 to 4294967295"},
@@ -200,9 +200,17 @@ const Edit edits[] = {
      "problem.yaml:16:95: planner.time_limit_s is 0: expected a number in s above 0 and at most 1000000, or null"},
     {"seed: 1", "seed: !!int 1", "problem.yaml:16:78: a tag (!...) is not understood here: remove it"},
     {"seed: 1", "seed: 1, ? [a] : 2", "problem.yaml:16:83: a key of planner is no word: expected 'name: value'"},
+    {"seed: 1", "seed: 1, parameters: {goal_bais: 0.2}",
+     "problem.yaml:16:94: unknown key 'goal_bais' in planner.parameters: did you mean 'goal_bias'?"},
+    {"seed: 1", "seed: 1, parameters: {goal_bias: 1.5}",
+     "problem.yaml:16:105: planner.parameters.goal_bias is 1.5: expected a number from 0 to 1"},
+    {"seed: 1", "seed: 1, parameters: {batch_size: 1.5}",
+     "problem.yaml:16:106: planner.parameters.batch_size is 1.5: expected a whole number"},
+    {"seed: 1", "seed: 1, parameters: {pruning_radius: 0.2}",
+     "problem.yaml:16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
      "problem.yaml:16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, "
-     "max_iterations, seed or safety_margin_m"},
+     "max_iterations, seed, safety_margin_m or parameters"},
 };
 
 }  // namespace

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "downwash/base/checks.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/scene/collision_checker.hpp"
+
+namespace downwash {
+
+/// A problem under check, with what several checks need of it: made when first asked for, then kept.
+class ProblemCheck {
+ public:
+    explicit ProblemCheck(const Problem& problem) : problem_(problem) {}
+
+    [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
+    /// So that checks of the values alone take a Problem.
+    // NOLINTNEXTLINE(google-explicit-constructor): as said
+    operator const Problem&() const noexcept { return problem_; }
+
+    /// @throws InputError when an obstacle cannot be placed
+    [[nodiscard]] const std::shared_ptr<const Scene>& scene() const {
+        if (scene_ == nullptr) {
+            scene_ = std::make_shared<const Scene>(problem_.obstacles);
+        }
+        return scene_;
+    }
+    /// @throws InputError as scene()
+    [[nodiscard]] const CollisionChecker& collisions() const {
+        if (!collisions_) {
+            collisions_.emplace(scene(), problem_.plane, problem_.robot.shape());
+        }
+        return *collisions_;
+    }
+
+ private:
+    const Problem& problem_;
+    mutable std::shared_ptr<const Scene> scene_;
+    mutable std::optional<CollisionChecker> collisions_;
+};
+
+/// See further_problem_errors().
+[[nodiscard]] std::vector<KeyError> further_errors(const ProblemCheck& check, WrongKeys wrong);
+
+/// The flight model of a problem that was checked and found sound, in the scene of that check.
+[[nodiscard]] std::shared_ptr<const FlightModel> model_of(const ProblemCheck& check);
+
+}  // namespace downwash
