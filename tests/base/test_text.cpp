@@ -31,6 +31,9 @@ TEST_CASE("a misspelt word is taken for the nearest name, a strange one for none
 TEST_CASE("a long text is cut between characters") {
     CHECK(excerpt("short\ntext") == "short text");
     CHECK(excerpt(std::string(47, 'a') + "\xc3\xa4" + "bc") == std::string(47, 'a') + "...");
+    CHECK(excerpt(std::string(46, 'a') + "\xe2\x82\xac" + "bc") ==
+          std::string(46, 'a') + "...");  // after two of three bytes
+    CHECK(excerpt(std::string(48, 'a')) == std::string(48, 'a'));
 }
 
 TEST_CASE("names of keys carry their units") {
