@@ -124,6 +124,8 @@ TEST_CASE("the signed rank test is that of all signs, whatever the differences")
 TEST_CASE("in the signed rank test zeros are dropped and ties share their rank") {
     // Ranks 2, 2, 2, 4, 5 and a negative sum of 2: the empty set and three single ties of 32 are as small.
     CHECK(signed_rank_p(std::array{1.0, 0.0, 1.0, -1.0, 2.0, 0.0, 3.0}) == Approx(2 * 4.0 / 32));
+    // Ranks 1, 2.5, 2.5 and a negative 4: seven sets of sixteen are as small, among them no pair of the ties.
+    CHECK(signed_rank_p(std::array{1.0, 2.0, 2.0, -3.0}) == Approx(2 * 7.0 / 16));
     CHECK(signed_rank_p(std::array{0.0, 0.0}) == 1);
 }
 
