@@ -22,12 +22,12 @@ class Budget {
 
     /// Gives a search its share of what is left for so many.
     void share(PlannerSettings& settings, std::size_t searches) const {
-        constexpr double least_s = 1e-6;
+        constexpr double min_s = 1e-6;
         if (iterations_) {
             settings.max_iterations = std::max<std::uint64_t>(1, *iterations_ / searches);
         }
         if (std::isfinite(time_s_)) {
-            settings.time_limit_s = std::max(least_s, time_s_ / static_cast<double>(searches));
+            settings.time_limit_s = std::max(min_s, time_s_ / static_cast<double>(searches));
         }
     }
 

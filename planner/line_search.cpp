@@ -15,7 +15,7 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     GeometricHooks hooks;
     hooks.keep_tree = options.keep_tree;
     hooks.is_over = [&](const GeometricProgress& progress) {
-        search.report(progress.iteration, progress.nodes, progress.refused);
+        search.report(progress.iteration, progress.nodes, progress.rejected);
         return search.is_over() ||
                (problem.planner.max_iterations && progress.iteration >= *problem.planner.max_iterations);
     };
@@ -31,8 +31,8 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     record.iterations = result.iterations;
     record.states_checked = result.states_checked;
     record.rejected = no_rejections();
-    record.rejected["collision"] = result.refused_collision;
-    record.rejected["bounds"] = result.refused_bounds;
+    record.rejected["collision"] = result.rejected_collision;
+    record.rejected["bounds"] = result.rejected_bounds;
     if (result.status != Status::solved) {
         record.nearest_approach_m = result.nearest_approach_m;
     }

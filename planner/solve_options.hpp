@@ -16,7 +16,7 @@ struct Progress {
     double wall_s = 0;
     std::uint64_t iterations = 0;
     std::uint64_t nodes = 0;
-    std::uint64_t rejected = 0;       ///< edges refused so far, for any reason
+    std::uint64_t rejected = 0;       ///< edges rejected so far, for any reason
     std::optional<double> best_cost;  ///< empty before the first solution
 };
 

@@ -71,7 +71,7 @@ void add_seeds(Rows& rows) {
     rows.push_back(parameters::integer<Campaign>(
                        "seeds.count", "how many follow each other", [](auto& c) -> auto& { return c.seeds.count; })
                        .at_least(1)
-                       .at_most(static_cast<double>(most_campaign_runs)));
+                       .at_most(static_cast<double>(max_campaign_runs)));
 }
 
 void add_limits(Rows& rows) {

@@ -58,7 +58,7 @@ struct Campaign {
 };
 
 /// More runs are no campaign but a mistake.
-inline constexpr std::uint64_t most_campaign_runs = 1000000;
+inline constexpr std::uint64_t max_campaign_runs = 1000000;
 
 /// Every key of a campaign file, as problem_parameters() has those of problems.
 [[nodiscard]] DOWNWASH_EXPORT const ParameterTable<Campaign>& campaign_parameters();

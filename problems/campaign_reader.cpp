@@ -53,9 +53,9 @@ std::vector<KeyError> campaign_errors(const Campaign& c) {
     if (c.seeds.list.empty() && c.seeds.first + c.seeds.count - 1 > std::numeric_limits<std::uint32_t>::max()) {
         errors.push_back({"seeds", "go beyond 4294967295, the highest seed: expected a smaller first or count"});
     }
-    if (run_count(c) > most_campaign_runs) {
+    if (run_count(c) > max_campaign_runs) {
         errors.push_back(
-            {"seeds", "make more than " + std::to_string(most_campaign_runs) +
+            {"seeds", "make more than " + std::to_string(max_campaign_runs) +
                           " runs with all problems, variants, algorithms, objectives and margins: expected "
                           "fewer of one of them"});
     }

@@ -46,11 +46,11 @@ std::vector<KeyError> in_each_goal(const Problem& p, const Rule& rule) {
 
 std::vector<KeyError> too_many_goals(const Problem& p) {
     const std::size_t count = std::max(p.stops.size() + 1, p.goal.any_of.size());
-    if (count <= most_goals) {
+    if (count <= max_goals) {
         return {};
     }
     return {{p.stops.size() + 1 == count ? "goal" : "goal.any_of",
-             "has " + std::to_string(count) + " goals: expected at most " + std::to_string(most_goals)}};
+             "has " + std::to_string(count) + " goals: expected at most " + std::to_string(max_goals)}};
 }
 
 std::vector<KeyError> unclear_goals(const Problem& p) {
@@ -82,16 +82,16 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
 }
 
 std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
-    const double most_s = static_cast<double>(max_plan_ticks) / p.robot.controller.rate_hz;
+    const double max_s = static_cast<double>(max_plan_ticks) / p.robot.controller.rate_hz;
     double sum_s = 0;
     for (const Goal& stop : p.stops) {
         sum_s += stop.hold_s;
     }
-    if (sum_s < most_s) {
+    if (sum_s < max_s) {
         return {};
     }
     return {{"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
-                         to_text(most_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"}};
+                         to_text(max_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"}};
 }
 
 std::vector<KeyError> configurations_outside_bounds(const Problem& p) {

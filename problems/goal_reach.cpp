@@ -60,15 +60,15 @@ bool is_too_wide_to_try(const GoalTolerance& tolerance) {
 /// the ends of the tolerance and limits of the arm among them; more than half a turn leaves every angle.
 std::vector<double> angles_within(double middle_rad, double tolerance_rad, const ArmParameters& arm) {
     constexpr double step_rad = turn_rad / 720;
-    const double most_rad = std::min(usable_tolerance_share * tolerance_rad, turn_rad / 2);
-    const int steps = static_cast<int>(std::ceil(most_rad / step_rad));
+    const double max_rad = std::min(usable_tolerance_share * tolerance_rad, turn_rad / 2);
+    const int steps = static_cast<int>(std::ceil(max_rad / step_rad));
     std::vector<double> angles{middle_rad};
     for (int i = 1; i <= steps; ++i) {
-        angles.push_back(middle_rad + most_rad * i / steps);
-        angles.push_back(middle_rad - most_rad * i / steps);
+        angles.push_back(middle_rad + max_rad * i / steps);
+        angles.push_back(middle_rad - max_rad * i / steps);
     }
     for (const double limit_rad : {arm.lower_limit_rad, arm.upper_limit_rad}) {
-        if (arm.is_limited && std::abs(lane::wrap_angle(limit_rad - middle_rad)) <= most_rad) {
+        if (arm.is_limited && std::abs(lane::wrap_angle(limit_rad - middle_rad)) <= max_rad) {
             angles.push_back(limit_rad);
         }
     }

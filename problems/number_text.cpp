@@ -33,9 +33,9 @@ std::optional<double> parse_degrees(std::string_view text) {
 
 std::string degrees_text(double angle_rad) {
     const long double degrees = static_cast<long double>(angle_rad) / radians_per_degree;
-    constexpr int most_digits = std::numeric_limits<long double>::max_digits10;
+    constexpr int max_digits = std::numeric_limits<long double>::max_digits10;
     std::array<char, 64> text{};
-    for (int digits = 1; digits < most_digits; ++digits) {
+    for (int digits = 1; digits < max_digits; ++digits) {
         const std::string_view written = rounded(text, degrees, digits);
         // As a double 90 is written "90" where one digit is "9e+01".
         std::string plain = digits <= 17 ? to_text(parse_number<double>(written).value_or(0)) : std::string(written);
@@ -43,7 +43,7 @@ std::string degrees_text(double angle_rad) {
             return plain;
         }
     }
-    return std::string(rounded(text, degrees, most_digits));
+    return std::string(rounded(text, degrees, max_digits));
 }
 
 }  // namespace downwash::problems

@@ -82,7 +82,7 @@ struct Problem {
 };
 
 /// More goals than these, in a row or to choose from, are not planned for.
-inline constexpr std::size_t most_goals = 64;
+inline constexpr std::size_t max_goals = 64;
 
 /// All goals in the order in which they are to be visited: the stops, then the goal.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);

@@ -98,13 +98,13 @@ std::vector<KeyError> incomplete_effects(const Problem& p) {
 
 /// A planar map of the user's has to stand in the plane of motion, or beside it.
 std::vector<KeyError> map_of_another_plane(const Problem& p) {
-    constexpr double least_sine = 1e-6;
+    constexpr double min_sine = 1e-6;
     if (!p.aero.enabled || !p.aero.map || !p.aero.map->is_planar()) {
         return {};
     }
     const PlaneOfMotion& frame = p.aero.map->frame();
     const double sine = frame.sin_heading() * p.plane.cos_heading() - frame.cos_heading() * p.plane.sin_heading();
-    if (std::abs(sine) <= least_sine) {
+    if (std::abs(sine) <= min_sine) {
         return {};
     }
     return {{"aero.map", "stands in another vertical plane (" + to_text(frame.heading_rad() * degrees_per_radian, 8) +

@@ -34,8 +34,8 @@ Parameter<Problem> position(std::string_view path, std::string_view description,
     return number(path, description, member).at_least(-farthest_m).at_most(farthest_m);
 }
 template <class Member>
-Parameter<Problem> angle(std::string_view path, std::string_view description, double most_deg, Member member) {
-    return number(path, description, member).at_least(-most_deg).at_most(most_deg);
+Parameter<Problem> angle(std::string_view path, std::string_view description, double max_deg, Member member) {
+    return number(path, description, member).at_least(-max_deg).at_most(max_deg);
 }
 template <class Member>
 Parameter<Problem> positive(std::string_view path, std::string_view description, double most, Member member) {

@@ -12,7 +12,7 @@
 namespace downwash::problems {
 namespace {
 
-constexpr std::size_t most_errors = 100;
+constexpr std::size_t max_errors = 100;
 
 std::string joined(const std::string& key, std::string_view name) {
     return key.empty() ? std::string(name) : key + "." + std::string(name);
@@ -22,7 +22,7 @@ std::string joined(const std::string& key, std::string_view name) {
 
 template <class Model>
 bool TreeReader<Model>::is_full() const noexcept {
-    return found_.size() >= most_errors;
+    return found_.size() >= max_errors;
 }
 
 /// Reads a file as the group `path`; what keeps it from being read at all is reported where it was referred from.

@@ -20,8 +20,8 @@ Mark mark_of(const YAML::Mark& mark) {
 /// Builds the tree out of the parser's events.
 class TreeBuilder : public YAML::EventHandler {
  public:
-    /// @param most_events more than a text of this size can have: the parser runs in circles
-    explicit TreeBuilder(std::size_t most_events) : events_left_(most_events) {}
+    /// @param max_events more than a text of this size can have: the parser runs in circles
+    explicit TreeBuilder(std::size_t max_events) : events_left_(max_events) {}
 
     [[nodiscard]] YamlNode::Pointer root() const { return root_; }
 

@@ -35,15 +35,15 @@ class JsonReader {
     /// Of a coordinate, an angle and their derivatives.
     static constexpr double greatest_number = 1e6;
     /// Further ones are not noted.
-    static constexpr std::size_t most_errors = 20;
+    static constexpr std::size_t max_errors = 20;
 
-    void refuse(const Node& node, const std::string& message) {
-        if (errors_.size() < most_errors) {
+    void report(const Node& node, const std::string& message) {
+        if (errors_.size() < max_errors) {
             errors_.push_back({node.key, message});
         }
     }
     [[nodiscard]] const std::vector<KeyError>& errors() const noexcept { return errors_; }
-    [[nodiscard]] bool has_enough() const noexcept { return errors_.size() >= most_errors; }
+    [[nodiscard]] bool has_enough() const noexcept { return errors_.size() >= max_errors; }
 
     /// The member of a group, null included; nothing when it is missing.
     static std::optional<Node> member(const Node& group, const char* name) {
@@ -57,19 +57,19 @@ class JsonReader {
     std::optional<Node> required(const Node& group, const char* name) {
         auto node = member(group, name);
         if (!node) {
-            refuse(group, "'" + std::string(name) + "' is missing here");
+            report(group, "'" + std::string(name) + "' is missing here");
         }
         return node;
     }
 
     std::optional<double> number(const Node& node) {
         if (!node.json->is_number()) {
-            refuse(node, "expected a number, found " + std::string(node.json->type_name()));
+            report(node, "expected a number, found " + std::string(node.json->type_name()));
             return std::nullopt;
         }
         const double value = node.json->get<double>();
         if (!std::isfinite(value) || std::abs(value) > greatest_number) {
-            refuse(node, "expected a number between -1e6 and 1e6, found " + to_text(value));
+            report(node, "expected a number between -1e6 and 1e6, found " + to_text(value));
             return std::nullopt;
         }
         return value;
@@ -88,7 +88,7 @@ class JsonReader {
         }
         const double value = node->json->is_number() ? node->json->get<double>() : -1;
         if (!(value >= 0 && std::isfinite(value))) {
-            refuse(*node, "expected a number that is not negative");
+            report(*node, "expected a number that is not negative");
             return otherwise;
         }
         return value;
@@ -101,7 +101,7 @@ class JsonReader {
         if (node.json->is_number_unsigned() && node.json->get<std::uint64_t>() <= most) {
             value = node.json->get<Integer>();
         } else {
-            refuse(node, "expected a whole number from 0 to " + std::to_string(most));
+            report(node, "expected a whole number from 0 to " + std::to_string(most));
         }
     }
 
@@ -118,7 +118,7 @@ class JsonReader {
             if (node->json->is_boolean()) {
                 value = node->json->get<bool>();
             } else {
-                refuse(*node, "expected true or false");
+                report(*node, "expected true or false");
             }
         }
     }
@@ -139,7 +139,7 @@ class JsonReader {
                 return;
             }
         }
-        refuse(*node, "expected one of " + joined_names(names));
+        report(*node, "expected one of " + joined_names(names));
     }
 
     /// A list of groups; nothing when it is something else.
@@ -149,13 +149,13 @@ class JsonReader {
             return nodes;
         }
         if (!list->json->is_array()) {
-            refuse(*list, "expected a list, found " + std::string(list->json->type_name()));
+            report(*list, "expected a list, found " + std::string(list->json->type_name()));
             return nodes;
         }
         for (std::size_t i = 0; i < list->json->size(); ++i) {
             nodes.push_back(list->at(i));
             if (!nodes.back().json->is_object()) {
-                refuse(nodes.back(), "expected a group of keys, found " + std::string(nodes.back().json->type_name()));
+                report(nodes.back(), "expected a group of keys, found " + std::string(nodes.back().json->type_name()));
                 nodes.pop_back();
             }
         }

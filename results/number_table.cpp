@@ -10,8 +10,8 @@
 namespace downwash {
 namespace {
 
-constexpr std::size_t most_columns = 200;
-constexpr std::size_t most_cells = 20'000'000;
+constexpr std::size_t max_columns = 200;
+constexpr std::size_t max_cells = 20'000'000;
 
 bool is_name(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
@@ -28,8 +28,8 @@ void read_names(const CsvLines& lines, NumberTable& table, LineErrors& errors) {
             errors.add(lines.number(), column,
                        "'" + excerpt(name) + "' is no name of a column: expected letters, digits and '_'");
         }
-        if (table.names.size() == most_columns) {
-            errors.add(lines.number(), column, "more than " + std::to_string(most_columns) + " columns");
+        if (table.names.size() == max_columns) {
+            errors.add(lines.number(), column, "more than " + std::to_string(max_columns) + " columns");
             errors.throw_any();
         }
         table.names.emplace_back(name);
@@ -81,8 +81,8 @@ NumberTable read_number_table(std::string_view text, const std::string& file,
     }
     errors.throw_any();
     while (lines.next()) {
-        if (table.rows() * table.columns.size() >= most_cells) {
-            errors.add(lines.number(), "more than " + std::to_string(most_cells) + " numbers");
+        if (table.rows() * table.columns.size() >= max_cells) {
+            errors.add(lines.number(), "more than " + std::to_string(max_cells) + " numbers");
             break;
         }
         read_row(lines, table, errors);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr int deepest_nesting = 32;
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& message) {
+[[noreturn]] void report(const fs::path& file, const std::string& message) {
     throw InputError({KeyError{"", file.string() + ": " + message}});
 }
 
@@ -30,7 +30,7 @@ std::string text_of(const fs::path& file) {
         throw InputError({KeyError{"", file.string() + " " + error.what()}});
     }
     if (text.size() > largest_file) {
-        refuse(file, "larger than " + std::to_string(largest_file >> 20U) + " MiB, more than any run leaves behind");
+        report(file, "larger than " + std::to_string(largest_file >> 20U) + " MiB, more than any run leaves behind");
     }
     return text;
 }
@@ -52,10 +52,10 @@ bool take_solution(const fs::path& file, RunRecord& run) {
         },
         false);
     if (solution.is_discarded() || is_deep || !solution.is_object()) {
-        refuse(file, "this is not the JSON that `downwash solve` writes");
+        report(file, "this is not the JSON that `downwash solve` writes");
     }
     if (text_at(solution, "/schema") != solution_schema) {
-        refuse(file, "its schema is not " + std::string(solution_schema));
+        report(file, "its schema is not " + std::string(solution_schema));
     }
     run.status = text_at(solution, "/status");
     run.outcome = text_at(solution, "/execution/outcome");
@@ -63,8 +63,8 @@ bool take_solution(const fs::path& file, RunRecord& run) {
     return plan != solution.end() && !plan->is_null();
 }
 
-[[noreturn]] void refuse_row(const fs::path& file, const NumberTable& table, std::size_t row,
-                             const std::string& message) {
+[[noreturn]] void throw_at_row(const fs::path& file, const NumberTable& table, std::size_t row,
+                               const std::string& message) {
     throw InputError({KeyError{"", file.string() + ":" + std::to_string(table.lines[row]) + ": " + message}});
 }
 
@@ -77,10 +77,10 @@ void check_numbers(const fs::path& file, const NumberTable& table, std::string_v
         for (std::size_t row = 0; row < table.rows(); ++row) {
             const double number = table.columns[column][row];
             if (std::isnan(number) && table.names[column] != may_be_empty) {
-                refuse_row(file, table, row, table.names[column] + " is empty");
+                throw_at_row(file, table, row, table.names[column] + " is empty");
             }
             if (std::abs(number) > greatest_number) {
-                refuse_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e9");
+                throw_at_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e9");
             }
         }
     }
@@ -94,8 +94,8 @@ void check_tree(const fs::path& file, const NumberTable& tree) {
     for (std::size_t i = 0; i < parents.size(); ++i) {
         if (!std::isnan(parents[i]) &&
             !(parents[i] >= 0 && parents[i] < rows && parents[i] == std::floor(parents[i]))) {
-            refuse_row(file, tree, i,
-                       "parent is " + to_text(parents[i]) + ", expected a row of this file, counted from 0");
+            throw_at_row(file, tree, i,
+                         "parent is " + to_text(parents[i]) + ", expected a row of this file, counted from 0");
         }
     }
     std::vector<std::size_t> seen_from(parents.size(), parents.size());  // the row from which each was reached first
@@ -108,7 +108,7 @@ void check_tree(const fs::path& file, const NumberTable& tree) {
             }
             here = static_cast<std::size_t>(parents[here]);
             if (seen_from[here] == i) {
-                refuse_row(file, tree, i, "its parents run in a circle");
+                throw_at_row(file, tree, i, "its parents run in a circle");
             }
         }
     }
@@ -132,7 +132,7 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
     const std::vector<double>& times_s = *flight.find("t_s");
     for (std::size_t row = 0; row < times_s.size(); ++row) {
         if (row > 0 ? times_s[row] <= times_s[row - 1] : times_s[row] < 0) {
-            refuse_row(file, flight, row, "t_s is " + to_text(times_s[row]) + ", expected times that rise from 0 on");
+            throw_at_row(file, flight, row, "t_s is " + to_text(times_s[row]) + ", expected times that rise from 0 on");
         }
     }
 }
@@ -142,7 +142,7 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
 RunRecord read_run(const fs::path& folder) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored)) {
-        refuse(folder, "there is no such folder; expected one that `downwash solve` wrote");
+        report(folder, "there is no such folder; expected one that `downwash solve` wrote");
     }
     RunRecord run;
     const fs::path solution = folder / "solution.json";

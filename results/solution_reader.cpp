@@ -18,13 +18,13 @@ using problems::Node;
 
 constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr std::size_t deepest_nesting = 32;
-constexpr std::int64_t most_ticks = 1'000'000;  // nearly three hours at 100 Hz
-constexpr double tolerance = 1e-9;              // of numbers that should be equal
+constexpr std::int64_t max_ticks = 1'000'000;  // nearly three hours at 100 Hz
+constexpr double tolerance = 1e-9;             // of numbers that should be equal
 
 /// The control tick at which a knot stands; nothing when it stands between two.
 std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
     const double ticks = std::round(t_s / tick_s);
-    if (!(ticks >= 0 && ticks <= static_cast<double>(most_ticks)) ||
+    if (!(ticks >= 0 && ticks <= static_cast<double>(max_ticks)) ||
         std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
         return std::nullopt;
     }
@@ -37,8 +37,8 @@ ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
     if (const auto tick = tick_of(t_s, tick_s)) {
         knot.tick = *tick;
     } else {
-        reader.refuse(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
-                                to_text(tick_s) + " s, from 0 to " + std::to_string(most_ticks) + " of them");
+        reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
+                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_ticks) + " of them");
     }
     constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
                                std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};
@@ -57,7 +57,7 @@ void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
         }
         const ReferenceKnot knot = read_knot(reader, node, plan.tick_s);
         if (plan.reference.empty() ? knot.tick != 0 : knot.tick <= plan.reference.back().tick) {
-            reader.refuse(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
+            reader.report(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
                                                        : "t_s must be greater than that of the knot before");
         }
         plan.reference.push_back(knot);
@@ -88,13 +88,13 @@ bool is_at(const Configuration& a, const Configuration& b) {
 void compare_waypoints(JsonReader& reader, const Node& list, const std::vector<Configuration>& waypoints,
                        const Plan& plan) {
     if (waypoints.size() != plan.reference.size()) {
-        reader.refuse(list, "there are " + std::to_string(waypoints.size()) + " waypoints, but " +
+        reader.report(list, "there are " + std::to_string(waypoints.size()) + " waypoints, but " +
                                 std::to_string(plan.reference.size()) + " knots of the reference");
         return;
     }
     for (std::size_t i = 0; i < waypoints.size(); ++i) {
         if (!is_at(waypoints[i], configuration_of(plan.reference[i].point))) {
-            reader.refuse(list.at(i), "this waypoint is not where plan.reference[" + std::to_string(i) + "] is");
+            reader.report(list.at(i), "this waypoint is not where plan.reference[" + std::to_string(i) + "] is");
         }
     }
 }
@@ -104,7 +104,7 @@ void check_start(JsonReader& reader, const Node& reference, const Plan& plan, co
         const auto place = [](const Configuration& c) {
             return "x_m " + to_text(c.x_m) + ", z_m " + to_text(c.z_m) + ", arm_rad " + to_text(c.arm_rad);
         };
-        reader.refuse(reference.at(0), "the plan begins at " + place(plan.first()) + ", but the problem starts at " +
+        reader.report(reference.at(0), "the plan begins at " + place(plan.first()) + ", but the problem starts at " +
                                            place(start.configuration()) + "; is it the plan of another problem?");
     }
 }
@@ -115,7 +115,7 @@ void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Sol
         return;
     }
     if (!node->json->is_object()) {
-        reader.refuse(*node, node->json->is_null() ? "the file holds no plan: the search found none"
+        reader.report(*node, node->json->is_null() ? "the file holds no plan: the search found none"
                                                    : "expected a group with `waypoints` and `reference`");
         return;
     }
@@ -129,7 +129,7 @@ void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Sol
         corners = read_waypoints(reader, *waypoints);
     }
     if (reader.errors().empty() && plan.reference.empty()) {
-        reader.refuse(*reference, "expected at least one knot");
+        reader.report(*reference, "expected at least one knot");
     }
     if (reader.errors().empty()) {
         compare_waypoints(reader, *waypoints, corners, plan);
@@ -144,7 +144,7 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
         return;
     }
     if (!planning->json->is_object()) {
-        reader.refuse(*planning, "expected a group of keys");
+        reader.report(*planning, "expected a group of keys");
         return;
     }
     record.wall_s = reader.amount(*planning, "wall_s", 0);
@@ -185,7 +185,7 @@ void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
             return;
         }
     }
-    reader.refuse(*node, "expected " + std::string(names.size() > 1 ? "one of " : "") + joined_names(names));
+    reader.report(*node, "expected " + std::string(names.size() > 1 ? "one of " : "") + joined_names(names));
 }
 
 /// A name, or a group of weights.
@@ -202,7 +202,7 @@ void read_objective(JsonReader& reader, const Node& root, CostFunction& objectiv
         objective.weight(each) = reader.amount(*node, name_of(each).data(), 0);
     }
     if (objective == CostFunction::of_nothing()) {
-        reader.refuse(*node, "expected a weight above 0");
+        reader.report(*node, "expected a weight above 0");
     }
 }
 
@@ -229,7 +229,7 @@ Solution blank_solution(const Problem& problem) {
     return solution;
 }
 
-[[noreturn]] void refuse_file(const std::string& path, problems::TextPlace place, const std::string& message) {
+[[noreturn]] void throw_at(const std::string& path, problems::TextPlace place, const std::string& message) {
     throw ProblemFileError({{path, place.line, place.column, message}});
 }
 
@@ -238,13 +238,13 @@ std::string read_text(const std::string& path) {
     std::string text;
     // A folder opens like a file and fails at the first byte.
     if (!stream || (stream.peek(), stream.bad())) {
-        refuse_file(path, {}, "cannot be read; expected a solution.json that `solve` wrote");
+        throw_at(path, {}, "cannot be read; expected a solution.json that `solve` wrote");
     }
     char block[65536];
     while (stream.read(block, sizeof block), stream.gcount() > 0) {
         text.append(block, static_cast<std::size_t>(stream.gcount()));
         if (text.size() > largest_file) {
-            refuse_file(path, {}, "is larger than 256 MiB and hardly the file of a plan");
+            throw_at(path, {}, "is larger than 256 MiB and hardly the file of a plan");
         }
     }
     return text;
@@ -252,15 +252,15 @@ std::string read_text(const std::string& path) {
 
 Json parse(const std::string& path, const std::string& text) {
     if (problems::json_depth(text) > deepest_nesting) {
-        refuse_file(path, {}, "nests deeper than the file of a plan does");
+        throw_at(path, {}, "nests deeper than the file of a plan does");
     }
     try {
         return Json::parse(text);
     } catch (const Json::parse_error& error) {
-        refuse_file(path, problems::place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
-                    text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
+        throw_at(path, problems::place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
+                 text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
     } catch (const Json::exception&) {
-        refuse_file(path, {}, "holds a number that is too large");
+        throw_at(path, {}, "holds a number that is too large");
     }
 }
 
@@ -273,9 +273,9 @@ Solution read_solution(const std::string& path, const Problem& problem) {
     JsonReader reader;
     Solution solution = blank_solution(problem);
     if (!document.is_object()) {
-        reader.refuse(root, "expected a group of keys as `solve` writes it");
+        reader.report(root, "expected a group of keys as `solve` writes it");
     } else if (const auto schema = reader.required(root, "schema"); schema && *schema->json != solution_schema) {
-        reader.refuse(*schema, "unsupported schema; expected " + std::string(solution_schema));
+        reader.report(*schema, "unsupported schema; expected " + std::string(solution_schema));
     } else if (schema) {
         read_head(reader, root, solution);
         read_planning(reader, root, solution.planning);

@@ -67,13 +67,13 @@ PreparedPlanner prepared_planner(const PlannerSettings& settings, const ob::Spac
 class InformedSampler : public ob::InformedSampler {
  public:
     explicit InformedSampler(const ob::ProblemDefinitionPtr& definition)
-        : ob::InformedSampler(definition, most_tries), sampler_(space_->allocStateSampler()) {}
+        : ob::InformedSampler(definition, max_tries), sampler_(space_->allocStateSampler()) {}
 
     bool sampleUniform(ob::State* state, const ob::Cost& most) override {
         return sampleUniform(state, opt_->identityCost(), most);
     }
     bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& most) override {
-        for (unsigned int i = 0; i < most_tries; ++i) {
+        for (unsigned int i = 0; i < max_tries; ++i) {
             sampler_->sampleUniform(state);
             const ob::Cost cost = heuristicSolnCost(state);
             if (opt_->isCostBetterThan(cost, most) && !opt_->isCostBetterThan(cost, least)) {
@@ -86,7 +86,7 @@ class InformedSampler : public ob::InformedSampler {
     double getInformedMeasure(const ob::Cost&) const override { return space_->getMeasure(); }
 
  private:
-    static constexpr unsigned int most_tries = 100;
+    static constexpr unsigned int max_tries = 100;
 
     ob::StateSamplerPtr sampler_;
 };
@@ -97,7 +97,7 @@ class GeometricObjective : public ob::OptimizationObjective {
     GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
         : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {
         setCostToGoHeuristic([this](const ob::State* from, const ob::Goal*) {
-            return ob::Cost(free_air_cost_.least_to_goal(read(from, space_)));
+            return ob::Cost(free_air_cost_.min_cost_to_goal(read(from, space_)));
         });
     }
 
@@ -109,7 +109,7 @@ class GeometricObjective : public ob::OptimizationObjective {
         return ob::Cost(free_air_cost_.of_motion(read(from, space_), end) + hold);
     }
     ob::Cost motionCostHeuristic(const ob::State* from, const ob::State* to) const override {
-        return ob::Cost(free_air_cost_.least_of_motion(read(from, space_), read(to, space_)));
+        return ob::Cost(free_air_cost_.min_cost_of_motion(read(from, space_), read(to, space_)));
     }
     ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& definition,
                                                      unsigned int) const override {
@@ -189,7 +189,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     definition->setIntermediateSolutionCallback(
         [&](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost cost) { improve(cost.value()); });
     prepared.planner->solve(ob::PlannerTerminationCondition([&] {
-        const bool is_over = hooks.is_over({result.iterations, prepared.nodes(), counts.refused()});
+        const bool is_over = hooks.is_over({result.iterations, prepared.nodes(), counts.rejected()});
         result.iterations += is_over ? 0 : 1;
         return is_over;
     }));
@@ -198,8 +198,8 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
         result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
     }
     result.states_checked = counts.states;
-    result.refused_collision = counts.refused_collision;
-    result.refused_bounds = counts.refused_bounds;
+    result.rejected_collision = counts.rejected_collision;
+    result.rejected_bounds = counts.rejected_bounds;
     result.nearest_approach_m = space.goal_distance_m(start);
     if (definition->getSolutionPath() != nullptr) {
         auto* path = definition->getSolutionPath()->as<og::PathGeometric>();

@@ -17,15 +17,15 @@ struct GeometricResult {
     double cost = 0;  ///< estimate of the variant: level hover along the reference and through the hold
     std::uint64_t iterations = 0;
     std::uint64_t states_checked = 0;
-    std::uint64_t refused_collision = 0;
-    std::uint64_t refused_bounds = 0;
+    std::uint64_t rejected_collision = 0;
+    std::uint64_t rejected_bounds = 0;
     std::vector<TreeNode> tree;     ///< if it was to be kept
     double nearest_approach_m = 0;  ///< how near to the goal region the start, or the end of the plan, is
 };
 
 /// A glance at a running geometric search.
 struct GeometricProgress {
-    std::uint64_t iteration, nodes, refused;
+    std::uint64_t iteration, nodes, rejected;
 };
 
 /// What a geometric search is told and asked while it runs.

@@ -47,7 +47,7 @@ class SteeredFlights {
     [[nodiscard]] bool is_worth_closing(const FlightPoint& point) const;
 
     /// Flies from a moment to rest at the nearest configuration that meets the goal, and holds there. Nothing when that
-    /// is refused.
+    /// is rejected.
     [[nodiscard]] std::optional<Closing> closing(const FlightPoint& from) const;
 
     /// The plan through these moments, one step apart; with an end where there is one, otherwise braked to rest.

@@ -61,8 +61,8 @@ double FlightTree::estimated_cost(const FlightNode& from, const Configuration& t
     return free_air_cost_.of_motion(from.configuration, to);
 }
 
-double FlightTree::least_cost_to_goal(const Configuration& from) const {
-    return free_air_cost_.least_to_goal(from);
+double FlightTree::min_cost_to_goal(const Configuration& from) const {
+    return free_air_cost_.min_cost_to_goal(from);
 }
 
 ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferencePoint& to, std::int64_t ticks) const {

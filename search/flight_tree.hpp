@@ -52,7 +52,7 @@ class FlightTree {
     [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
 
     /// No chain of edges from a configuration to the goal, and hold there, costs less, far from all surfaces.
-    [[nodiscard]] double least_cost_to_goal(const Configuration& from) const;
+    [[nodiscard]] double min_cost_to_goal(const Configuration& from) const;
 
     /// An edge that may be worth flying: from a node to rest at a configuration (arm angle unwrapped as seen from it).
     struct Edge {
@@ -67,7 +67,7 @@ class FlightTree {
         double cost;  ///< from the start
     };
 
-    /// Flies edges side by side; nothing for those that are refused.
+    /// Flies edges side by side; nothing for those that are rejected.
     [[nodiscard]] std::vector<std::optional<Flown>> flown(std::span<const Edge> edges);
 
     /// Adds what was flown below its parent.

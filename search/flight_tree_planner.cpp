@@ -250,7 +250,7 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             return goes_on;
         },
         [&] {
-            const bool has_work = refiner_->champion() != nullptr || !handed_over_.empty();
+            const bool has_work = refiner_->best() != nullptr || !handed_over_.empty();
             const bool goes_on = !terminated && has_work && refiner_left_ > 0;
             if (goes_on) {
                 refine();
@@ -344,10 +344,10 @@ std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
         return std::nullopt;
     }
     growth.neighbours = tree_->nearest(growth.to, neighbour_count());
-    const double least_to_goal = parameters_.optimism * tree_->least_cost_to_goal(growth.to);
+    const double min_cost_to_goal = parameters_.optimism * tree_->min_cost_to_goal(growth.to);
     for (FlightNode* node : with_ancestors(growth.neighbours)) {
         const double estimate = node->cost + parameters_.optimism * tree_->estimated_cost(*node, growth.to);
-        if (estimate + least_to_goal < parameters_.max_detour * best_hold_cost_ &&
+        if (estimate + min_cost_to_goal < parameters_.max_detour * best_hold_cost_ &&
             space_.distance_m(node->configuration, growth.to) > 1e-6) {
             growth.parents.push_back({node, estimate});
         }
@@ -394,7 +394,7 @@ std::vector<FlightNode*> FlightTreePlanner::add(const std::vector<Growth>& batch
     std::vector<FlightNode*> added;
     for (const Growth& growth : batch) {
         const bool is_worthwhile =
-            growth.best && growth.best->cost + parameters_.optimism * tree_->least_cost_to_goal(growth.to) <
+            growth.best && growth.best->cost + parameters_.optimism * tree_->min_cost_to_goal(growth.to) <
                                parameters_.max_detour * best_hold_cost_;
         added.push_back(is_worthwhile ? &tree_->add(*growth.best_parent, *growth.best) : nullptr);
     }
@@ -444,21 +444,21 @@ void FlightTreePlanner::hand_to_refiner() {
     if (best == nullptr) {
         return;
     }
-    const bool is_idle = refiner_->champion() == nullptr && handed_over_.empty();
+    const bool is_idle = refiner_->best() == nullptr && handed_over_.empty();
     if (is_idle || best->cost < (1 - parameters_.worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
         handed_over_.push_back(tree_->plan_to(*best));
-    } else if (refiner_->champion() != nullptr && refiner_->wants_plan()) {
+    } else if (refiner_->best() != nullptr && refiner_->wants_plan()) {
         if (const FlightNode* hold = other_way()) {
             handed_over_.push_back(tree_->plan_to(*hold));
         }
     }
 }
 
-/// Of some holds, drawn by lot, the one whose way leads farthest from the champion's; nullptr when all follow it.
+/// Of some holds, drawn at random, the one whose way leads farthest from the best plan; nullptr when all follow it.
 const FlightNode* FlightTreePlanner::other_way() {
     constexpr int draws = 8;
-    const std::vector<ReferencePoint>& champion = refiner_->champion()->points;
+    const std::vector<ReferencePoint>& best_points = refiner_->best()->points;
     const auto& holds = tree_->holds();
     const FlightNode* farthest = nullptr;
     double farthest_m = parameters_.alternative_distance_m;
@@ -466,7 +466,7 @@ const FlightNode* FlightTreePlanner::other_way() {
         const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
         double away_m = 0;
         for (const FlightNode* n = hold->parent; n != nullptr; n = n->parent) {
-            away_m = std::max(away_m, distance_from_way_m(n->configuration, champion));
+            away_m = std::max(away_m, distance_from_way_m(n->configuration, best_points));
         }
         if (!hold->is_discarded && away_m > farthest_m) {
             farthest_m = away_m;
@@ -494,10 +494,10 @@ void FlightTreePlanner::note_best_hold() {
 /// The cheapest plan, of tree and refiner, if it is cheaper than the best plan by this share.
 std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double min_gain) const {
     const double to_beat = best_ ? (1 - min_gain) * best_->cost : HUGE_VAL;
-    const FlownPlan* const refined = refiner_->champion();
+    const FlownPlan* const refined = refiner_->best();
     FlightNode* const hold = best_hold();
     if (refined != nullptr && refined->cost < to_beat && (hold == nullptr || refined->cost <= hold->cost)) {
-        return Proposal{{refiner_->moments_of(*refined), refined->cost, iterations_}, refiner_->champion_number()};
+        return Proposal{{refiner_->moments_of(*refined), refined->cost, iterations_}, refiner_->best_number()};
     }
     if (hold != nullptr && hold->cost < to_beat) {
         return Proposal{{FlightTree::moments_to(*hold), hold->cost, iterations_}, 0, hold};
@@ -533,13 +533,13 @@ void FlightTreePlanner::settle(Proposal proposal) {
 
 /// Flies the cheapest plans one after the other until one is good; not many any more once the search is at its end.
 void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationCondition& terminated) {
-    int refused_at_end = 0;
+    int rejected_at_end = 0;
     while (auto best = proposal(parameters_.final_gain)) {
         execute(*best);
         const bool is_good = best->is_good;
         settle(std::move(*best));
-        refused_at_end += terminated || is_used_up() ? 1 : 0;
-        if (is_good || refused_at_end >= static_cast<int>(parameters_.max_rejected_at_end)) {
+        rejected_at_end += terminated || is_used_up() ? 1 : 0;
+        if (is_good || rejected_at_end >= static_cast<int>(parameters_.max_rejected_at_end)) {
             return;
         }
     }

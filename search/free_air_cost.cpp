@@ -41,7 +41,7 @@ double FreeAirCost::of_motion(const Configuration& from, const Configuration& to
     return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), duration_s * density});
 }
 
-double FreeAirCost::least_of_motion(const Configuration& from, const Configuration& to) const {
+double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
     const double duration_s =
         peak_over_mean_speed * std::max(travel_m(from, to) / limits_.max_speed_m_s, turn / limits_.max_arm_rate_rad_s);
@@ -49,7 +49,7 @@ double FreeAirCost::least_of_motion(const Configuration& from, const Configurati
     return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), 0});
 }
 
-double FreeAirCost::least_to_goal(const Configuration& from) const {
+double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
     double least = HUGE_VAL;
     for (const Goal& goal : alternatives(space_.goal())) {
         // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.

@@ -16,10 +16,10 @@ class FreeAirCost {
     [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;
 
     /// No chain of rest-to-rest motions between two configurations costs less than this.
-    [[nodiscard]] double least_of_motion(const Configuration& from, const Configuration& to) const;
+    [[nodiscard]] double min_cost_of_motion(const Configuration& from, const Configuration& to) const;
 
     /// Nor does any from a configuration to one that meets the goal, with the hold there.
-    [[nodiscard]] double least_to_goal(const Configuration& from) const;
+    [[nodiscard]] double min_cost_to_goal(const Configuration& from) const;
 
     /// Of holding at a configuration [s].
     [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const;

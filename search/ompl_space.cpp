@@ -141,8 +141,8 @@ class StraightMotion : public ob::MotionValidator {
 class GoalRegion : public ob::GoalSampleableRegion {
  public:
     GoalRegion(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
-               unsigned int most_samples)
-        : ob::GoalSampleableRegion(information), space_(space), random_(random), most_samples_(most_samples) {
+               unsigned int max_samples)
+        : ob::GoalSampleableRegion(information), space_(space), random_(random), max_samples_(max_samples) {
         setThreshold(1e-9);  // distanceGoal is 0 inside the region
     }
 
@@ -157,12 +157,12 @@ class GoalRegion : public ob::GoalSampleableRegion {
         write(last_.value_or(space_.moved_into_goal(space_.sample(random_), 0)), state, space_);
     }
 
-    unsigned int maxSampleCount() const override { return most_samples_; }
+    unsigned int maxSampleCount() const override { return max_samples_; }
 
  private:
     const SearchSpace& space_;
     Random& random_;
-    unsigned int most_samples_;
+    unsigned int max_samples_;
     mutable std::optional<Configuration> last_;
 };
 
@@ -170,8 +170,8 @@ class GoalRegion : public ob::GoalSampleableRegion {
 
 bool QueryCounts::note(Rejection rejection) noexcept {
     ++states;
-    refused_collision += rejection == Rejection::collision ? 1 : 0;
-    refused_bounds += rejection == Rejection::bounds ? 1 : 0;
+    rejected_collision += rejection == Rejection::collision ? 1 : 0;
+    rejected_bounds += rejection == Rejection::bounds ? 1 : 0;
     return rejection == Rejection::none;
 }
 
@@ -208,8 +208,8 @@ ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random&
 }
 
 ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
-                             unsigned int most_samples) {
-    return std::make_shared<GoalRegion>(information, space, random, most_samples);
+                             unsigned int max_samples) {
+    return std::make_shared<GoalRegion>(information, space, random, max_samples);
 }
 
 }  // namespace downwash::planning

@@ -18,10 +18,10 @@ namespace downwash::planning {
 /// Counts of what OMPL's planners asked.
 struct QueryCounts {
     std::uint64_t states = 0;
-    std::uint64_t refused_collision = 0;  ///< states and motions
-    std::uint64_t refused_bounds = 0;
+    std::uint64_t rejected_collision = 0;  ///< states and motions
+    std::uint64_t rejected_bounds = 0;
 
-    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_collision + refused_bounds; }
+    [[nodiscard]] std::uint64_t rejected() const noexcept { return rejected_collision + rejected_bounds; }
     /// Counts a query and says whether it found nothing wrong.
     bool note(Rejection rejection) noexcept;
 };
@@ -32,10 +32,10 @@ struct QueryCounts {
                                                                      double motion_step_m, QueryCounts& counts);
 
 /// The goal region: any level configuration that meets the goal, sampled by inverse kinematics.
-/// @param most_samples that planners draw which collect goals before they search
-[[nodiscard]] ompl::base::GoalPtr make_goal_region(
-    const ompl::base::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
-    unsigned int most_samples = std::numeric_limits<unsigned int>::max());
+/// @param max_samples that planners draw which collect goals before they search
+[[nodiscard]] ompl::base::GoalPtr make_goal_region(const ompl::base::SpaceInformationPtr& information,
+                                                   const SearchSpace& space, Random& random,
+                                                   unsigned int max_samples = std::numeric_limits<unsigned int>::max());
 
 /// Copies a configuration into a state of that space.
 void write(const Configuration& configuration, ompl::base::State* state, const SearchSpace& space);

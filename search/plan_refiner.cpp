@@ -9,25 +9,25 @@ namespace {
 constexpr int changes_side_by_side = 8;
 
 /// Changes begin with the largest and shrink to this share of them.
-constexpr double least_step = 0.01;
+constexpr double min_step = 0.01;
 
-/// When so many waves in a row did not make a plan better its steps become large again.
-constexpr int most_failures = 60;
+/// When so many batches in a row did not make a plan better its steps become large again.
+constexpr int max_failures = 60;
 
-/// Of its waves, after how many the other plan has to be nearly as cheap as the champion, and after how many cheaper.
+/// Of its batches, after how many the other plan has to be nearly as cheap as the best, and after how many cheaper.
 constexpr int waves_to_come_near = 60;
 constexpr double near_cost_ratio = 1.05;
 constexpr int waves_to_overtake = 180;
 
-/// A plan so much dearer than the champion is not worth working on.
-constexpr double most_cost_ratio = 1.5;
+/// A plan so much dearer than the best is not worth working on.
+constexpr double max_cost_ratio = 1.5;
 
 }  // namespace
 
 PlanRefiner::PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random)
     : start_(start), flights_(flights), changes_(flights.task(), random) {}
 
-const FlownPlan* PlanRefiner::champion() const noexcept {
+const FlownPlan* PlanRefiner::best() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
 }
 
@@ -97,11 +97,11 @@ void PlanRefiner::take(const Plan& plan) {
     Track track{flown(base, change, jobs[0]), ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
         if (!tracks_.empty()) {
-            tracks_.front().waves = 0;  // it has its turns to overtake before it
+            tracks_.front().batches = 0;  // it has its turns to overtake before it
         }
         tracks_.insert(tracks_.begin(), std::move(track));
-        tracks_.resize(std::min(tracks_.size(), most_tracks));
-    } else if (track.plan.cost < most_cost_ratio * tracks_.front().plan.cost && tracks_.size() < most_tracks) {
+        tracks_.resize(std::min(tracks_.size(), max_tracks));
+    } else if (track.plan.cost < max_cost_ratio * tracks_.front().plan.cost && tracks_.size() < max_tracks) {
         tracks_.push_back(std::move(track));
     }
 }
@@ -196,19 +196,19 @@ void PlanRefiner::improve() {
         track.step = std::min(1.0, 1.5 * track.step);
         track.failures = 0;
     } else {
-        track.step = std::max(least_step, 0.9 * track.step);
-        if (++track.failures >= most_failures) {
+        track.step = std::max(min_step, 0.9 * track.step);
+        if (++track.failures >= max_failures) {
             track.step = 1;
             track.failures = 0;
         }
     }
-    ++track.waves;
+    ++track.batches;
     if (number > 0) {
         if (track.plan.cost < tracks_.front().plan.cost) {
             std::swap(tracks_.front(), track);
             tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
-        } else if (track.waves >= waves_to_overtake ||
-                   (track.waves >= waves_to_come_near &&
+        } else if (track.batches >= waves_to_overtake ||
+                   (track.batches >= waves_to_come_near &&
                     track.plan.cost > near_cost_ratio * tracks_.front().plan.cost)) {
             tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
         }

@@ -24,37 +24,37 @@ struct FlownPlan {
 /// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
 /// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with
 /// success-driven step length (Rechenberg 1973), several changes side by side. Of two plans that it works on the
-/// cheaper one is the champion; the other one is given a chance to overtake it before it is dropped.
+/// cheaper one is the best; the other one is given a chance to overtake it before it is dropped.
 class PlanRefiner {
  public:
     /// @param start the moment at which all plans begin   @param flights and `random` must outlive it
     PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random);
 
     /// Whether there is room for another plan to work on.
-    [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < most_tracks; }
-    /// Flies a plan and takes it on, if nothing refuses it. Far more expensive ones than the champion are not wanted.
+    [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }
+    /// Flies a plan and takes it on, if nothing rejects it. Far more expensive ones than the best plan are not wanted.
     void take(const Plan& plan);
 
     /// Tries some changes of one of its plans, as many as are flown side by side.
     void improve();
 
-    [[nodiscard]] const FlownPlan* champion() const noexcept;
-    /// Number, in the order in which plans were taken on, of the one that became the champion; the first is 1.
-    /// @pre there is a champion
-    [[nodiscard]] int champion_number() const noexcept { return tracks_.front().number; }
+    [[nodiscard]] const FlownPlan* best() const noexcept;
+    /// Number, in the order in which plans were taken on, of the one that became the best; the first is 1.
+    /// @pre there is a best plan
+    [[nodiscard]] int best_number() const noexcept { return tracks_.front().number; }
     /// Forgets what became of a plan that was taken on, which flies in the planner's model only.
     void drop(int number);
     /// The moments at the knots of a plan; then the one after the hold.
     [[nodiscard]] std::vector<FlightPoint> moments_of(const FlownPlan& flown) const;
 
  private:
-    static constexpr std::size_t most_tracks = 2;
+    static constexpr std::size_t max_tracks = 2;
     struct Track {
         FlownPlan plan;
         int number;        ///< of the plan that was taken on
         double step = 1;   ///< of changes, as a share of the largest
-        int failures = 0;  ///< waves since the last success, or since steps became large again
-        int waves = 0;     ///< that it was worked on
+        int failures = 0;  ///< batches since the last success, or since steps became large again
+        int batches = 0;   ///< that it was worked on
     };
     /// A changed plan that may be worth flying.
     struct Change {
@@ -75,7 +75,7 @@ class PlanRefiner {
     FlightPoint start_;
     PlannedFlights& flights_;
     PlanChanges changes_;
-    std::vector<Track> tracks_;  ///< the champion first
+    std::vector<Track> tracks_;  ///< the best first
     int taken_ = 0;
     std::size_t turn_ = 0;
 };

@@ -41,7 +41,7 @@ std::string cause_of(Rejection rejection) {
         case Rejection::interrupted:
             break;
     }
-    throw std::logic_error("a flight that was not refused has no cause of refusal");
+    throw std::logic_error("a flight that was not rejected has no cause of rejection");
 }
 
 std::map<std::string, std::uint64_t> no_rejections() {
@@ -91,7 +91,7 @@ bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
     return task_.space.is_near_goal(configuration_of(segment.to()));
 }
 
-void PlannedFlights::refuse(const ReferenceSegment& segment, Rejection rejection, const Configuration& at) {
+void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at) {
     count_rejection(rejection);
     if (rejection == Rejection::interrupted || !leads_to_goal(segment)) {
         return;
@@ -133,7 +133,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     while (task_.space.rejection_at(at(first)) == Rejection::none) {
         ++first;
     }
-    refuse(segment, task_.space.rejection_at(at(first)), at(first));
+    reject(segment, task_.space.rejection_at(at(first)), at(first));
     return false;
 }
 
@@ -146,7 +146,7 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
             statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
         }
         if (const FlightLeg* leg = job.refused_leg()) {
-            refuse(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
+            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
         }
     }
 }

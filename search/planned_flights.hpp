@@ -19,7 +19,7 @@ struct FlightStatistics {
     std::uint64_t states_checked = 0;
     std::map<std::string, std::uint64_t> rejected;
     std::uint64_t rejections = 0;
-    std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were refused, the one that came nearest
+    std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were rejected, the one that came nearest
 
     FlightStatistics& operator+=(const FlightStatistics& other);
 };
@@ -36,10 +36,10 @@ class PlannedFlights {
     void use_threads(int threads) { crew_.use_threads(threads); }
 
     /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
-    /// its reference to a few centimetres. Counts the refusal if it is not.
+    /// its reference to a few centimetres. Counts the rejection if it is not.
     [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment);
 
-    /// Flies jobs, and counts ticks and refusals.
+    /// Flies jobs, and counts ticks and rejections.
     void fly(std::span<FlightJob> jobs);
 
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
@@ -69,8 +69,8 @@ class PlannedFlights {
 
  private:
     [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
-    /// Counts a refusal at a place of a segment.
-    void refuse(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
+    /// Counts a rejection at a place of a segment.
+    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
 
     const SearchTask& task_;
     ReferenceLimits limits_;
@@ -82,10 +82,10 @@ class PlannedFlights {
 /// Whether moments end with the hover that the goal asks for: without it they are a way, not a plan.
 [[nodiscard]] bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights);
 
-/// A count of nothing for every cause of refusal.
+/// A count of nothing for every cause of rejection.
 [[nodiscard]] std::map<std::string, std::uint64_t> no_rejections();
 
-/// The name under which a refusal is counted.
+/// The name under which a rejection is counted.
 [[nodiscard]] std::string cause_of(Rejection rejection);
 
 }  // namespace downwash::planning

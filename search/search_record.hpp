@@ -27,12 +27,12 @@ struct Improvement {
     std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
 };
 
-/// What stood between a search and its goal: of the ways into the goal region that were refused, holds included, the
+/// What stood between a search and its goal: of the ways into the goal region that were rejected, holds included, the
 /// one that came nearest. `direct_flight`, if it had plans: where the flight of the one that was discarded last came
 /// nearest to an obstacle or, if that is not why, ended.
 struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
-    Configuration at;            ///< where it was refused
+    Configuration at;            ///< where it was rejected
     double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
 };
 

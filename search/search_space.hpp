@@ -49,7 +49,7 @@ class SearchSpace {
     [[nodiscard]] Configuration sample(Random& random) const;
 
     /// A configuration of the level vehicle that meets the goal, free of collision: inverse kinematics with the arm in
-    /// any direction that the goal leaves open, so both branches of the arm occur; alternatives come in turn by lot.
+    /// any direction that the goal leaves open, so both branches of the arm occur; alternatives come in random order.
     /// Nothing after some failed tries.
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
 

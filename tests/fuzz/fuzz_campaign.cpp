@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     downwash::write_file(file, {reinterpret_cast<const char*>(data), size});
     try {
         const downwash::ReadCampaign read = downwash::read_campaign(file);
-        if (read.campaign.seeds.all().size() > downwash::most_campaign_runs) {
+        if (read.campaign.seeds.all().size() > downwash::max_campaign_runs) {
             __builtin_trap();
         }
     } catch (const downwash::ProblemFileError&) {

@@ -42,16 +42,16 @@ struct Fixture {
 TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners without a stop") {
     Fixture f;
     f.refiner.take(f.stop_and_go());
-    REQUIRE(f.refiner.champion() != nullptr);
-    const double before = f.refiner.champion()->cost;
+    REQUIRE(f.refiner.best() != nullptr);
+    const double before = f.refiner.best()->cost;
     double last = before;
     for (int wave = 0; wave < 150; ++wave) {
         f.refiner.improve();
-        REQUIRE(f.refiner.champion()->cost <= last);
-        last = f.refiner.champion()->cost;
+        REQUIRE(f.refiner.best()->cost <= last);
+        last = f.refiner.best()->cost;
     }
     CHECK(last < 0.8 * before);
-    const planning::FlownPlan& plan = *f.refiner.champion();
+    const planning::FlownPlan& plan = *f.refiner.best();
     for (std::size_t i = 1; i + 1 < plan.points.size(); ++i) {
         const double* v = plan.points[i].velocity;
         CHECK(v[0] * v[0] + v[1] * v[1] > 1e-4);
@@ -66,7 +66,7 @@ TEST_CASE(
     for (int wave = 0; wave < 60; ++wave) {
         f.refiner.improve();
     }
-    const planning::FlownPlan& flown = *f.refiner.champion();
+    const planning::FlownPlan& flown = *f.refiner.best();
     const Plan plan = planning::plan_through(f.refiner.moments_of(flown), f.model->tick().tick_s);
     FlightState state = start_state(*f.model, f.problem.start);
     for (std::size_t i = 1; i < plan.reference.size(); ++i) {
@@ -87,21 +87,21 @@ TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped
     Plan through_the_ground = f.stop_and_go();
     through_the_ground.reference[1].point.position[1] = -1;
     f.refiner.take(through_the_ground);
-    CHECK(f.refiner.champion() == nullptr);
+    CHECK(f.refiner.best() == nullptr);
     f.refiner.improve();  // nothing to work on
     f.refiner.take(f.stop_and_go());
-    REQUIRE(f.refiner.champion() != nullptr);
+    REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.wants_plan());
     f.refiner.take(f.stop_and_go());
     CHECK_FALSE(f.refiner.wants_plan());
-    const int first = f.refiner.champion_number();
+    const int first = f.refiner.best_number();
     f.refiner.drop(first);
-    REQUIRE(f.refiner.champion() != nullptr);
-    CHECK(f.refiner.champion_number() != first);
+    REQUIRE(f.refiner.best() != nullptr);
+    CHECK(f.refiner.best_number() != first);
     f.refiner.drop(first);  // it is gone already
-    REQUIRE(f.refiner.champion() != nullptr);
-    f.refiner.drop(f.refiner.champion_number());
-    CHECK(f.refiner.champion() == nullptr);
+    REQUIRE(f.refiner.best() != nullptr);
+    f.refiner.drop(f.refiner.best_number());
+    CHECK(f.refiner.best() == nullptr);
 }
 
 TEST_CASE("every segment of a refined plan keeps the limits, however the number of corners changes") {
@@ -109,10 +109,10 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         Fixture f(seed);
         f.refiner.take(f.stop_and_go());
-        REQUIRE(f.refiner.champion() != nullptr);
+        REQUIRE(f.refiner.best() != nullptr);
         for (int wave = 0; wave < 60; ++wave) {
             f.refiner.improve();
-            const planning::FlownPlan& plan = *f.refiner.champion();
+            const planning::FlownPlan& plan = *f.refiner.best();
             REQUIRE(plan.points.size() == plan.ticks.size() + 1);
             for (std::size_t i = 0; i < plan.ticks.size(); ++i) {
                 INFO("seed " << seed << ", wave " << wave << ", segment " << i);

@@ -250,15 +250,15 @@ TEST_CASE("no motion is cheaper than the least that is said of it, however it is
                 const Configuration a = f.space.sample(random);
                 const Configuration b = f.space.sample(random);
                 const Configuration c = f.space.sample(random);
-                const double least = cost.least_of_motion(a, c);
+                const double least = cost.min_cost_of_motion(a, c);
                 CHECK(least <= cost.of_motion(a, c) * (1 + 1e-12));
                 CHECK(least <= (cost.of_motion(a, b) + cost.of_motion(b, c)) * (1 + 1e-12));
-                CHECK(least <= cost.least_of_motion(a, b) + cost.least_of_motion(b, c) + 1e-9);
+                CHECK(least <= cost.min_cost_of_motion(a, b) + cost.min_cost_of_motion(b, c) + 1e-9);
                 const auto goal = f.space.sample_goal(random);
                 REQUIRE(goal);
                 const double way = cost.of_motion(a, *goal) + cost.of_hold(*goal, problem.goal.hold_s);
-                CHECK(cost.least_to_goal(a) <= way * (1 + 1e-12));
-                tightest = std::max(tightest, cost.least_to_goal(a) / way);
+                CHECK(cost.min_cost_to_goal(a) <= way * (1 + 1e-12));
+                tightest = std::max(tightest, cost.min_cost_to_goal(a) / way);
             }
             CHECK((objective == Objective::clearance || tightest > 0.5));
         }
