@@ -9,11 +9,11 @@
 
 namespace downwash {
 
-/// Bytes as RFC 4648 writes them, padded, without line breaks.
+/// Bytes as RFC 4648 writes them, padded, without line breaks. @pre at most 1.5 GB
 [[nodiscard]] DOWNWASH_EXPORT std::string base64_text(std::string_view bytes);
 
-/// The bytes behind a base64 text; empty when it is none: a length that is no multiple of 4, another letter, padding
-/// before the end.
+/// The bytes that base64_text turns into this text; empty when there are none: a length that is no multiple of 4,
+/// another letter, padding before the end, bits set in what the padding leaves over, 2 GiB or more.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> base64_bytes(std::string_view text);
 
 /// Letters that stand for so many bytes.

@@ -19,13 +19,13 @@ std::string last_reason() {
     return std::generic_category().message(errno);
 }
 
-/// Where a symbolic link leads, however often; the file itself when it is none.
+/// The file at the end of a chain of symbolic links; the file itself if it is not a link.
 fs::path target_of(fs::path file) {
-    constexpr int most_links = 40;  // as Linux has it
+    constexpr int max_links = 40;  // as on Linux
     std::error_code error;
     for (int i = 0; fs::is_symlink(file, error); ++i) {
         const fs::path target = fs::read_symlink(file, error);
-        if (i == most_links || error) {
+        if (i == max_links || error) {
             throw FileError("cannot be written: too many symbolic links, or one that cannot be read");
         }
         file = file.parent_path() / target;  // an absolute target stands alone
@@ -41,7 +41,7 @@ class UnfinishedFile {
         path_ = place_.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part";
         descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (descriptor_ < 0) {
-            refuse();
+            fail();
         }
     }
     ~UnfinishedFile() {
@@ -62,7 +62,7 @@ class UnfinishedFile {
                 continue;
             }
             if (count <= 0) {
-                refuse();
+                fail();
             }
             content.remove_prefix(static_cast<std::size_t>(count));
         }
@@ -72,13 +72,13 @@ class UnfinishedFile {
         // Some file systems report a full disk only when the file is closed.
         const bool is_closed = close(std::exchange(descriptor_, -1)) == 0;
         if (!is_closed || std::rename(path_.c_str(), place_.c_str()) != 0) {
-            refuse();
+            fail();
         }
         is_finished_ = true;
     }
 
  private:
-    [[noreturn]] static void refuse() { throw FileError("cannot be written: " + last_reason()); }
+    [[noreturn]] static void fail() { throw FileError("cannot be written: " + last_reason()); }
 
     fs::path place_;
     std::string path_;
@@ -104,7 +104,7 @@ void require_regular(const fs::path& file) {
 
 }  // namespace
 
-std::string read_file(const fs::path& file, std::size_t most_bytes) {
+std::string read_file(const fs::path& file, std::size_t max_bytes) {
     require_regular(file);
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
     if (!stream) {
@@ -112,12 +112,24 @@ std::string read_file(const fs::path& file, std::size_t most_bytes) {
     }
     const std::streamoff size = stream.tellg();
     stream.seekg(0);
-    std::string bytes(std::min(most_bytes, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
+    std::string bytes(std::min(max_bytes, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
     stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
         throw FileError("cannot be read to its end");
     }
     return bytes;
+}
+
+std::string read_whole_file(const fs::path& file, std::size_t max_bytes) {
+    std::error_code unknown;  // of what is no regular file: read_file says so
+    const std::uintmax_t size = fs::file_size(file, unknown);
+    if (unknown || size <= max_bytes) {
+        std::string bytes = read_file(file, max_bytes + 1);
+        if (bytes.size() <= max_bytes) {
+            return bytes;
+        }
+    }
+    throw FileError("is larger than " + std::to_string(max_bytes >> 20U) + " MiB: expected a smaller file");
 }
 
 void write_file(const fs::path& file, std::string_view content) {

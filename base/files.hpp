@@ -15,16 +15,18 @@ struct DOWNWASH_EXPORT FileError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The first bytes of a regular file, at most so many: ask for one more than you accept to notice a file that is too
-/// large. @throws FileError when there is none or it cannot be read
-[[nodiscard]] DOWNWASH_EXPORT std::string read_file(const std::filesystem::path& file, std::size_t most_bytes);
+/// The first bytes of a regular file, at most so many. @throws FileError if there is none or it cannot be read
+[[nodiscard]] DOWNWASH_EXPORT std::string read_file(const std::filesystem::path& file, std::size_t max_bytes);
 
-/// Writes a file beside its place and moves it there: whoever looks finds the old file, or the whole new one. A
-/// symbolic link stays; what it leads to is written.
-/// @throws FileError when that fails; nothing is left behind then
+/// The bytes of a regular file. @throws FileError if there is none, it cannot be read or has more than `max_bytes`
+[[nodiscard]] DOWNWASH_EXPORT std::string read_whole_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+/// Writes a file beside its place and moves it there: a reader finds either the old file or the whole new one. If the
+/// file is a symbolic link, writes its target.
+/// @throws FileError if that fails; then no file is left behind
 DOWNWASH_EXPORT void write_file(const std::filesystem::path& file, std::string_view content);
 
-/// Whether write_file would get as far as its first byte. @throws FileError when it would not
+/// @throws FileError if write_file could not begin to write this file
 DOWNWASH_EXPORT void require_writable(const std::filesystem::path& file);
 
 }  // namespace downwash

@@ -20,4 +20,14 @@ std::string joined(const std::vector<KeyError>& errors) {
 
 InputError::InputError(std::vector<KeyError> errors) : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
 
+void throw_input_error(std::string message, std::string key) {
+    throw InputError(std::vector<KeyError>{{std::move(key), std::move(message)}});
+}
+
+void throw_if_any(std::vector<KeyError> errors) {
+    if (!errors.empty()) {
+        throw InputError(std::move(errors));
+    }
+}
+
 }  // namespace downwash

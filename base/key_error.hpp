@@ -8,7 +8,7 @@
 
 namespace downwash {
 
-/// Something a user wrote that cannot be used: where it stands and what to do about it.
+/// An error in what a user wrote: where it is and what to do about it.
 struct KeyError {
     /// Key path within the problem, for example "start.x_m", "robot.rotors" or "environment.obstacles[2].box".
     std::string key;
@@ -16,7 +16,7 @@ struct KeyError {
     std::string message;
 };
 
-/// Thrown at the edge of a module when input cannot be used; carries every error that was found in one reading.
+/// A module throws this if it cannot use its input. It carries every error that one reading found.
 class DOWNWASH_EXPORT InputError : public std::runtime_error {
  public:
     /// @pre there is at least one error
@@ -26,5 +26,11 @@ class DOWNWASH_EXPORT InputError : public std::runtime_error {
  private:
     std::vector<KeyError> errors_;
 };
+
+/// Throws an InputError of one error. @param key may be empty
+[[noreturn]] DOWNWASH_EXPORT void throw_input_error(std::string message, std::string key = "");
+
+/// @throws InputError if there are errors
+DOWNWASH_EXPORT void throw_if_any(std::vector<KeyError> errors);
 
 }  // namespace downwash

@@ -11,15 +11,13 @@ void LineErrors::add(std::size_t line, std::size_t column, const std::string& me
 }
 
 void LineErrors::throw_any() const {
-    if (!errors_.empty()) {
-        throw InputError(errors_);
-    }
+    throw_if_any(errors_);
 }
 
 void LineErrors::add_at(const std::string& place, const std::string& message) {
-    constexpr std::size_t most_errors = 20;
+    constexpr std::size_t max_errors = 20;
     errors_.push_back({"", file_ + place + ": " + message});
-    if (errors_.size() == most_errors) {
+    if (errors_.size() == max_errors) {
         throw_any();
     }
 }

@@ -168,7 +168,7 @@ Parameter<Model> choices(std::string_view path, std::string_view description,
     return parameter;
 }
 
-/// A list of numbers, as many as one likes.
+/// A list of any number of numbers.
 template <class Model, class Member>
 Parameter<Model> samples(std::string_view path, std::string_view description, Member member) {
     return member_row<Model, std::vector<double>>(ParameterKind::samples, path, description, member);
@@ -257,44 +257,52 @@ Parameter<Model> constant(std::string_view path, std::string_view description, s
     return parameter;
 }
 
+/// Keys that may be there.
+/// @param is_there (const Model&, index) -> bool   @param set (Model&, index, bool) makes it so
+template <class Model, class IsThere, class Set>
+Parameter<Model> group(std::string_view path, std::string_view description, IsThere is_there, Set set) {
+    auto parameter = row<Model>(ParameterKind::group, path, description);
+    parameter.count = [is_there](const Model& model, std::size_t i) -> std::size_t {
+        return is_there(model, i) ? 1 : 0;
+    };
+    parameter.resize = [set](Model& model, std::size_t i, std::size_t count) { set(model, i, count > 0); };
+    return parameter;
+}
+
 /// Keys that are always there.
 template <class Model>
 Parameter<Model> group(std::string_view path, std::string_view description) {
-    auto parameter = row<Model>(ParameterKind::group, path, description);
-    parameter.count = [](const Model&, std::size_t) { return std::size_t{1}; };
-    parameter.resize = [](Model&, std::size_t, std::size_t) {};
-    return parameter;
+    return group<Model>(
+        path, description, [](const Model&, std::size_t) { return true; }, [](Model&, std::size_t, bool) {});
 }
 
 /// Keys of a member that may be absent.
 template <class Model, class Member>
 Parameter<Model> optional_group(std::string_view path, std::string_view description, Member member) {
-    auto parameter = row<Model>(ParameterKind::group, path, description);
-    parameter.count = [member](const Model& model, std::size_t i) {
-        return at(member, model, i) ? std::size_t{1} : std::size_t{0};
-    };
-    parameter.resize = [member](Model& model, std::size_t i, std::size_t count) {
-        at(member, model, i).reset();
-        if (count > 0) {
-            at(member, model, i).emplace();
-        }
-    };
-    return parameter;
+    return group<Model>(
+        path, description, [member](const Model& model, std::size_t i) { return at(member, model, i).has_value(); },
+        [member](Model& model, std::size_t i, bool is_there) {
+            at(member, model, i).reset();
+            if (is_there) {
+                at(member, model, i).emplace();
+            }
+        });
 }
 
 /// Keys of one alternative of a variant.
 template <class Alternative, class Model, class Member>
 Parameter<Model> alternative(std::string_view path, std::string_view description, Member member) {
-    auto parameter = row<Model>(ParameterKind::group, path, description);
+    auto parameter = group<Model>(
+        path, description,
+        [member](const Model& model, std::size_t i) {
+            return std::holds_alternative<Alternative>(at(member, model, i));
+        },
+        [member](Model& model, std::size_t i, bool is_there) {
+            if (is_there) {
+                at(member, model, i) = Alternative{};
+            }
+        });
     parameter.exclusive = true;
-    parameter.count = [member](const Model& model, std::size_t i) {
-        return std::holds_alternative<Alternative>(at(member, model, i)) ? std::size_t{1} : std::size_t{0};
-    };
-    parameter.resize = [member](Model& model, std::size_t i, std::size_t count) {
-        if (count > 0) {
-            at(member, model, i) = Alternative{};
-        }
-    };
     return parameter;
 }
 
@@ -324,6 +332,19 @@ Parameter<Model> file(std::string_view path, std::string_view description, PathO
     return parameter;
 }
 
+/// A function of a part as one of the whole; empty if the part's is.
+template <class Whole, class Member, class Result, class Part, class... Arguments>
+auto through(const Member& member, const std::function<Result(Part&, Arguments...)>& of_part) {
+    using Of = std::conditional_t<std::is_const_v<Part>, const Whole, Whole>;
+    std::function<Result(Of&, Arguments...)> of_whole;
+    if (of_part) {
+        of_whole = [member, of_part](Of& whole, Arguments... arguments) {
+            return of_part(member(whole), arguments...);
+        };
+    }
+    return of_whole;
+}
+
 /// The parameter of a part, seen from the whole. `member` names the part in the whole.
 template <class Whole, class Part, class Member>
 Parameter<Whole> nested(const Parameter<Part>& inner, std::string_view prefix, Member member) {
@@ -331,30 +352,12 @@ Parameter<Whole> nested(const Parameter<Part>& inner, std::string_view prefix, M
     const ParameterInfo& info = inner;
     static_cast<ParameterInfo&>(outer) = info;
     outer.path = std::string(prefix) + inner.path;
-    if (inner.get) {
-        outer.get = [member, get = inner.get](const Whole& whole, std::size_t i) { return get(member(whole), i); };
-        outer.set = [member, set = inner.set](Whole& whole, std::size_t i, const Value& v) {
-            set(member(whole), i, v);
-        };
-    }
-    if (inner.count) {
-        outer.count = [member, count = inner.count](const Whole& whole, std::size_t i) {
-            return count(member(whole), i);
-        };
-        outer.resize = [member, resize = inner.resize](Whole& whole, std::size_t i, std::size_t n) {
-            resize(member(whole), i, n);
-        };
-    }
-    if (inner.digest) {
-        outer.digest = [member, digest = inner.digest](const Whole& whole, std::size_t i) {
-            return digest(member(whole), i);
-        };
-    }
-    if (inner.applies) {
-        outer.applies = [member, applies = inner.applies](const Whole& whole, std::size_t i) {
-            return applies(member(whole), i);
-        };
-    }
+    outer.get = through<Whole>(member, inner.get);
+    outer.set = through<Whole>(member, inner.set);
+    outer.count = through<Whole>(member, inner.count);
+    outer.resize = through<Whole>(member, inner.resize);
+    outer.digest = through<Whole>(member, inner.digest);
+    outer.applies = through<Whole>(member, inner.applies);
     return outer;
 }
 

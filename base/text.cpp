@@ -4,13 +4,18 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace downwash {
 namespace {
 
-/// Longer words are no misspellings of ours.
+/// Longer words are not misspelt names.
 constexpr std::size_t longest_word = 64;
+
+bool is_blank(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 /// Letters to insert, delete, replace or swap with their neighbour to turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -52,11 +57,16 @@ std::string to_text(double value, int significant_digits) {
 }
 
 std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    if (begin == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+    const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
+    const auto end = std::find_if_not(text.rbegin(), std::make_reverse_iterator(begin), is_blank).base();
+    return {begin, end};
+}
+
+std::string_view take_word(std::string_view& rest) {
+    const auto begin = std::find_if_not(rest.begin(), rest.end(), is_blank);
+    const auto end = std::find_if(begin, rest.end(), is_blank);
+    rest = {end, rest.end()};
+    return {begin, end};
 }
 
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {

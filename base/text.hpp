@@ -19,8 +19,8 @@ namespace downwash {
 /// A number for people to read, rounded to so many significant digits (1 to 17).
 [[nodiscard]] DOWNWASH_EXPORT std::string to_text(double value, int significant_digits);
 
-/// The number that a text wholly is ("3", "-.5", "+1e3"); empty when it is none, not finite or out of the type's range.
-/// Independent of the locale.
+/// The number that a whole text spells ("3", "-.5", "+1e3"); empty if it spells none, or one that is not finite or out
+/// of the type's range. Independent of the locale.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
@@ -39,8 +39,11 @@ template <class Number>
     return number;
 }
 
-/// Without the blanks, tabs and ends of lines at both ends.
+/// The text without the blanks (tabs and ends of lines are some) at both ends.
 [[nodiscard]] DOWNWASH_EXPORT std::string_view trimmed(std::string_view text);
+
+/// Takes the next word, which ends at a blank or an end of line, from the front of a text; empty if there is none.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view take_word(std::string_view& rest);
 
 /// The candidate that a misspelt word most likely stands for; empty when none is near (more than a third of its
 /// letters would have to change).

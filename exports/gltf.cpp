@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "downwash/base/little_endian.hpp"
+#include "downwash/base/byte_order.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/exports/formats.hpp"
 #include "downwash/scene/obstacle_placement.hpp"

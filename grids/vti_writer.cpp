@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "downwash/base/base64.hpp"
-#include "downwash/base/little_endian.hpp"
+#include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/grids/grid_formats.hpp"
 

@@ -6,7 +6,7 @@
 #include <new>
 
 #include "downwash/base/base64.hpp"
-#include "downwash/base/little_endian.hpp"
+#include "downwash/base/byte_order.hpp"
 
 namespace downwash {
 void PackedNumbers::add(std::span<const std::uint8_t> list) {

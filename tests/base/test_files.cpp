@@ -30,6 +30,9 @@ TEST_CASE("a file reads back as it was written, whatever its bytes, and no furth
     CHECK(read_file(folder / "file", 100) == bytes);
     CHECK(read_file(folder / "file", 6) == bytes);
     CHECK(read_file(folder / "file", 3) == bytes.substr(0, 3));
+    CHECK(read_whole_file(folder / "file", 6) == bytes);
+    CHECK_THROWS_WITH(read_whole_file(folder / "file", 5), "is larger than 0 MiB: expected a smaller file");
+    CHECK_THROWS_WITH(read_whole_file(folder / "missing", 5), "cannot be read: there is no such file");
     write_file(folder / "file", "");
     CHECK(read_file(folder / "file", 100).empty());
 }

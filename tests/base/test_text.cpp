@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "downwash/base/base64.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/sha256.hpp"
 
@@ -49,4 +50,34 @@ TEST_CASE("names of keys carry their units") {
 TEST_CASE("SHA-256 gives the digests of its standard") {
     CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_CASE("base64 is that of RFC 4648 and nothing else") {
+    const std::array<std::array<std::string_view, 2>, 8> pairs{{{"", ""},
+                                                                {"f", "Zg=="},
+                                                                {"fo", "Zm8="},
+                                                                {"foo", "Zm9v"},
+                                                                {"foob", "Zm9vYg=="},
+                                                                {"fooba", "Zm9vYmE="},
+                                                                {"foobar", "Zm9vYmFy"},
+                                                                {"\xfb\xff\xfe", "+//+"}}};
+    for (const auto& [bytes, text] : pairs) {
+        CHECK(base64_text(bytes) == text);
+        CHECK(base64_bytes(text) == bytes);
+        CHECK(text.size() == base64_letters(bytes.size()));
+    }
+    for (const char* text :
+         {"Zg=", "Zg", "Z===", "====", "Zg=v", "Zh==", " Zg==", "Zg==\n\n\n\n", "Zg-=", "Z\xc3\xa4v"}) {
+        CAPTURE(text);
+        CHECK_FALSE(base64_bytes(text));
+    }
+}
+
+TEST_CASE("words are taken from the front of a text") {
+    std::string_view rest = "\t one  two\r\n";
+    CHECK(take_word(rest) == "one");
+    CHECK(take_word(rest) == "two");
+    CHECK(take_word(rest).empty());
+    CHECK(trimmed(" \n ").empty());
+    CHECK(trimmed("\va b\f") == "a b");
 }
