@@ -50,11 +50,11 @@ void read_file_of(Problem& problem, std::size_t index, const std::string& file,
     auto& kept = std::get<Kind>(problem.obstacles[index].shape).*content;
     kept = found ? found : read(file);
     const std::size_t pieces = pieces_of(problem.obstacles);
-    if (pieces > most_pieces) {
+    if (pieces > max_pieces) {
         kept = nullptr;
         throw InputError(
             {{"", "'" + file + "' makes " + std::to_string(pieces) +
-                      " triangles and cubes of all obstacles: expected at most " + std::to_string(most_pieces)}});
+                      " triangles and cubes of all obstacles: expected at most " + std::to_string(max_pieces)}});
     }
 }
 

@@ -164,11 +164,11 @@ std::vector<KeyError> too_large_map(const Problem& p) {
     const auto no_obstacles = std::make_shared<const Scene>(std::vector<Obstacle>{});
     const double cells =
         map_cells(effect_layers(p.robot.rotors, no_obstacles, p.aero).layers, rotor_extent(p.robot.rotors, p.bounds));
-    if (cells <= most_map_cells) {
+    if (cells <= max_map_cells) {
         return {};
     }
     return {{"aero.grid_m", "makes a map of " + rounded(cells) + " cells over the bounds: expected at most " +
-                                rounded(most_map_cells) + "; choose a coarser grid or narrower bounds"}};
+                                rounded(max_map_cells) + "; choose a coarser grid or narrower bounds"}};
 }
 
 std::vector<KeyError> start_outside_bounds(const Problem& p) {

@@ -8,23 +8,11 @@ namespace downwash {
 namespace {
 
 /// Fewer parts are asked one by one: testing two boxes costs about as much as testing two parts' own.
-constexpr std::uint32_t most_in_leaf = 8;
-
-Scene::Bounds hull(const Scene::Bounds& a, const Scene::Bounds& b) {
-    Scene::Bounds both{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        both.low_m[k] = std::min(a.low_m[k], b.low_m[k]);
-        both.high_m[k] = std::max(a.high_m[k], b.high_m[k]);
-    }
-    return both;
-}
+constexpr std::uint32_t max_in_leaf = 8;
 
 /// The point in the middle of a box, as a box.
 Scene::Bounds middle_of(const Scene::Bounds& box) {
-    Vector3 middle{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        middle[k] = 0.5 * (box.low_m[k] + box.high_m[k]);
-    }
+    const Vector3 middle = 0.5 * (box.low_m + box.high_m);
     return {middle, middle};
 }
 
@@ -44,12 +32,12 @@ void BoundsTree::build(std::span<const Scene::Bounds> parts, std::uint32_t first
     Scene::Bounds all = parts[order_[first]];
     Scene::Bounds middles = middle_of(all);
     for (std::uint32_t i = first + 1; i < last; ++i) {
-        all = hull(all, parts[order_[i]]);
-        middles = hull(middles, middle_of(parts[order_[i]]));
+        all.include(parts[order_[i]]);
+        middles.include(middle_of(parts[order_[i]]));
     }
     const std::size_t index = nodes_.size();
     nodes_.push_back({all, first, last - first});
-    if (last - first <= most_in_leaf) {
+    if (last - first <= max_in_leaf) {
         return;
     }
     std::size_t axis = 0;

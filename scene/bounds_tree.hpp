@@ -31,7 +31,7 @@ class BoundsTree {
             }
             return false;
         }
-        std::array<Entry, most_levels> open;
+        std::array<Entry, max_levels> open;
         std::size_t count = 0;
         open[count++] = {0, gap(nodes_[0].bounds)};
         while (count > 0) {
@@ -69,7 +69,7 @@ class BoundsTree {
         double gap;
     };
     /// Halving two thousand million parts takes 31 steps, and each leaves at most one node open.
-    static constexpr std::size_t most_levels = 40;
+    static constexpr std::size_t max_levels = 40;
 
     void build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last);
 

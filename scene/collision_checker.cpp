@@ -11,19 +11,12 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
-#include "downwash/scene/fcl_contact.hpp"
 #include "downwash/scene/solids.hpp"
-
-// FCL decides contact. Its distances (version 0.7, solids of 0.05 to 1 m) were off by up to 5 mm between boxes,
-// cylinders and capsules with its default solver, and by 13 mm with the other, so distances come from convex.hpp.
 
 namespace downwash {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Solids farther apart than this are not shown to FCL: they do not touch, whatever its tolerances.
-constexpr double contact_band_m = 1e-6;
 
 bool is_finite(const PlanarPose& pose) {
     return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad);
@@ -81,9 +74,7 @@ void require_valid(const RobotShape& robot) {
     };
     inspect_length(robot.arm_length_m, "arm_length_m");
     inspect_length(robot.arm_radius_m, "arm_radius_m");
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
+    throw_if_any(std::move(errors));
 }
 
 std::vector<Piece> pieces_of(const RobotShape& robot) {
@@ -110,36 +101,27 @@ double reach_of(const Convex& convex) {
     return std::sqrt(squared);
 }
 
-bool is_nearer(const Convex& piece, const Convex& part, double margin_m) {
-    if (margin_m > contact_band_m) {
-        return is_nearer_than(piece, part, margin_m);
-    }
-    return is_nearer_than(piece, part, contact_band_m) &&
-           (is_nearer_than(piece, part, margin_m) || fcl_says_contact(piece, part));
-}
-
 }  // namespace
 
 struct CollisionChecker::Impl {
     Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot);
 
-    /// Calls `visit(placed piece, its bounds)`, all in the world, until it returns true; whether it did.
+    /// Calls `visit(piece placed in the world)` until it returns true; whether it did.
     template <class Visit>
     bool any_piece(const PlanarPose& pose, const Visit& visit) const {
         const Frame body = frame_at(pose.x_m, pose.z_m, pose.pitch_rad);
         const Vector3 joint = body.placed(joint_m);
         const Frame arm = frame_at(joint[0], joint[2], pose.pitch_rad + pose.arm_rad);
         return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-            const Convex placed = (piece.is_arm ? arm : body).placed(piece.convex, plane);
-            return visit(placed, bounds_of(placed));
+            return visit((piece.is_arm ? arm : body).placed(piece.convex, plane));
         });
     }
 
     /// Whether the box that holds the robot at any attitude keeps `margin_m` from every obstacle.
     bool is_far_away(const PlanarPose& pose, double margin_m) const {
         const Vector3 center = plane.to_world(pose.x_m, 0, pose.z_m);
-        const Scene::Bounds everywhere{{center[0] - reach_m, center[1] - reach_m, center[2] - reach_m},
-                                       {center[0] + reach_m, center[1] + reach_m, center[2] + reach_m}};
+        const Vector3 reach{reach_m, reach_m, reach_m};
+        const Scene::Bounds everywhere{center - reach, center + reach};
         const auto gap = [&](const Scene::Bounds& box) { return gap_m(everywhere, box); };
         const auto is_near = [&](std::size_t part) { return gap(solids.parts.bounds(part)) <= margin_m; };
         return !solids.parts.any(gap, margin_m, is_near) && !solids.is_inside_mesh(center);
@@ -168,8 +150,6 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const Plane
         reach_m = std::max(reach_m, offset + reach_of(piece.convex));
         body_reach_m = piece.is_arm ? body_reach_m : std::max(body_reach_m, reach_of(piece.convex));
     }
-    // FCL fills its static tables in the first query; later threads only read them.
-    static_cast<void>(fcl_says_contact(pieces.back().convex, pieces.back().convex));
 }
 
 CollisionChecker::CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane,
@@ -183,20 +163,8 @@ bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) c
     if (!is_finite(pose)) {
         return true;
     }
-    const double near_m = std::max(margin_m, contact_band_m);
-    if (impl_->is_far_away(pose, near_m)) {
-        return false;
-    }
-    const Scene::Solids& solids = impl_->solids;
-    return impl_->any_piece(pose, [&](const Convex& piece, const Scene::Bounds& bounds) {
-        const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
-        const auto is_near = [&](std::size_t part) {
-            return gap(solids.parts.bounds(part)) <= near_m &&
-                   solids.parts.with_convex(part,
-                                            [&](const Convex& convex) { return is_nearer(piece, convex, margin_m); });
-        };
-        return solids.parts.any(gap, near_m, is_near) || solids.is_inside_mesh(piece.center_m);
-    });
+    return !impl_->is_far_away(pose, std::max(margin_m, contact_m)) &&
+           impl_->any_piece(pose, [&](const Convex& piece) { return impl_->solids.are_near(piece, margin_m); });
 }
 
 double CollisionChecker::body_reach_m() const noexcept {
@@ -207,27 +175,12 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     if (!is_finite(pose)) {
         return -infinity;
     }
-    const Scene::Solids& solids = impl_->solids;
     double least = infinity;
-    impl_->any_piece(pose, [&](const Convex& piece, const Scene::Bounds& bounds) {
-        const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
-        solids.parts.any(gap, least, [&](std::size_t part) {
-            if (gap(solids.parts.bounds(part)) >= least) {
-                return false;
-            }
-            least = std::min(least, solids.parts.with_convex(part, [&](const Convex& convex) {
-                const double distance = distance_m(piece, convex, least);
-                const bool is_close = distance > 0 && distance < contact_band_m;
-                return is_close && fcl_says_contact(piece, convex) ? 0 : distance;
-            }));
-            return false;
-        });
-        if (least > 0 && solids.is_inside_mesh(piece.center_m)) {
-            least = 0;
-        }
+    impl_->any_piece(pose, [&](const Convex& piece) {
+        least = impl_->solids.clearance_m(piece, least);
         return false;
     });
-    return least;
+    return least < contact_m ? std::min(least, 0.0) : least;
 }
 
 }  // namespace downwash

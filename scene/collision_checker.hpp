@@ -19,9 +19,9 @@ struct PlanarPose {
 };
 
 /// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
-/// Bounding boxes dismiss what is plainly apart; then FCL decides contact, and distances are enclosed to 1e-8 m
-/// (scene/convex.hpp says how). A body inside a closed mesh is in contact. No query allocates while nothing touches. A
-/// pose that is not finite is in contact.
+/// Bounding boxes dismiss what is plainly apart; between the others distances are enclosed to 1e-8 m
+/// (scene/convex.hpp). Solids less than 1e-6 m apart are in contact, and so are a body inside a closed mesh and a pose
+/// that is not finite. No query allocates.
 /// @pre angles of at most 1e5 rad
 class DOWNWASH_EXPORT CollisionChecker {
  public:

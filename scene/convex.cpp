@@ -7,22 +7,6 @@
 namespace downwash {
 namespace {
 
-Vector3 operator+(const Vector3& a, const Vector3& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vector3 operator-(const Vector3& a, const Vector3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vector3 operator*(double s, const Vector3& a) {
-    return {s * a[0], s * a[1], s * a[2]};
-}
-double dot(const Vector3& a, const Vector3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vector3 cross(const Vector3& a, const Vector3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// The point of the solid without its ball that lies farthest in `direction`.
 Vector3 support(const Convex& convex, const Vector3& direction) {
     Vector3 point = convex.center_m;
@@ -130,7 +114,7 @@ struct Bracket {
 Bracket core_distance(const Convex& a, const Convex& b, double enough, double below) {
     constexpr double tolerance_m = 1e-10;
     constexpr double contact_m = 1e-13;
-    constexpr int most_steps = 128;  // a handful for boxes, some ten for round solids
+    constexpr int max_steps = 128;  // a handful for boxes, some ten for round solids
     Vector3 direction = a.center_m - b.center_m;
     double squared = dot(direction, direction);
     if (squared == 0) {
@@ -139,7 +123,7 @@ Bracket core_distance(const Convex& a, const Convex& b, double enough, double be
     }
     Simplex simplex;
     Bracket bracket{0, std::numeric_limits<double>::infinity()};
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
         const Vector3 point = support(a, -1.0 * direction) - support(b, direction);
         bracket.low = std::max(bracket.low, dot(direction, point) / std::sqrt(squared));
         if (bracket.low >= enough || bracket.high - bracket.low <= tolerance_m) {
@@ -197,7 +181,7 @@ struct ConvexMaker {
 Placement placement_of(const Primitive& shape, const Matrix3& rotation) noexcept {
     const auto* cylinder = std::get_if<Cylinder>(&shape);
     const Vector3 axis = cylinder ? unit(cylinder->axis) : Vector3{0, 0, 1};
-    return {rotation, {dot(rotation[0], axis), dot(rotation[1], axis), dot(rotation[2], axis)}};
+    return {rotation, rotation * axis};
 }
 
 Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placement& placement) {

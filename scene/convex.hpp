@@ -41,8 +41,7 @@ Vector3 half_extents_m(const Convex& convex) noexcept;
 
 inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
     const Vector3 half = half_extents_m(convex);
-    const Vector3& c = convex.center_m;
-    return {{c[0] - half[0], c[1] - half[1], c[2] - half[2]}, {c[0] + half[0], c[1] + half[1], c[2] + half[2]}};
+    return {convex.center_m - half, convex.center_m + half};
 }
 
 /// Distance between two solids [m] to 1e-8, mostly to 1e-10, never above the truth but for rounding; <= 0 on contact
@@ -50,8 +49,11 @@ inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
 /// returned.
 double distance_m(const Convex& a, const Convex& b, double enough_m) noexcept;
 
-/// True when the distance is below `margin_m` (>= 0) or the solids touch; a distance at most 1e-8 m above it may count
-/// as below. Sooner than the distance itself.
+/// Solids nearer to each other than this are in contact [m].
+inline constexpr double contact_m = 1e-6;
+
+/// True when the distance is below `margin_m` (>= contact_m) or the solids touch; a distance at most 1e-8 m above it
+/// may count as below. Sooner than the distance itself.
 bool is_nearer_than(const Convex& a, const Convex& b, double margin_m) noexcept;
 
 /// The largest of the gaps between two bounding boxes along the three axes [m], a lower bound of the distance between

@@ -14,21 +14,6 @@ Convex level_disc(const Vector3& center_m, double radius_m) {
     return {.center_m = center_m, .disc_radius_m = radius_m};
 }
 
-/// Nearer than this is a touch: asked for a distance of 0 the search for one would end at its first bound.
-constexpr double touching_m = 1e-6;
-
-/// Whether a solid is nearer than a distance to some obstacle, or touches one.
-bool is_any_nearer(const Scene::Solids& solids, const Convex& solid, double wanted_m) {
-    const double distance_m = std::max(wanted_m, touching_m);
-    const Scene::Bounds bounds = bounds_of(solid);
-    const auto gap = [&](const Scene::Bounds& box) { return gap_m(bounds, box); };
-    return solids.parts.any(gap, distance_m, [&](std::size_t part) {
-        return gap(solids.parts.bounds(part)) <= distance_m &&
-               solids.parts.with_convex(
-                   part, [&](const Convex& convex) { return is_nearer_than(solid, convex, distance_m); });
-    });
-}
-
 /// How far a point lies from a box within the horizontal plane through it; infinite when the plane passes the box by.
 double level_gap_m(const Scene::Bounds& box, const Vector3& p_m) {
     if (p_m[2] < box.low_m[2] || p_m[2] > box.high_m[2]) {
@@ -43,11 +28,11 @@ double level_gap_m(const Scene::Bounds& box, const Vector3& p_m) {
 /// line through two of its values meets zero before the function does.
 double touching_radius_m(const Convex& solid, const Vector3& p_m, double enough_m) {
     constexpr double tolerance_m = 1e-9;
-    constexpr int most_steps = 60;  // a handful but where the plane grazes a round solid
+    constexpr int max_steps = 60;  // a handful but where the plane grazes a round solid
     double radius = 0;
     double distance = distance_m(level_disc(p_m, 0), solid, enough_m);
     double next = distance;
-    for (int step = 0; step < most_steps && distance > tolerance_m && next < enough_m; ++step) {
+    for (int step = 0; step < max_steps && distance > tolerance_m && next < enough_m; ++step) {
         const double before = distance;
         const double grown = next - radius;
         radius = next;
@@ -61,33 +46,19 @@ double touching_radius_m(const Convex& solid, const Vector3& p_m, double enough_
 }  // namespace
 
 double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radius_m) {
-    const Scene::Solids& solids = scene.solids();
-    const Convex disc = level_disc(center_m, radius_m);
-    const Scene::Bounds bounds = bounds_of(disc);
-    double least = infinity;
-    const auto gap = [&](const Scene::Bounds& box) { return box_distance_m(bounds, box); };
-    solids.parts.any(gap, least, [&](std::size_t part) {
-        if (gap(solids.parts.bounds(part)) < least) {
-            least = std::min(least, solids.parts.with_convex(
-                                        part, [&](const Convex& convex) { return distance_m(disc, convex, least); }));
-        }
-        return least <= 0;
-    });
-    return least <= 0 || solids.is_inside_mesh(center_m) ? 0 : least;
+    return std::max(0.0, scene.solids().clearance_m(level_disc(center_m, radius_m), infinity));
 }
 
 bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double distance_m) {
-    const Scene::Solids& solids = scene.solids();
-    return !is_any_nearer(solids, level_disc(center_m, radius_m), distance_m) && !solids.is_inside_mesh(center_m);
+    return !scene.solids().are_near(level_disc(center_m, radius_m), distance_m);
 }
 
 bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double height_m) {
-    const Scene::Solids& solids = scene.solids();
     const double half_m = 0.5 * height_m;
     Convex column = level_disc({center_m[0], center_m[1], center_m[2] + half_m}, radius_m);
     column.segment_count = 1;
     column.half_axes_m[0] = {0, 0, half_m};
-    return !is_any_nearer(solids, column, 0) && !solids.is_inside_mesh(center_m);
+    return !scene.solids().are_near(column, 0);
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {

@@ -10,19 +10,19 @@
 
 namespace downwash::foreign {
 
-/// Larger files are refused unread [bytes].
-inline constexpr std::size_t largest_file = 512UL * 1024 * 1024;
+/// Larger files are rejected unread.
+inline constexpr std::size_t max_file_bytes = 512UL * 1024 * 1024;
 /// Largest size of a coordinate, in the file's unit; farther out, positions lose their tenths of a millimetre.
-inline constexpr double greatest_coordinate = 1e6;
+inline constexpr double max_coordinate = 1e6;
 
 /// The bytes of a file. @throws InputError when it cannot be read or is too large
 [[nodiscard]] std::string read(const std::filesystem::path& file);
 
 /// @throws InputError "'name' message"
-[[noreturn]] void refuse(const std::string& name, const std::string& message);
+[[noreturn]] void fail(const std::string& name, const std::string& message);
 
 /// @throws InputError "'name' byte 84: message", the first byte being 0
-[[noreturn]] void refuse_at(const std::string& name, std::size_t byte, const std::string& message);
+[[noreturn]] void fail_at(const std::string& name, std::size_t byte, const std::string& message);
 
 /// Whether two words are equal but for the case of their ASCII letters.
 [[nodiscard]] bool is_same_word(std::string_view a, std::string_view b);
@@ -41,10 +41,10 @@ class Lines {
     /// What follows the current line.
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
-    /// @throws InputError when a word of the current line is no finite number of at most greatest_coordinate in size
+    /// @throws InputError when a word of the current line is no finite number of at most max_coordinate in size
     [[nodiscard]] double coordinate(std::string_view word) const;
     /// @throws InputError "'name' line 7: message"
-    [[noreturn]] void refuse(const std::string& message) const;
+    [[noreturn]] void fail(const std::string& message) const;
 
  private:
     std::string_view rest_;

@@ -13,11 +13,11 @@ TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
     const std::string ending = std::filesystem::path(name).extension().string();
     const bool is_stl = foreign::is_same_word(ending, ".stl");
     if (!is_stl && !foreign::is_same_word(ending, ".obj")) {
-        foreign::refuse(name, "is of an unknown kind: expected a name that ends in .stl or .obj");
+        foreign::fail(name, "is of an unknown kind: expected a name that ends in .stl or .obj");
     }
     TriangleMesh mesh = is_stl ? foreign::parse_stl(bytes, name) : foreign::parse_obj(bytes, name);
     if (mesh.triangles.empty()) {
-        foreign::refuse(name, "has no triangles: expected at least one");
+        foreign::fail(name, "has no triangles: expected at least one");
     }
     return mesh;
 }

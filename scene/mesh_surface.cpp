@@ -15,21 +15,13 @@ namespace {
 /// Farther from its own origin no corner is of use, and squares stay finite.
 constexpr double farthest_m = 1e6;
 
-using Corners = std::array<Vector3, 3>;
-
-Corners corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
-    Corners corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vector3& vertex = mesh.surface->vertices_m[triangle[i]];
-        corners[i] = {mesh.scale * vertex[0], mesh.scale * vertex[1], mesh.scale * vertex[2]};
-    }
-    return corners;
+Triangle corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    const auto corner = [&](std::size_t i) { return mesh.scale * mesh.surface->vertices_m[triangle[i]]; };
+    return {corner(0), corner(1), corner(2)};
 }
 
-bool has_area(const Corners& t) {
-    const Vector3 ab{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
-    const Vector3 ac{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};
-    return ab[1] * ac[2] != ab[2] * ac[1] || ab[2] * ac[0] != ab[0] * ac[2] || ab[0] * ac[1] != ab[1] * ac[0];
+bool has_area(const Triangle& triangle) {
+    return normal_of(triangle) != Vector3{};
 }
 
 }  // namespace
@@ -58,8 +50,8 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<KeyError>& er
         return has_area(corners_of(mesh, triangle));
     };
     const auto& triangles = surface.triangles;
-    if (require(triangles.size() <= most_pieces, ".mesh.file",
-                "has " + std::to_string(triangles.size()) + " triangles: at most " + std::to_string(most_pieces) +
+    if (require(triangles.size() <= max_pieces, ".mesh.file",
+                "has " + std::to_string(triangles.size()) + " triangles: at most " + std::to_string(max_pieces) +
                     " are allowed") &&
         require(std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_near), ".mesh.file",
                 "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin") &&
@@ -70,12 +62,12 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<KeyError>& er
     }
 }
 
-std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned) {
+std::vector<Triangle> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned) {
     const auto& triangles = mesh.surface->triangles;
-    std::vector<Corners> all;
+    std::vector<Triangle> all;
     all.reserve(triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        Corners corners = corners_of(mesh, triangles[i]);
+        Triangle corners = corners_of(mesh, triangles[i]);
         if (has_area(corners)) {
             if (!is_turned.empty() && is_turned[i]) {
                 std::swap(corners[1], corners[2]);

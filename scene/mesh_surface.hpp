@@ -6,6 +6,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/scene/triangle.hpp"
 
 namespace downwash {
 
@@ -14,7 +15,6 @@ void inspect(const Mesh& mesh, const std::string& key, std::vector<KeyError>& er
 
 /// The triangles that have an area, corners scaled, in the local frame.
 /// @param is_turned for each triangle whether two of its corners change places; empty for none
-[[nodiscard]] std::vector<std::array<Vector3, 3>> scaled_triangles(const Mesh& mesh,
-                                                                   const std::vector<bool>& is_turned);
+[[nodiscard]] std::vector<Triangle> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned);
 
 }  // namespace downwash

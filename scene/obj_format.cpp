@@ -10,7 +10,7 @@
 namespace downwash::foreign {
 namespace {
 
-constexpr std::size_t most_vertices = 3 * most_pieces;
+constexpr std::size_t max_vertices = 3 * max_pieces;
 
 // Statements of the Wavefront specification (Appendix B1 of the Advanced Visualizer manual) that do not add a surface.
 constexpr std::array<std::string_view, 19> passed_over{
@@ -51,10 +51,10 @@ class Obj {
             } else if (statement == "f" || statement == "fo") {
                 read_face();
             } else if (contains(not_read, statement)) {
-                lines_.refuse("'" + std::string(statement) +
-                              "' is not read, and a surface may hang on it: expected polygons, 'f', only");
+                lines_.fail("'" + std::string(statement) +
+                            "' is not read, and a surface may hang on it: expected polygons, 'f', only");
             } else if (!statement.starts_with('#') && !contains(passed_over, statement)) {
-                lines_.refuse("found '" + excerpt(statement) + "', expected a statement like 'v' or 'f'");
+                lines_.fail("found '" + excerpt(statement) + "', expected a statement like 'v' or 'f'");
             }
         }
         return std::move(mesh_);
@@ -66,10 +66,10 @@ class Obj {
         const auto& words = lines_.words();
         const std::size_t numbers = words.size() - 1;
         if (numbers != 3 && numbers != 4 && numbers != 6 && numbers != 7) {
-            lines_.refuse("a vertex of " + std::to_string(numbers) + " numbers: expected 3");
+            lines_.fail("a vertex of " + std::to_string(numbers) + " numbers: expected 3");
         }
-        if (mesh_.vertices_m.size() >= most_vertices) {
-            lines_.refuse("one vertex more: expected at most 6000000");
+        if (mesh_.vertices_m.size() >= max_vertices) {
+            lines_.fail("one vertex more: expected at most 6000000");
         }
         for (std::size_t i = 4; i < words.size(); ++i) {
             static_cast<void>(lines_.coordinate(words[i]));
@@ -81,10 +81,10 @@ class Obj {
     void read_face() {
         const auto& words = lines_.words();
         if (words.size() < 4) {
-            lines_.refuse("a face of " + std::to_string(words.size() - 1) + " corners: expected at least 3");
+            lines_.fail("a face of " + std::to_string(words.size() - 1) + " corners: expected at least 3");
         }
-        if (mesh_.triangles.size() + words.size() - 3 > most_pieces) {
-            lines_.refuse("more triangles than expected, which is at most " + std::to_string(most_pieces));
+        if (mesh_.triangles.size() + words.size() - 3 > max_pieces) {
+            lines_.fail("more triangles than expected, which is at most " + std::to_string(max_pieces));
         }
         const std::uint32_t first = vertex_of(words[1]);
         std::uint32_t before = vertex_of(words[2]);
@@ -100,13 +100,12 @@ class Obj {
         const std::size_t slash = corner.find('/');
         const auto index = parse_index(corner.substr(0, slash));
         if (!index || (slash != std::string_view::npos && !is_texture_or_normal(corner.substr(slash + 1)))) {
-            lines_.refuse("found '" + excerpt(corner) +
-                          "', expected a corner as i, i/t, i//n or i/t/n, none of them 0");
+            lines_.fail("found '" + excerpt(corner) + "', expected a corner as i, i/t, i//n or i/t/n, none of them 0");
         }
         const auto known = static_cast<std::int64_t>(mesh_.vertices_m.size());
         if (*index > known || *index < -known) {
-            lines_.refuse("refers to vertex " + std::to_string(*index) + ": expected one of the " +
-                          std::to_string(known) + " before this line");
+            lines_.fail("refers to vertex " + std::to_string(*index) + ": expected one of the " +
+                        std::to_string(known) + " before this line");
         }
         return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : known + *index);
     }

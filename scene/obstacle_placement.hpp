@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
@@ -9,27 +7,30 @@
 
 namespace downwash {
 
-/// How an obstacle's own frame lies in the world: turned by Rz(yaw) Ry(pitch) Rx(roll), then moved to the centre.
+/// From a frame turned by roll, pitch and yaw to the one around it: Rz(yaw) Ry(pitch) Rx(roll).
+[[nodiscard]] inline Matrix3 rotation_of(const Vector3& rpy_rad) {
+    double sr, cr, sp, cp, sy, cy;
+    lane::sin_cos(rpy_rad[0], sr, cr);
+    lane::sin_cos(rpy_rad[1], sp, cp);
+    lane::sin_cos(rpy_rad[2], sy, cy);
+    return {{{cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
+             {sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
+             {-sp, cp * sr, cp * cr}}};
+}
+
+/// How an obstacle's own frame lies in the world.
 class ObstaclePlacement {
  public:
     /// Keeps nothing of the obstacle.
-    explicit ObstaclePlacement(const Obstacle& obstacle) : center_m_(obstacle.center_m) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            lane::sin_cos(obstacle.rpy_rad[i], sine_[i], cosine_[i]);
-        }
-    }
+    explicit ObstaclePlacement(const Obstacle& obstacle)
+        : center_m_(obstacle.center_m), rotation_(rotation_of(obstacle.rpy_rad)) {}
 
     /// A point of the own frame in the world [m].
-    [[nodiscard]] Vector3 to_world(const Vector3& own_m) const {
-        Vector3 p{own_m[0], cosine_[0] * own_m[1] - sine_[0] * own_m[2], sine_[0] * own_m[1] + cosine_[0] * own_m[2]};
-        p = {cosine_[1] * p[0] + sine_[1] * p[2], p[1], -sine_[1] * p[0] + cosine_[1] * p[2]};
-        p = {cosine_[2] * p[0] - sine_[2] * p[1], sine_[2] * p[0] + cosine_[2] * p[1], p[2]};
-        return {p[0] + center_m_[0], p[1] + center_m_[1], p[2] + center_m_[2]};
-    }
+    [[nodiscard]] Vector3 to_world(const Vector3& own_m) const { return center_m_ + rotation_ * own_m; }
 
  private:
     Vector3 center_m_;
-    std::array<double, 3> sine_{}, cosine_{};
+    Matrix3 rotation_;
 };
 
 /// A body of a robot as an obstacle of the robot's own frame.

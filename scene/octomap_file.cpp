@@ -1,11 +1,11 @@
 #include "downwash/scene/octomap_file.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 
+#include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
 
@@ -15,10 +15,10 @@ namespace {
 constexpr std::string_view binary_line = "# Octomap OcTree binary file";
 constexpr std::string_view full_line = "# Octomap OcTree file";
 
-constexpr unsigned deepest = 16;
-constexpr std::uint32_t cells_across = 1U << deepest;
-constexpr double least_resolution_m = 1e-4;
-constexpr double greatest_resolution_m = 30;
+constexpr unsigned max_depth = 16;
+constexpr std::uint32_t cells_across = 1U << max_depth;
+constexpr double min_resolution_m = 1e-4;
+constexpr double max_resolution_m = 30;
 
 struct Header {
     bool is_binary = false;
@@ -36,19 +36,19 @@ class HeaderReader {
         Header header;
         header.is_binary = bytes_.starts_with(binary_line);
         if (!header.is_binary && !bytes_.starts_with(full_line)) {
-            foreign::refuse(name_, "line 1: found '" + excerpt(bytes_.substr(0, bytes_.find('\n'))) + "', expected '" +
-                                       std::string(binary_line) + "' or '" + std::string(full_line) + "'");
+            foreign::fail(name_, "line 1: found '" + excerpt(bytes_.substr(0, bytes_.find('\n'))) + "', expected '" +
+                                     std::string(binary_line) + "' or '" + std::string(full_line) + "'");
         }
         while (lines_.next() && lines_.words()[0] != "data") {
             read_line();
         }
         if (lines_.words().size() != 1) {
-            lines_.refuse("the header ends here: expected a line 'data' of its own");
+            lines_.fail("the header ends here: expected a line 'data' of its own");
         }
         for (const auto& [key, is_given] : {std::pair("id", has_id_), std::pair("size", nodes_.has_value()),
                                             std::pair("res", resolution_m_.has_value())}) {
             if (!is_given) {
-                lines_.refuse("the header ends: expected a line '" + std::string(key) + "' before it");
+                lines_.fail("the header ends: expected a line '" + std::string(key) + "' before it");
             }
         }
         header.resolution_m = *resolution_m_;
@@ -64,25 +64,25 @@ class HeaderReader {
             return;
         }
         if (words.size() != 2) {
-            lines_.refuse("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
+            lines_.fail("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
         }
         if (words[0] == "id" && !has_id_) {
             has_id_ = words[1] == "OcTree";
             if (!has_id_) {
-                lines_.refuse("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
+                lines_.fail("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
             }
         } else if (words[0] == "size" && !nodes_) {
             nodes_ = parse_number<std::uint64_t>(words[1]);
             if (!nodes_) {
-                lines_.refuse("found '" + excerpt(words[1]) + "', expected the number of nodes");
+                lines_.fail("found '" + excerpt(words[1]) + "', expected the number of nodes");
             }
         } else if (words[0] == "res" && !resolution_m_) {
             resolution_m_ = parse_number<double>(words[1]);
-            if (!resolution_m_ || *resolution_m_ < least_resolution_m || *resolution_m_ > greatest_resolution_m) {
-                lines_.refuse("found '" + excerpt(words[1]) + "', expected a resolution from 0.0001 to 30 m");
+            if (!resolution_m_ || *resolution_m_ < min_resolution_m || *resolution_m_ > max_resolution_m) {
+                lines_.fail("found '" + excerpt(words[1]) + "', expected a resolution from 0.0001 to 30 m");
             }
         } else {
-            lines_.refuse("found '" + excerpt(words[0]) + "', expected id, size and res once each, then 'data'");
+            lines_.fail("found '" + excerpt(words[0]) + "', expected id, size and res once each, then 'data'");
         }
     }
 
@@ -126,14 +126,14 @@ class NodeReader {
             read_node({});
         }
         if (nodes_ != header_.nodes) {
-            refuse("the nodes end after " + std::to_string(nodes_) + ": expected " + std::to_string(header_.nodes) +
-                   " as the header's size says");
+            fail("the nodes end after " + std::to_string(nodes_) + ": expected " + std::to_string(header_.nodes) +
+                 " as the header's size says");
         }
         if (at_ != bytes_.size()) {
-            refuse("the file goes on after its last node: expected its end");
+            fail("the file goes on after its last node: expected its end");
         }
         if (tree_.cubes.empty()) {
-            foreign::refuse(name_, "has no occupied leaf: expected at least one");
+            foreign::fail(name_, "has no occupied leaf: expected at least one");
         }
         return std::move(tree_);
     }
@@ -147,7 +147,7 @@ class NodeReader {
         const unsigned bits = low | next_byte() << 8U;
         if (bits == 0) {
             at_ -= 2;
-            refuse("a node without children among the inner nodes: expected at least one child");
+            fail("a node without children among the inner nodes: expected at least one child");
         }
         for (unsigned child = 0; child < 8; ++child) {
             const unsigned state = bits >> (2 * child) & 3U;
@@ -168,17 +168,17 @@ class NodeReader {
     /// Full: the logarithm of the odds that the node is occupied, and a bit for each child that follows.
     void read_node(const Place& place) {
         const std::size_t begin = at_;
-        std::uint32_t word = 0;
-        for (unsigned i = 0; i < 4; ++i) {
-            word |= next_byte() << (8 * i);
+        std::array<char, 4> word{};
+        for (char& byte : word) {
+            byte = static_cast<char>(next_byte());
         }
-        const float log_odds = std::bit_cast<float>(word);
+        const auto log_odds = number_at<float>(word.data());
         // Sums of a sensor's log odds are 0 or not this small; swapped bytes mostly are, or are huge.
         const bool is_plausible = log_odds == 0 || (std::abs(log_odds) >= 1e-9F && std::abs(log_odds) <= 1000);
         if (!is_plausible) {
             at_ = begin;
-            refuse("found log odds of " + to_text(static_cast<double>(log_odds), 6) +
-                   ", expected a finite number of at most 1000 in size, little-endian");
+            fail("found log odds of " + to_text(static_cast<double>(log_odds), 6) +
+                 ", expected a finite number of at most 1000 in size, little-endian");
         }
         const unsigned children = next_byte();
         if (children == 0) {
@@ -198,27 +198,27 @@ class NodeReader {
 
     unsigned next_byte() {
         if (at_ == bytes_.size()) {
-            refuse("the file ends after " + std::to_string(nodes_) + " of " + std::to_string(header_.nodes) +
-                   " nodes: expected all of them");
+            fail("the file ends after " + std::to_string(nodes_) + " of " + std::to_string(header_.nodes) +
+                 " nodes: expected all of them");
         }
         return static_cast<unsigned char>(bytes_[at_++]);
     }
 
     void count_node() {
         if (++nodes_ > header_.nodes) {
-            refuse("one node more than " + std::to_string(header_.nodes) + ": expected as many as the header's size");
+            fail("one node more than " + std::to_string(header_.nodes) + ": expected as many as the header's size");
         }
     }
 
     void require_depth(const Place& parent) const {
-        if (parent.depth >= deepest) {
-            refuse("a node below level " + std::to_string(deepest) + ": expected no more levels");
+        if (parent.depth >= max_depth) {
+            fail("a node below level " + std::to_string(max_depth) + ": expected no more levels");
         }
     }
 
     void add_cube(const Place& place) {
-        if (tree_.cubes.size() >= most_pieces) {
-            refuse("one occupied leaf more: expected at most " + std::to_string(most_pieces));
+        if (tree_.cubes.size() >= max_pieces) {
+            fail("one occupied leaf more: expected at most " + std::to_string(max_pieces));
         }
         OccupiedCube cube;
         cube.side_m = place.cells() * header_.resolution_m;
@@ -230,7 +230,7 @@ class NodeReader {
         tree_.cubes.push_back(cube);
     }
 
-    [[noreturn]] void refuse(const std::string& message) const { foreign::refuse_at(name_, at_, message); }
+    [[noreturn]] void fail(const std::string& message) const { foreign::fail_at(name_, at_, message); }
 
     std::string_view bytes_;
     const std::string& name_;

@@ -85,8 +85,8 @@ void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyErro
     };
     if (cubes.empty()) {
         add("has no occupied cube");
-    } else if (cubes.size() > most_pieces) {
-        add("has " + std::to_string(cubes.size()) + " occupied cubes: at most " + std::to_string(most_pieces) +
+    } else if (cubes.size() > max_pieces) {
+        add("has " + std::to_string(cubes.size()) + " occupied cubes: at most " + std::to_string(max_pieces) +
             " are allowed");
     } else if (!std::all_of(cubes.begin(), cubes.end(), is_sound)) {
         add("has a cube with a centre or side that is not finite, or beyond 1e6 m");

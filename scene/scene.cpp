@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/base/lane_math.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "downwash/scene/mesh_surface.hpp"
+#include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/octree_boxes.hpp"
 #include "downwash/scene/solids.hpp"
 
@@ -17,10 +17,6 @@ namespace downwash {
 namespace {
 
 constexpr double greatest_angle_rad = 1e5;  // what lane::sin_cos allows
-
-bool is_finite(const Vector3& v) {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
 
 bool is_length(double x) {
     return std::isfinite(x) && x > 0;
@@ -62,48 +58,14 @@ void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<
     }
 }
 
-/// Adds the errors of any shape.
-struct ShapeInspector {
-    const std::string& key;
-    std::vector<KeyError>& errors;
-
-    void operator()(const Mesh& mesh) const { inspect(mesh, key, errors); }
-    void operator()(const Octomap& octomap) const { inspect(octomap, key, errors); }
-    void operator()(const Primitive& primitive) const { inspect(primitive, key, errors); }
-};
-
 void require_valid(const std::vector<Obstacle>& obstacles) {
     std::vector<KeyError> errors;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
-        std::visit(ShapeInspector{key, errors}, obstacles[i].shape);
+        std::visit([&](const auto& shape) { inspect(shape, key, errors); }, obstacles[i].shape);
         inspect_pose(obstacles[i], key, errors);
     }
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
-}
-
-Matrix3 rotation_of(const Vector3& rpy_rad) {
-    double sr, cr, sp, cp, sy, cy;
-    lane::sin_cos(rpy_rad[0], sr, cr);
-    lane::sin_cos(rpy_rad[1], sp, cp);
-    lane::sin_cos(rpy_rad[2], sy, cy);
-    return {{{cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
-             {sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
-             {-sp, cp * sr, cp * cr}}};
-}
-
-Vector3 turned(const Matrix3& r, const Vector3& v) {
-    return {r[0][0] * v[0] + r[0][1] * v[1] + r[0][2] * v[2], r[1][0] * v[0] + r[1][1] * v[1] + r[1][2] * v[2],
-            r[2][0] * v[0] + r[2][1] * v[1] + r[2][2] * v[2]};
-}
-
-void widen(Scene::Bounds& bounds, const Scene::Bounds& other) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        bounds.low_m[k] = std::min(bounds.low_m[k], other.low_m[k]);
-        bounds.high_m[k] = std::max(bounds.high_m[k], other.high_m[k]);
-    }
+    throw_if_any(std::move(errors));
 }
 
 /// Adds the parts of one obstacle and returns the bounds of them all.
@@ -112,14 +74,12 @@ struct PartsMaker {
     const std::string& key;
     Scene::Solids& solids;
 
-    Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const {
-        const Vector3 p = turned(rotation, p_m);
-        return {obstacle.center_m[0] + p[0], obstacle.center_m[1] + p[1], obstacle.center_m[2] + p[2]};
-    }
+    Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const { return obstacle.center_m + rotation * p_m; }
     void require_room(std::size_t more, const char* name) const {
-        if (solids.parts.count() + more > most_pieces) {
-            throw InputError({{key + name, "brings the scene above " + std::to_string(most_pieces) +
-                                               " triangles and boxes: leave out what the robot cannot reach"}});
+        if (solids.parts.count() + more > max_pieces) {
+            throw_input_error("brings the scene above " + std::to_string(max_pieces) +
+                                  " triangles and boxes: leave out what the robot cannot reach",
+                              key + name);
         }
     }
     Scene::Bounds operator()(const Primitive& primitive) const {
@@ -137,7 +97,7 @@ struct PartsMaker {
         for (const LocalBox& box : boxes) {
             const OctreeBox placed{to_world(placement.rotation, box.center_m), box.size_m, turn};
             parts.octree_boxes.push_back(placed);
-            widen(bounds, bounds_of(convex_of(Box{placed.size_m}, placed.center_m, placement)));
+            bounds.include(bounds_of(convex_of(Box{placed.size_m}, placed.center_m, placement)));
         }
         return bounds;
     }
@@ -145,9 +105,10 @@ struct PartsMaker {
         require_room(mesh.surface->triangles.size(), ".mesh.file");
         const MeshSides sides = sides_of(*mesh.surface);
         if (sides.kind == SurfaceKind::contradictory) {
-            throw InputError({{key + ".mesh.file",
-                               "has triangles that disagree about which side is outside: repair the mesh so that it "
-                               "encloses a space, or has a rim and is a sheet"}});
+            throw_input_error(
+                "has triangles that disagree about which side is outside: repair the mesh so that it "
+                "encloses a space, or has a rim and is a sheet",
+                key + ".mesh.file");
         }
         std::vector<Triangle>& triangles = solids.parts.triangles;
         const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
@@ -158,7 +119,7 @@ struct PartsMaker {
                 corner = to_world(rotation, corner);
             }
             triangles.push_back(triangle);
-            widen(bounds, bounds_of(triangle));
+            bounds.include(bounds_of(triangle));
         }
         if (sides.kind == SurfaceKind::solid) {
             solids.closed_surfaces.push_back({first, triangles.size(), bounds});
@@ -186,27 +147,6 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
 
 void inspect(const Primitive& shape, const std::string& key, std::vector<KeyError>& errors) {
     std::visit(SizeInspector{key, errors}, shape);
-}
-
-bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {
-    const auto apart_upwards = [&](const Bounds& box) {
-        return std::max({box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1],
-                         p_m[2] - box.high_m[2]});
-    };
-    return std::any_of(closed_surfaces.begin(), closed_surfaces.end(), [&](const ClosedSurface& surface) {
-        if (apart_upwards(surface.bounds) > 0 || p_m[2] < surface.bounds.low_m[2]) {
-            return false;
-        }
-        int turns = 0;
-        parts.any_other(apart_upwards, 0, [&](std::size_t part) {
-            const std::size_t triangle = part - parts.first_triangle();  // huge for other parts
-            if (triangle >= surface.first && triangle < surface.last) {
-                turns += winding_above(parts.triangles[triangle], p_m);
-            }
-            return false;
-        });
-        return turns != 0;
-    });
 }
 
 Scene::Scene(std::vector<Obstacle> obstacles) : solids_(placed(std::move(obstacles))) {}

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <memory_resource>
 #include <vector>
@@ -32,9 +34,17 @@ class DOWNWASH_EXPORT Scene {
 
     [[nodiscard]] const std::vector<Obstacle>& obstacles() const noexcept;
 
-    /// World-aligned bounding box of one obstacle [m].
+    /// A world-aligned box [m].
     struct Bounds {
         Vector3 low_m, high_m;
+
+        /// Grows until it holds another box, or a point given as both corners of one.
+        void include(const Bounds& other) noexcept {
+            for (std::size_t k = 0; k < 3; ++k) {
+                low_m[k] = std::min(low_m[k], other.low_m[k]);
+                high_m[k] = std::max(high_m[k], other.high_m[k]);
+            }
+        }
     };
     /// Of the obstacle of that number in obstacles().
     [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;

@@ -31,7 +31,7 @@ struct Sphere {
 
 /// Triangles and cubes of one file, or of all obstacles of a scene with their other parts: no more are taken, which
 /// bounds the memory that a file can ask for (some 150 bytes a piece).
-inline constexpr std::size_t most_pieces = 2'000'000;
+inline constexpr std::size_t max_pieces = 2'000'000;
 
 /// Triangles of a surface, in the local frame: corners are indices of vertices, counter-clockwise seen from outside.
 struct TriangleMesh {

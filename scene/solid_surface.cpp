@@ -86,7 +86,7 @@ class SurfaceBuilder {
     }
     void operator()(const Mesh& mesh) {
         for (const Vector3& vertex : mesh.surface->vertices_m) {
-            surface.vertices_m.push_back({mesh.scale * vertex[0], mesh.scale * vertex[1], mesh.scale * vertex[2]});
+            surface.vertices_m.push_back(mesh.scale * vertex);
         }
         surface.triangles = mesh.surface->triangles;
     }

@@ -24,6 +24,13 @@ struct Scene::Solids {
     Parts parts;
     std::vector<ClosedSurface> closed_surfaces;
 
+    /// Whether a solid is nearer than `distance_m` to an obstacle, is in contact with one or lies inside a closed mesh.
+    [[nodiscard]] bool are_near(const Convex& solid, double distance_m) const;
+
+    /// Distance from a solid to the nearest obstacle [m] if it is below `enough_m`, else `enough_m`; <= 0 on contact
+    /// and inside a closed mesh.
+    [[nodiscard]] double clearance_m(const Convex& solid, double enough_m) const;
+
     /// Whether a point lies inside a closed mesh. Points on its surface may count as either.
     [[nodiscard]] bool is_inside_mesh(const Vector3& p_m) const noexcept {
         return !closed_surfaces.empty() && is_inside_closed_surface(p_m);

@@ -1,8 +1,8 @@
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
 #include "downwash/scene/mesh_formats.hpp"
@@ -21,20 +21,8 @@ void add_triangle(TriangleMesh& mesh, const std::array<Vector3, 3>& corners) {
     mesh.triangles.push_back({first, first + 1, first + 2});
 }
 
-std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-        value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
-    }
-    return value;
-}
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
-    }
-    return value;
+std::uint32_t count_in(std::string_view bytes, bool is_big_endian = false) {
+    return number_at<std::uint32_t>(bytes.data() + count_at, is_big_endian);
 }
 
 /// In 64 bits no count overflows.
@@ -43,7 +31,7 @@ std::uint64_t size_of(std::uint32_t triangles) {
 }
 
 bool is_binary(std::string_view bytes) {
-    return bytes.size() >= triangles_at && bytes.size() == size_of(little_endian(bytes, count_at));
+    return bytes.size() >= triangles_at && bytes.size() == size_of(count_in(bytes));
 }
 
 /// Whether a file that is not binary by its size is meant as text.
@@ -52,27 +40,27 @@ bool is_text(std::string_view bytes) {
     return is_same_word(begin.substr(0, 5), "solid") && begin.find('\0') == std::string_view::npos;
 }
 
-[[noreturn]] void refuse_size(std::string_view bytes, const std::string& name) {
+[[noreturn]] void fail_for_size(std::string_view bytes, const std::string& name) {
     if (bytes.size() < triangles_at) {
-        refuse(name, "has " + std::to_string(bytes.size()) +
-                         " bytes: expected 84 or more in binary, or a first line 'solid' in ASCII");
+        fail(name, "has " + std::to_string(bytes.size()) +
+                       " bytes: expected 84 or more in binary, or a first line 'solid' in ASCII");
     }
-    if (bytes.size() == size_of(big_endian(bytes, count_at))) {
-        refuse_at(name, count_at, "the count of triangles is big-endian: expected little-endian numbers");
+    if (bytes.size() == size_of(count_in(bytes, true))) {
+        fail_at(name, count_at, "the count of triangles is big-endian: expected little-endian numbers");
     }
-    const std::uint32_t count = little_endian(bytes, count_at);
-    refuse_at(name, count_at,
-              "says " + std::to_string(count) + " triangles, expected 84 + 50 times as many bytes, " +
-                  std::to_string(size_of(count)) + ", found " + std::to_string(bytes.size()));
+    const std::uint32_t count = count_in(bytes);
+    fail_at(name, count_at,
+            "says " + std::to_string(count) + " triangles, expected 84 + 50 times as many bytes, " +
+                std::to_string(size_of(count)) + ", found " + std::to_string(bytes.size()));
 }
 
 double read_coordinate(std::string_view bytes, std::size_t at, const std::string& name) {
-    const auto number = static_cast<double>(std::bit_cast<float>(little_endian(bytes, at)));
-    if (!(std::abs(number) <= greatest_coordinate)) {
-        refuse_at(name, at,
-                  "found " + to_text(number, 6) +
-                      ", expected a finite number of at most 1e6 in size, "
-                      "little-endian");
+    const auto number = static_cast<double>(number_at<float>(bytes.data() + at));
+    if (!(std::abs(number) <= max_coordinate)) {
+        fail_at(name, at,
+                "found " + to_text(number, 6) +
+                    ", expected a finite number of at most 1e6 in size, "
+                    "little-endian");
     }
     return number;
 }
@@ -83,10 +71,10 @@ Vector3 read_vector(std::string_view bytes, std::size_t at, const std::string& n
 }
 
 TriangleMesh parse_binary(std::string_view bytes, const std::string& name) {
-    const std::size_t count = little_endian(bytes, count_at);
-    if (count > most_pieces) {
-        refuse_at(name, count_at,
-                  "has " + std::to_string(count) + " triangles: expected at most " + std::to_string(most_pieces));
+    const std::size_t count = count_in(bytes);
+    if (count > max_pieces) {
+        fail_at(name, count_at,
+                "has " + std::to_string(count) + " triangles: expected at most " + std::to_string(max_pieces));
     }
     TriangleMesh mesh;
     mesh.vertices_m.reserve(3 * count);
@@ -117,8 +105,8 @@ class AsciiStl {
 
  private:
     void read_facet() {
-        if (mesh_.triangles.size() >= most_pieces) {
-            lines_.refuse("one triangle more: expected at most " + std::to_string(most_pieces));
+        if (mesh_.triangles.size() >= max_pieces) {
+            lines_.fail("one triangle more: expected at most " + std::to_string(max_pieces));
         }
         expect_words({"facet", "normal"}, 3);
         static_cast<void>(numbers(2));  // the normal: only checked
@@ -139,13 +127,13 @@ class AsciiStl {
 
     void move_on(const std::string& expected) {
         if (!lines_.next()) {
-            lines_.refuse("the file ends here: expected '" + expected + "'");
+            lines_.fail("the file ends here: expected '" + expected + "'");
         }
     }
 
     void expect(bool holds, const std::string& expected) const {
         if (!holds) {
-            lines_.refuse("found '" + excerpt(lines_.words()[0]) + "', expected '" + expected + "'");
+            lines_.fail("found '" + excerpt(lines_.words()[0]) + "', expected '" + expected + "'");
         }
     }
 
@@ -159,8 +147,8 @@ class AsciiStl {
             expect(i < words.size() && is_same_word(words[i], expected[i]), text);
         }
         if (words.size() != expected.size() + numbers) {
-            lines_.refuse("found " + std::to_string(words.size() - expected.size()) + " words after '" + text +
-                          "', expected " + std::to_string(numbers) + (numbers > 0 ? " numbers" : ""));
+            lines_.fail("found " + std::to_string(words.size() - expected.size()) + " words after '" + text +
+                        "', expected " + std::to_string(numbers) + (numbers > 0 ? " numbers" : ""));
         }
     }
 
@@ -183,7 +171,7 @@ TriangleMesh parse_stl(std::string_view bytes, const std::string& name) {
     if (is_text(bytes)) {
         return AsciiStl(bytes, name).read();
     }
-    refuse_size(bytes, name);
+    fail_for_size(bytes, name);
 }
 
 }  // namespace downwash::foreign

@@ -13,8 +13,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double negligible_tilt = 1e-12;
 
 bool is_upright(const Vector3& normal) {
-    const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    return !(std::abs(normal[2]) > negligible_tilt * length);
+    return !(std::abs(normal[2]) > negligible_tilt * std::sqrt(dot(normal, normal)));
 }
 
 /// Height of the triangle's plane, kept between the lowest and the highest corner. @pre not upright
@@ -49,31 +48,22 @@ int crossing(const Vector3& a, const Vector3& b, double x, double y) {
 }  // namespace
 
 Vector3 normal_of(const Triangle& triangle) noexcept {
-    const Vector3 ab{triangle[1][0] - triangle[0][0], triangle[1][1] - triangle[0][1], triangle[1][2] - triangle[0][2]};
-    const Vector3 ac{triangle[2][0] - triangle[0][0], triangle[2][1] - triangle[0][1], triangle[2][2] - triangle[0][2]};
-    return {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
+    return cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
 }
 
 Convex convex_of(const Triangle& triangle) noexcept {
     const Scene::Bounds bounds = bounds_of(triangle);
-    Convex convex{.segment_count = 3, .is_triangle = true};
-    for (std::size_t k = 0; k < 3; ++k) {
-        convex.center_m[k] = 0.5 * (bounds.low_m[k] + bounds.high_m[k]);
-        for (std::size_t i = 0; i < 3; ++i) {
-            convex.half_axes_m[i][k] = triangle[i][k] - convex.center_m[k];
-        }
-    }
-    return convex;
+    const Vector3 center = 0.5 * (bounds.low_m + bounds.high_m);
+    return {.center_m = center,
+            .segment_count = 3,
+            .is_triangle = true,
+            .half_axes_m = {triangle[0] - center, triangle[1] - center, triangle[2] - center}};
 }
 
 Scene::Bounds bounds_of(const Triangle& triangle) noexcept {
     Scene::Bounds bounds{triangle[0], triangle[0]};
-    for (const Vector3& corner : triangle) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            bounds.low_m[k] = std::min(bounds.low_m[k], corner[k]);
-            bounds.high_m[k] = std::max(bounds.high_m[k], corner[k]);
-        }
-    }
+    bounds.include({triangle[1], triangle[1]});
+    bounds.include({triangle[2], triangle[2]});
     return bounds;
 }
 

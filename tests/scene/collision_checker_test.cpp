@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "downwash/base/key_error.hpp"
+#include "../support/error_of.hpp"
 #include "reference.hpp"
 
 using namespace downwash;
@@ -108,16 +108,9 @@ TEST_CASE("A pose that is not finite is in contact") {
 
 TEST_CASE("A robot with unusable sizes is refused with every error") {
     RobotShape robot{{{Box{{1, 1, -1}}, {}}, {Sphere{0}, {}}}, 0, 0, 0, std::nan("")};
-    std::vector<std::string> keys;
-    try {
-        checker_of({}, robot);
-    } catch (const InputError& invalid) {
-        for (const KeyError& error : invalid.errors()) {
-            keys.push_back(error.key);
-        }
-    }
-    CHECK(keys == std::vector<std::string>{"bodies[0].box.size_m", "bodies[1].sphere.radius_m", "arm_length_m",
-                                           "arm_radius_m"});
+    CHECK(
+        test::wrong_keys([&] { return checker_of({}, robot); }) ==
+        std::vector<std::string>{"bodies[0].box.size_m", "bodies[1].sphere.radius_m", "arm_length_m", "arm_radius_m"});
 }
 
 TEST_CASE("Clearance agrees with alternating projections in random scenes") {

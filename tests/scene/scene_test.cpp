@@ -4,33 +4,19 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/key_error.hpp"
+#include "../support/error_of.hpp"
 #include "reference.hpp"
 
 using namespace downwash;
 
-namespace {
-
-std::vector<std::string> wrong_keys(std::vector<Obstacle> obstacles) {
-    std::vector<std::string> keys;
-    try {
-        const Scene scene(std::move(obstacles));
-    } catch (const InputError& invalid) {
-        for (const KeyError& error : invalid.errors()) {
-            keys.push_back(error.key);
-        }
-    }
-    return keys;
-}
-
-}  // namespace
-
 TEST_CASE("A scene reports every unusable size, axis and pose at once") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<std::string> keys = wrong_keys({{"good", Box{{1, 1, 1}}, {}, {}},
-                                                      {"flat", Box{{1, 0, 1}}, {}, {}},
-                                                      {"pipe", Cylinder{-1, nan, {0, 0, 0}}, {nan, 0, 0}, {}},
-                                                      {"ball", Sphere{1.0 / 0.0}, {}, {0, 1e9, nan}}});
+    const std::vector<std::string> keys = test::wrong_keys([&] {
+        return Scene({{"good", Box{{1, 1, 1}}, {}, {}},
+                      {"flat", Box{{1, 0, 1}}, {}, {}},
+                      {"pipe", Cylinder{-1, nan, {0, 0, 0}}, {nan, 0, 0}, {}},
+                      {"ball", Sphere{1.0 / 0.0}, {}, {0, 1e9, nan}}});
+    });
     CHECK(keys == std::vector<std::string>{"obstacles[1].box.size_m", "obstacles[2].cylinder.radius_m",
                                            "obstacles[2].cylinder.length_m", "obstacles[2].cylinder.axis",
                                            "obstacles[2].center_m", "obstacles[3].sphere.radius_m",

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "../support/error_of.hpp"
 #include "../support/meshes.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "reference.hpp"
 
@@ -78,13 +78,8 @@ Mesh with_turned(const Mesh& mesh, const std::vector<std::size_t>& triangles) {
     return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
 }
 
-std::string refusal_of(Mesh mesh) {
-    try {
-        const Scene scene({{"", Sphere{1}, {}, {}}, {"", std::move(mesh), {}, {}}});
-    } catch (const InputError& error) {
-        return error.errors().at(0).key + " " + error.errors().at(0).message;
-    }
-    return "";
+std::string error_in(const Mesh& mesh) {
+    return test::error_of([&] { return Scene({{"", Sphere{1}, {}, {}}, {"", mesh, {}, {}}}); });
 }
 
 }  // namespace
@@ -94,20 +89,20 @@ TEST_CASE("Meshes that cannot stand in a scene are refused with their place") {
     const Vector3 a{0, 0, 0};
     const Vector3 b{1, 0, 0};
     const Vector3 c{0, 1, 0};
-    CHECK(refusal_of(mesh_of({a, b, c}, {{0, 1, 2}})).empty());
-    CHECK_THAT(refusal_of({}), Contains("obstacles[1].mesh.file must have been read"));
-    CHECK_THAT(refusal_of(mesh_of({a, b, c}, {})), Contains("obstacles[1].mesh.file has no triangle with an area"));
-    CHECK_THAT(refusal_of(mesh_of({a, b, c}, {{0, 1, 3}})), Contains("a corner that is not among its vertices"));
-    CHECK_THAT(refusal_of(mesh_of({a, b, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 1}})), Contains("no triangle with an area"));
-    CHECK_THAT(refusal_of(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})), Contains("vertex that is not finite"));
-    CHECK_THAT(refusal_of(mesh_of({a, b, {0, 2e6, 0}}, {{0, 1, 2}})), Contains("farther than 1e6 m"));
+    CHECK(error_in(mesh_of({a, b, c}, {{0, 1, 2}})) == "none");
+    CHECK_THAT(error_in({}), Contains("obstacles[1].mesh.file: must have been read"));
+    CHECK_THAT(error_in(mesh_of({a, b, c}, {})), Contains("obstacles[1].mesh.file: has no triangle with an area"));
+    CHECK_THAT(error_in(mesh_of({a, b, c}, {{0, 1, 3}})), Contains("a corner that is not among its vertices"));
+    CHECK_THAT(error_in(mesh_of({a, b, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 1}})), Contains("no triangle with an area"));
+    CHECK_THAT(error_in(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})), Contains("vertex that is not finite"));
+    CHECK_THAT(error_in(mesh_of({a, b, {0, 2e6, 0}}, {{0, 1, 2}})), Contains("farther than 1e6 m"));
     Mesh scaled = mesh_of({a, b, c}, {{0, 1, 2}});
     for (const double scale : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
         scaled.scale = scale;
-        CHECK_THAT(refusal_of(scaled), Contains("obstacles[1].mesh.scale must be a finite number above 0"));
+        CHECK_THAT(error_in(scaled), Contains("obstacles[1].mesh.scale: must be a finite number above 0"));
     }
     const std::vector<std::array<std::uint32_t, 3>> many(1'100'000, {0, 1, 2});
-    CHECK_THAT(refusal_of(joined(mesh_of({a, b, c}, many), mesh_of({a, b, c}, many))),
+    CHECK_THAT(error_in(joined(mesh_of({a, b, c}, many), mesh_of({a, b, c}, many))),
                Contains("has 2200000 triangles: at most 2000000"));
 }
 
@@ -197,7 +192,7 @@ TEST_CASE("A surface without a rim that has no outside is refused") {
         {{0, 0, 1}, {1, 0, 0}, {0.3, 1, 0}, {-0.8, 0.6, 0}, {-0.8, -0.6, 0}, {0.3, -1, 0}},
         {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}});
     CHECK(kind_of(one_sided) == SurfaceKind::contradictory);
-    CHECK_THAT(refusal_of(one_sided), Contains("obstacles[1].mesh.file has triangles that disagree about which side"));
+    CHECK_THAT(error_in(one_sided), Contains("obstacles[1].mesh.file: has triangles that disagree about which side"));
     // Where more than two triangles meet nothing tells which of them is wrong.
     const std::vector<Vector3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     CHECK(kind_of(mesh_of(corners, {{0, 1, 2}, {0, 2, 1}, {0, 1, 2}, {0, 2, 1}})) == SurfaceKind::solid);
@@ -206,7 +201,7 @@ TEST_CASE("A surface without a rim that has no outside is refused") {
     const Mesh moebius =
         mesh_of(one_sided.surface->vertices_m, {{1, 2, 3}, {2, 3, 4}, {3, 4, 5}, {4, 5, 1}, {5, 1, 2}});
     CHECK(kind_of(moebius) == SurfaceKind::sheet);
-    CHECK(refusal_of(moebius).empty());
+    CHECK(error_in(moebius) == "none");
 }
 
 TEST_CASE("A box of triangles is as near as the same box as a primitive, from outside and from inside") {

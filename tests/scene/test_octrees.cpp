@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/error_of.hpp"
 #include "../support/meshes.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/scene/octree_boxes.hpp"
 #include "reference.hpp"
 
@@ -53,27 +53,22 @@ bool is_in(const Vector3& p, const Vector3& center, const Vector3& size) {
     return is_inside;
 }
 
-std::string refusal_of(Octomap octomap) {
-    try {
-        const Scene scene({{"", std::move(octomap), {}, {}}});
-    } catch (const InputError& error) {
-        return error.errors().at(0).key + " " + error.errors().at(0).message;
-    }
-    return "";
+std::string error_in(const Octomap& octomap) {
+    return test::error_of([&] { return Scene({{"", octomap, {}, {}}}); });
 }
 
 }  // namespace
 
 TEST_CASE("Octrees that cannot stand in a scene are refused with their place") {
     using Catch::Matchers::Contains;
-    CHECK(refusal_of(octomap_of({1, {{{0, 0, 0}, 1}}})).empty());
-    CHECK_THAT(refusal_of({}), Contains("obstacles[0].octomap.file must have been read"));
-    CHECK_THAT(refusal_of(octomap_of({1, {}})), Contains("obstacles[0].octomap.file has no occupied cube"));
+    CHECK(error_in(octomap_of({1, {{{0, 0, 0}, 1}}})) == "none");
+    CHECK_THAT(error_in({}), Contains("obstacles[0].octomap.file: must have been read"));
+    CHECK_THAT(error_in(octomap_of({1, {}})), Contains("obstacles[0].octomap.file: has no occupied cube"));
     for (const OccupiedCube& bad : {OccupiedCube{{0, std::nan(""), 0}, 1}, OccupiedCube{{0, 0, 0}, 0},
                                     OccupiedCube{{0, 0, 0}, std::nan("")}, OccupiedCube{{2e6, 0, 0}, 1}}) {
-        CHECK_THAT(refusal_of(octomap_of({1, {bad}})), Contains("has a cube with a centre or side"));
+        CHECK_THAT(error_in(octomap_of({1, {bad}})), Contains("has a cube with a centre or side"));
     }
-    CHECK_THAT(refusal_of(octomap_of({1, std::vector<OccupiedCube>(2'000'001, {{0, 0, 0}, 1})})),
+    CHECK_THAT(error_in(octomap_of({1, std::vector<OccupiedCube>(2'000'001, {{0, 0, 0}, 1})})),
                Contains("at most 2000000 are allowed"));
 }
 

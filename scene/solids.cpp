@@ -1,0 +1,53 @@
+#include "downwash/scene/solids.hpp"
+
+#include <algorithm>
+
+namespace downwash {
+
+bool Scene::Solids::are_near(const Convex& solid, double distance_m) const {
+    const double near_m = std::max(distance_m, contact_m);
+    const Bounds around = bounds_of(solid);
+    const auto gap = [&](const Bounds& box) { return gap_m(around, box); };
+    const auto is_near = [&](std::size_t part) {
+        return gap(parts.bounds(part)) <= near_m &&
+               parts.with_convex(part, [&](const Convex& convex) { return is_nearer_than(solid, convex, near_m); });
+    };
+    return parts.any(gap, near_m, is_near) || is_inside_mesh(solid.center_m);
+}
+
+double Scene::Solids::clearance_m(const Convex& solid, double enough_m) const {
+    double least = enough_m;
+    const Bounds around = bounds_of(solid);
+    const auto gap = [&](const Bounds& box) { return box_distance_m(around, box); };
+    parts.any(gap, least, [&](std::size_t part) {
+        if (gap(parts.bounds(part)) < least) {
+            least = std::min(
+                least, parts.with_convex(part, [&](const Convex& convex) { return distance_m(solid, convex, least); }));
+        }
+        return least <= 0;
+    });
+    return least > 0 && is_inside_mesh(solid.center_m) ? 0 : least;
+}
+
+bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {
+    const auto apart_upwards = [&](const Bounds& box) {
+        return std::max({box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1],
+                         p_m[2] - box.high_m[2]});
+    };
+    return std::any_of(closed_surfaces.begin(), closed_surfaces.end(), [&](const ClosedSurface& surface) {
+        if (apart_upwards(surface.bounds) > 0 || p_m[2] < surface.bounds.low_m[2]) {
+            return false;
+        }
+        int turns = 0;
+        parts.any_other(apart_upwards, 0, [&](std::size_t part) {
+            const std::size_t triangle = part - parts.first_triangle();  // huge for other parts
+            if (triangle >= surface.first && triangle < surface.last) {
+                turns += winding_above(parts.triangles[triangle], p_m);
+            }
+            return false;
+        });
+        return turns != 0;
+    });
+}
+
+}  // namespace downwash
