@@ -11,7 +11,7 @@
 #include "downwash/cli/json_text.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/effects/effect_comparison.hpp"
+#include "downwash/fitting/effect_comparison.hpp"
 
 namespace downwash::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/effects/effect_fit.hpp"
+#include "downwash/fitting/effect_fit.hpp"
 #include "downwash/report/curve_figure.hpp"
 
 namespace downwash::cli {

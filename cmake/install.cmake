@@ -15,8 +15,8 @@ install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
   FILES_MATCHING PATTERN "*.yaml" PATTERN "*.stl" PATTERN "*.bt")
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# What stands behind the modules (Eigen, OMPL, FCL, yaml-cpp) is hidden in shared libraries and so no business of those who
-# link them. Static libraries would pass it all on: they serve this build only.
+# Shared libraries hide what the modules are built with (Eigen, OMPL, yaml-cpp), so a program that links them needs none of it.
+# Static libraries would pass it all on, so they are for this build only.
 if(NOT BUILD_SHARED_LIBS)
   message(STATUS "Static modules: only the program and its problems will be installed, no libraries and headers")
   return()

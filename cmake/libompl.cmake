@@ -3,8 +3,10 @@
 function(downwash_add_libompl NAME)
   find_package(Eigen3 REQUIRED)
   find_package(ompl REQUIRED)
-  find_package(Boost REQUIRED COMPONENTS serialization filesystem system)
+  # The first of its libraries is OMPL. The others are named by the paths of developer packages that OMPL's own package does not
+  # bring, and only OMPL itself uses them.
+  list(GET OMPL_LIBRARIES 0 library)
   add_library(${NAME} INTERFACE ${ARGN})
   target_include_directories(${NAME} SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
-  target_link_libraries(${NAME} INTERFACE ${OMPL_LIBRARIES} Boost::serialization Boost::filesystem Boost::system)
+  target_link_libraries(${NAME} INTERFACE ${library})
 endfunction()

@@ -13,26 +13,7 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 include(GNUInstallDirs)
 set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "$ORIGIN")
 
-find_package(Threads REQUIRED)
-find_package(Eigen3 REQUIRED)
-find_package(fcl REQUIRED)
-find_package(ompl REQUIRED)
-find_package(Boost REQUIRED COMPONENTS serialization filesystem system)
-find_package(yaml-cpp REQUIRED)
-find_package(OpenSSL REQUIRED COMPONENTS Crypto)
-find_package(pugixml REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(fmt REQUIRED)
-find_package(spdlog REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(Ceres REQUIRED)
-find_package(SQLite3 REQUIRED)
-list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
-find_package(GeographicLib REQUIRED)
-
-include(cmake/libompl.cmake)
-downwash_add_libompl(downwash_libompl)
+include(cmake/dependencies.cmake)
 
 # Headers stand beside their sources and are included as <downwash/module/header.hpp>, here as after installation.
 set(DOWNWASH_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)

@@ -1,11 +1,10 @@
 #include "downwash/problems/key_reference.hpp"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <cstdlib>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -71,8 +70,7 @@ Model in_groups(const ParameterTable<Model>& table, const std::string& path) {
 
 /// Rounded: a default in radians is a round number of degrees.
 double in_file_units(const std::string& path, double value) {
-    return is_in_degrees(path) ? std::strtod(fmt::format("{:.6g}", value * degrees_per_radian).c_str(), nullptr)
-                               : value;
+    return is_in_degrees(path) ? std::strtod(to_text(value * degrees_per_radian, 6).c_str(), nullptr) : value;
 }
 
 Value in_file_units(const std::string& path, Value value) {
@@ -96,7 +94,7 @@ std::string list_text(const std::vector<Element>& list, const Text& text) {
 }
 
 std::string text_of(const Value& value) {
-    const auto number_text = [](double number) { return fmt::format("{:.6g}", number); };
+    const auto number_text = [](double number) { return to_text(number, 6); };
     if (const auto* flag = std::get_if<bool>(&value)) {
         return *flag ? "true" : "false";
     }
@@ -104,7 +102,7 @@ std::string text_of(const Value& value) {
         return number_text(*number);
     }
     if (const auto* integer = std::get_if<std::uint64_t>(&value)) {
-        return fmt::format("{}", *integer);
+        return std::to_string(*integer);
     }
     if (const auto* text = std::get_if<std::string>(&value)) {
         return *text;

@@ -65,6 +65,10 @@ echo "OMPL's planners on our flights, and ours, by OMPL's benchmark"
 }
 (cd "$work" && ompl/flights_with_ompl "$problem" 1 2)
 
+if [[ ! -x $prefix/bin/downwash ]]; then
+    echo "this build has no program"
+    exit 0
+fi
 echo "the installed program"
 "$prefix/bin/downwash" --version
 "$prefix/bin/downwash" check "$problem"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "../support/error_of.hpp"
 #include "../support/random.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 using namespace downwash;
@@ -39,12 +39,7 @@ double boost_pchip(std::vector<double> x, std::vector<double> y, double at) {
 }
 
 std::string error_of(const std::string& text) {
-    try {
-        static_cast<void>(parse_effect_table(text, "t.csv"));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::error_of([&] { return parse_effect_table(text, "t.csv"); });
 }
 
 }  // namespace

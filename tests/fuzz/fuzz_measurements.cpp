@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/effects/effect_comparison.hpp"
+#include "downwash/fitting/effect_comparison.hpp"
 #include "downwash/effects/measurements.hpp"
 
 /// Whatever is read as measurements can be compared and fitted, or is refused.

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "../support/error_of.hpp"
 #include "../support/random.hpp"
-#include "downwash/base/key_error.hpp"
-#include "downwash/effects/effect_fit.hpp"
+#include "downwash/fitting/effect_fit.hpp"
 
 using namespace downwash;
 using downwash::test::Random;
@@ -89,12 +89,7 @@ std::vector<Measurement> shipped(const std::string& source, const std::string& s
 }
 
 std::string error_of(EffectModel model, const std::vector<Measurement>& points, const FitOptions& options = {}) {
-    try {
-        static_cast<void>(fit_effect(model, points, options));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::error_of([&] { return fit_effect(model, points, options); });
 }
 
 FitOptions fixing(const std::string& name, double value) {
@@ -351,41 +346,4 @@ TEST_CASE("A fit repeats to the last bit") {
     const EffectFit second = fit_effect(EffectModel::sanchez_cuevas, points);
     CHECK(first.effect.parameters == second.effect.parameters);
     CHECK(first.covariance == second.covariance);
-}
-
-TEST_CASE("Measurements keep all their columns and can be chosen by them") {
-    const Measurements all = read_measurements(DOWNWASH_MEASUREMENTS);
-    CHECK(all.points.size() == 45);
-    CHECK(all.index("pwm_level") == 3);
-    CHECK_FALSE(all.index("sigma"));
-    CHECK(all.entries("source") == std::vector<std::string>{"jirs2024", "hydrus15_isolated"});
-    CHECK(all.entries("surface") == std::vector<std::string>{"ceiling", "ground"});
-    CHECK(all.entries("wind").empty());
-    const Measurements chosen = all.with("pwm_level", "3").with("surface", "ground");
-    REQUIRE(chosen.points.size() == 4);
-    CHECK(chosen.points[0].z_over_r == 0.328);
-    CHECK(chosen.points[0].thrust_ratio == 1.296);
-    CHECK(chosen.points[0].line == 23);
-    CHECK(all.with("wind", "").points.empty());
-}
-
-TEST_CASE("Measurements that cannot be used are refused with their line") {
-    const auto error_of = [](const std::string& text) -> std::string {
-        try {
-            static_cast<void>(parse_measurements(text, "m.csv"));
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "none";
-    };
-    CHECK(error_of("z_over_r,ratio\n1,2\n") ==
-          "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
-    CHECK(error_of("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
-    CHECK(error_of("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
-          "m.csv:2: z_over_r is '0'; expected a number from 1e-06 to 1000\n"
-          "m.csv:3: thrust_ratio is '-1'; expected a number from 0 to 100\n"
-          "m.csv:4: z_over_r is 'nan'; expected a number from 1e-06 to 1000");
-    CHECK(error_of("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
-          "m.csv:4: sigma is '0'; expected a number from 1e-09 to 100");
-    CHECK_THROWS_WITH(read_measurements("/nowhere.csv"), "/nowhere.csv: cannot be read: there is no such file");
 }

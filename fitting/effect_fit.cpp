@@ -1,4 +1,4 @@
-#include "downwash/effects/effect_fit.hpp"
+#include "downwash/fitting/effect_fit.hpp"
 
 #include <ceres/ceres.h>
 
@@ -17,10 +17,6 @@ namespace downwash {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-[[noreturn]] void refuse(const std::string& message) {
-    throw InputError({{"", message}});
-}
 
 /// A free parameter: its place in the model and the range it is sought in.
 struct Free {
@@ -165,7 +161,7 @@ double spread(std::size_t i, std::size_t base) {
 /// over the decades from a thousandth to a thousand.
 std::vector<std::vector<double>> starts(const Residuals& residuals, const std::vector<double>& source_values) {
     constexpr std::size_t tried = 400;
-    constexpr std::array<std::size_t, most_model_parameters> bases{2, 3};
+    constexpr std::array<std::size_t, max_model_parameters> bases{2, 3};
     std::vector<std::pair<double, std::vector<double>>> found;
     const auto consider = [&](const std::vector<double>& values) {
         const double sum = residuals.sum_of_squares(values.data());
@@ -212,12 +208,13 @@ SurfaceEffect starting_effect(EffectModel model, const FitOptions& options) {
         const auto parameter = std::find_if(known.parameters.begin(), known.parameters.end(),
                                             [&name = name](const ModelParameter& p) { return p.name == name; });
         if (parameter == known.parameters.end()) {
-            refuse("the model " + std::string(known.name) + " has no parameter '" + excerpt(name) + "' to be fixed");
+            throw_input_error("the model " + std::string(known.name) + " has no parameter '" + excerpt(name) +
+                              "' to be fixed");
         }
         if (!(value >= parameter->low && value <= parameter->high) || (parameter->is_open && value == parameter->low)) {
-            refuse("the parameter " + name + " cannot be fixed at " + to_text(value) + "; expected a number " +
-                   (parameter->is_open ? "above " : "from ") + to_text(parameter->low) + " up to " +
-                   to_text(parameter->high));
+            throw_input_error("the parameter " + name + " cannot be fixed at " + to_text(value) +
+                              "; expected a number " + (parameter->is_open ? "above " : "from ") +
+                              to_text(parameter->low) + " up to " + to_text(parameter->high));
         }
         effect.parameters[static_cast<std::size_t>(parameter - known.parameters.begin())] = value;
     }
@@ -225,7 +222,7 @@ SurfaceEffect starting_effect(EffectModel model, const FitOptions& options) {
 }
 
 std::vector<Free> free_parameters(EffectModel model, const FitOptions& options) {
-    constexpr double least_above_open = 1e-6;
+    constexpr double min_above_open = 1e-6;
     std::vector<Free> free;
     const auto& known = info(model).parameters;
     for (std::size_t i = 0; i < known.size(); ++i) {
@@ -234,7 +231,7 @@ std::vector<Free> free_parameters(EffectModel model, const FitOptions& options) 
         // The body's b of zero is no distance: it stands for that of the rotors.
         const bool is_open = known[i].is_open || (model == EffectModel::multirotor_body && i == 1);
         if (!is_fixed) {
-            free.push_back({i, known[i].low + (is_open ? least_above_open : 0), known[i].high});
+            free.push_back({i, known[i].low + (is_open ? min_above_open : 0), known[i].high});
         }
     }
     return free;
@@ -242,26 +239,27 @@ std::vector<Free> free_parameters(EffectModel model, const FitOptions& options) 
 
 void check_points(const std::vector<Measurement>& points, std::size_t free_count, const FitOptions& options) {
     if (points.empty()) {
-        refuse("there are no measurements to fit");
+        throw_input_error("there are no measurements to fit");
     }
     std::set<double> distances;
     for (const Measurement& point : points) {
         distances.insert(point.z_over_r);
         if (options.is_weighted && !point.sigma) {
-            refuse("line " + std::to_string(point.line) +
-                   " has no sigma; expected one for every measurement of a weighted fit");
+            throw_input_error("line " + std::to_string(point.line) +
+                              " has no sigma; expected one for every measurement of a weighted fit");
         }
     }
     if (distances.size() < free_count) {
-        refuse("the measurements have " + std::to_string(distances.size()) + " different z_over_r; expected at least " +
-               std::to_string(free_count) + ", one for each parameter of the model");
+        throw_input_error("the measurements have " + std::to_string(distances.size()) +
+                          " different z_over_r; expected at least " + std::to_string(free_count) +
+                          ", one for each parameter of the model");
     }
 }
 
 /// Names parameters of which hardly more than a combination is known: one of a pair that goes together is not told from
 /// zero by the data.
 void find_combinations(EffectFit& fit) {
-    constexpr double most_correlation = 0.999;
+    constexpr double max_correlation = 0.999;
     const auto is_vague = [&fit](std::size_t i) {
         return *fit.parameters[i].standard_error > std::abs(fit.parameters[i].value);
     };
@@ -269,7 +267,7 @@ void find_combinations(EffectFit& fit) {
     for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             const auto correlation = fit.correlation(i, j);
-            if (correlation && std::abs(*correlation) > most_correlation && (is_vague(i) || is_vague(j))) {
+            if (correlation && std::abs(*correlation) > max_correlation && (is_vague(i) || is_vague(j))) {
                 vague.insert({i, j});
             }
         }
@@ -308,20 +306,20 @@ void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, c
     }
 
     // With columns of length one the normal matrix tells how far the parameters can be told apart.
-    constexpr double least_change =
+    constexpr double min_change =
         1e-6;  // of K, which no one measures, when a parameter changes by one or by its own size
     Eigen::VectorXd scale(p);
     for (Eigen::Index j = 0; j < p; ++j) {
         const double size = std::max(1.0, std::abs(minimum.values[inner[static_cast<std::size_t>(j)]]));
         const double length = slopes.col(j).norm();
-        scale[j] = length * size > least_change ? 1 / length : 0;
+        scale[j] = length * size > min_change ? 1 / length : 0;
     }
     const Eigen::MatrixXd scaled = slopes * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> normal(scaled.transpose() * scaled);
-    constexpr double least_distinct = 1e-10;  // of an eigenvalue; the differences are good to some 1e-9 themselves
+    constexpr double min_distinct = 1e-10;  // of an eigenvalue; the differences are good to some 1e-9 themselves
     for (Eigen::Index k = 0; k < p; ++k) {
         for (Eigen::Index j = 0; j < p; ++j) {
-            if (normal.eigenvalues()[k] < least_distinct && std::abs(normal.eigenvectors()(j, k)) > 0.1) {
+            if (normal.eigenvalues()[k] < min_distinct && std::abs(normal.eigenvectors()(j, k)) > 0.1) {
                 const Free& free = residuals.free()[inner[static_cast<std::size_t>(j)]];
                 fit.undetermined.push_back(fit.parameters[free.index].name);
             }
@@ -357,7 +355,7 @@ std::optional<double> EffectFit::correlation(std::size_t i, std::size_t j) const
 
 EffectFit fit_effect(EffectModel model, const std::vector<Measurement>& points, const FitOptions& options) {
     if (model == EffectModel::table) {
-        refuse("a table has no parameters to fit; expected the name of a formula");
+        throw_input_error("a table has no parameters to fit; expected the name of a formula");
     }
     const SurfaceEffect start = starting_effect(model, options);
     const Residuals residuals(start, free_parameters(model, options), points, options);
@@ -372,8 +370,8 @@ EffectFit fit_effect(EffectModel model, const std::vector<Measurement>& points, 
     const Minimum minimum =
         free.empty() ? Minimum{{}, residuals.sum_of_squares(nullptr), true} : search(residuals, source_values);
     if (!std::isfinite(minimum.sum_of_squares)) {
-        refuse("the formula of " + std::string(info(model).name) +
-               " has a pole where there are measurements; leave out those nearest to the surface");
+        throw_input_error("the formula of " + std::string(info(model).name) +
+                          " has a pole where there are measurements; leave out those nearest to the surface");
     }
 
     EffectFit fit;

@@ -1,4 +1,4 @@
-#include "downwash/effects/effect_comparison.hpp"
+#include "downwash/fitting/effect_comparison.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/effects/effect_fit.hpp"
+#include "downwash/fitting/effect_fit.hpp"
 
 namespace downwash {
 namespace {
@@ -86,13 +86,13 @@ using DataSets = std::vector<std::pair<std::pair<std::string, std::string>, std:
 void require_known_surface(const std::string& surface, std::size_t line) {
     const std::vector<std::string_view> known{"ground", "ceiling"};
     if (!surface.empty() && std::find(known.begin(), known.end(), surface) == known.end()) {
-        throw InputError({{"", "line " + std::to_string(line) + " of the measurements has the surface '" +
-                                   excerpt(surface) + "'; expected ground or ceiling" + did_you_mean(surface, known)}});
+        throw_input_error("line " + std::to_string(line) + " of the measurements has the surface '" + excerpt(surface) +
+                          "'; expected ground or ceiling" + did_you_mean(surface, known));
     }
 }
 
 DataSets data_sets(const Measurements& measurements) {
-    constexpr std::size_t most_sets = 100;
+    constexpr std::size_t max_sets = 100;
     DataSets sets;
     const auto source = measurements.index("source");
     const auto surface = measurements.index("surface");
@@ -100,9 +100,9 @@ DataSets data_sets(const Measurements& measurements) {
         const std::pair key(source ? point.cells[*source] : "", surface ? point.cells[*surface] : "");
         auto set = std::find_if(sets.begin(), sets.end(), [&key](const auto& known) { return known.first == key; });
         if (set == sets.end()) {
-            if (sets.size() == most_sets) {
-                throw InputError({{"", "the measurements have more than " + std::to_string(most_sets) +
-                                           " sources and surfaces; expected some of them"}});
+            if (sets.size() == max_sets) {
+                throw_input_error("the measurements have more than " + std::to_string(max_sets) +
+                                  " sources and surfaces; expected some of them");
             }
             require_known_surface(key.second, point.line);
             set = sets.insert(set, {key, {}});

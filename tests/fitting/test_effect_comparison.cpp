@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/effects/effect_comparison.hpp"
-#include "downwash/effects/effect_fit.hpp"
+#include "downwash/fitting/effect_comparison.hpp"
+#include "downwash/fitting/effect_fit.hpp"
 
 using namespace downwash;
 

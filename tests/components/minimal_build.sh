@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Builds what a program needs in order to plan (downwash::planner and the modules that it uses) with nothing but the library
+# packages of the group [planner] in cmake/debian-packages.txt, installs it, and builds examples/embed against it.
+# Usage: tests/components/minimal_build.sh [--configure]
+#   --configure   only checks that CMake configures without the other packages and says what it leaves out
+# Environment: JOBS, parallel jobs of the build (default 1)
+set -euo pipefail
+
+root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$(mktemp -d)
+trap 'rm -rf "$build"' EXIT
+
+# What optional components look for, hidden as if it were not installed.
+hidden=()
+for package in pugixml ZLIB Ceres GeographicLib fmt SQLite3 CLI11 spdlog; do
+    hidden+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
+done
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${hidden[@]}" >"$build/log" 2>&1 || {
+    cat "$build/log"
+    exit 1
+}
+for component in VTK:libpugixml-dev FITTING:libceres-dev EXPORTS:libgeographiclib-dev REPORT:libfmt-dev \
+    CAMPAIGNS:libsqlite3-dev CLI:libcli11-dev; do
+    grep -q "^-- Left out: .*Debian packages: .*${component#*:}" "$build/log" || {
+        echo "CMake does not say that ${component%:*} is left out without ${component#*:}:"
+        grep 'Left out' "$build/log" || true
+        exit 1
+    }
+done
+[[ ${1:-} != --configure ]] || exit 0
+
+cmake --build "$build" --parallel "${JOBS:-1}"
+
+# Every header that the compiler has read comes from the wanted packages, from what they depend on, or from the compiler's own.
+mapfile -t wanted < <(awk '{ sub(/#.*/, "") } /^\[/ { inside = $1 == "[planner]"; next } NF && inside { print $1 }' \
+    "$root/cmake/debian-packages.txt")
+apt-cache depends --recurse --installed --no-recommends --no-suggests --no-conflicts --no-breaks --no-replaces --no-enhances \
+    "${wanted[@]}" g++ | sed -n 's/^\([a-z0-9]\)/\1/p' | sort -u >"$build/allowed"
+ninja -C "$build" -t deps | sed -n 's|^ *\(/usr/include/.*\)|\1|p' | sort -u | xargs -r realpath | sort -u |
+    xargs -r dpkg -S 2>/dev/null | sed 's/: .*//; s/:[a-z0-9]*$//' | sort -u >"$build/used"
+if others=$(grep -vxFf "$build/allowed" "$build/used"); then
+    echo "the planner reads headers of packages that are not in the group [planner]:"
+    echo "$others"
+    exit 1
+fi
+echo "built with ${wanted[*]} and what they depend on"
+
+"$root/examples/embed/run_consumer_test.sh" "$build"

@@ -1,0 +1,39 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "../support/error_of.hpp"
+#include "downwash/effects/measurements.hpp"
+
+using namespace downwash;
+
+TEST_CASE("Measurements keep all their columns and can be chosen by them") {
+    const Measurements all = read_measurements(DOWNWASH_MEASUREMENTS);
+    CHECK(all.points.size() == 45);
+    CHECK(all.index("pwm_level") == 3);
+    CHECK_FALSE(all.index("sigma"));
+    CHECK(all.entries("source") == std::vector<std::string>{"jirs2024", "hydrus15_isolated"});
+    CHECK(all.entries("surface") == std::vector<std::string>{"ceiling", "ground"});
+    CHECK(all.entries("wind").empty());
+    const Measurements chosen = all.with("pwm_level", "3").with("surface", "ground");
+    REQUIRE(chosen.points.size() == 4);
+    CHECK(chosen.points[0].z_over_r == 0.328);
+    CHECK(chosen.points[0].thrust_ratio == 1.296);
+    CHECK(chosen.points[0].line == 23);
+    CHECK(all.with("wind", "").points.empty());
+}
+
+TEST_CASE("Measurements that cannot be used are refused with their line") {
+    const auto error = [](const std::string& text) {
+        return test::error_of([&] { return parse_measurements(text, "m.csv"); });
+    };
+    CHECK(error("z_over_r,ratio\n1,2\n") == "m.csv:1: has no column thrust_ratio; expected z_over_r and thrust_ratio");
+    CHECK(error("#\nz_over_r,thrust_ratio\n") == "m.csv:2: no rows follow; expected measurements");
+    CHECK(error("z_over_r,thrust_ratio\n0,1\n1,-1\nnan,1\n") ==
+          "m.csv:2: z_over_r is '0'; expected a number from 1e-06 to 1000\n"
+          "m.csv:3: thrust_ratio is '-1'; expected a number from 0 to 100\n"
+          "m.csv:4: z_over_r is 'nan'; expected a number from 1e-06 to 1000");
+    CHECK(error("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
+          "m.csv:4: sigma is '0'; expected a number from 1e-09 to 100");
+    CHECK_THROWS_WITH(read_measurements("/nowhere.csv"), "/nowhere.csv: cannot be read: there is no such file");
+}
