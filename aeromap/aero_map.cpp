@@ -38,9 +38,7 @@ void require_valid(double grid_m, const MapExtent& extent, const std::vector<Map
             errors.push_back({"robot.rotors.positions_m", "must be finite numbers in metres"});
         }
     }
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
+    throw_if_any(std::move(errors));
 }
 
 /// An extent that is a whole number of cells stays so in spite of rounding.
@@ -86,9 +84,8 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     cells_per_m_ = 1 / cell_m_;
     const double columns = columns_over(extent_, cells_per_m_);
     const double rows = rows_over(extent_, cells_per_m_);
-    if (!(columns * rows * static_cast<double>(layers_.size()) <= most_map_cells)) {
-        throw InputError(std::vector<KeyError>{
-            {"aero.grid_m", "gives a map of more than 2^24 cells over these bounds; choose it coarser"}});
+    if (!(columns * rows * static_cast<double>(layers_.size()) <= max_map_cells)) {
+        throw_input_error("gives a map of more than 2^24 cells over these bounds; choose it coarser", "aero.grid_m");
     }
     columns_ = static_cast<std::uint32_t>(columns);
     rows_ = static_cast<std::uint32_t>(rows);
@@ -133,8 +130,7 @@ void AeroMap::Raster::append(const CellRows& rows) {
             std::equal(values, end, nodes.begin() + static_cast<std::ptrdiff_t>(cells.back().first_node));
         const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
         if (first > std::numeric_limits<std::uint32_t>::max()) {
-            throw InputError(
-                std::vector<KeyError>{{"aero.grid_m", "gives a map of more than 2^32 values; choose smaller bounds"}});
+            throw_input_error("gives a map of more than 2^32 values; choose smaller bounds", "aero.grid_m");
         }
         cells.push_back({static_cast<std::uint32_t>(first), steps.x, steps.z});
         if (!is_as_before) {

@@ -33,7 +33,7 @@ struct MapLayer {
 [[nodiscard]] DOWNWASH_EXPORT double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent);
 
 /// The most cells a map may have: 2^24, some hundred megabytes.
-inline constexpr double most_map_cells = 16777216;
+inline constexpr double max_map_cells = 16777216;
 
 /// K stored over rotor positions in the plane of motion, one layer for all rotors that share lateral offset and effect.
 ///

@@ -50,7 +50,7 @@ bool take_count(std::string_view& bytes, std::uint64_t& count) {
 
 /// A power of two. std::has_single_bit calls a function where it may not count on an instruction.
 bool is_step_count(unsigned steps) {
-    return steps > 0 && (steps & (steps - 1)) == 0 && steps <= most_steps;
+    return steps > 0 && (steps & (steps - 1)) == 0 && steps <= max_steps;
 }
 
 }  // namespace
@@ -121,10 +121,10 @@ bool AeroMap::is_sound(const Raster& raster) const {
     };
     const auto is_verdict = [](CellFlyability flyability) { return flyability <= CellFlyability::mixed; };
     const AeroSettings& settings = layers_.front().effect->settings();
-    const auto most = static_cast<float>(settings.map ? largest_grid_factor : std::max(2.0, 2 * settings.max_factor));
+    const auto max = static_cast<float>(settings.map ? max_grid_factor : std::max(2.0, 2 * settings.max_factor));
     // Counted and not searched for, so that several are looked at at once. NaN fails.
     const auto factors = std::count_if(raster.nodes.begin(), raster.nodes.end(),
-                                       [most](float value) { return value >= 0 && value <= most; });
+                                       [max](float value) { return value >= 0 && value <= max; });
     return std::all_of(raster.cells.begin(), raster.cells.end(), is_cell) &&
            std::all_of(raster.flyability.begin(), raster.flyability.end(), is_verdict) &&
            static_cast<std::size_t>(factors) == raster.nodes.size();

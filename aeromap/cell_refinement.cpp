@@ -12,7 +12,7 @@ constexpr double allowed_error = 0.0065;
 /// Below this an interval is not looked into further: twice of it still leaves the other axis most of the allowance.
 constexpr double negligible_error = 0.0025;
 constexpr std::size_t levels = 10;  // 2^0 to 2^9 steps
-static_assert(1 << (levels - 1) == most_steps);
+static_assert(1 << (levels - 1) == max_steps);
 /// Largest error seen of linear interpolation with 2^level steps.
 using ErrorPerLevel = std::array<double, levels>;
 
@@ -100,9 +100,9 @@ class LineProbe {
 
 /// The fewest nodes within the allowance; the least error when nothing is.
 CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
-    CellSteps best{most_steps, most_steps};
+    CellSteps best{max_steps, max_steps};
     double best_error = along_x[levels - 1] + along_z[levels - 1];
-    int best_nodes = (most_steps + 1) * (most_steps + 1);
+    int best_nodes = (max_steps + 1) * (max_steps + 1);
     for (std::size_t i = 0; i < levels; ++i) {
         for (std::size_t k = 0; k < levels; ++k) {
             const double error = along_x[i] + along_z[k];

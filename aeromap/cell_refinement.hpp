@@ -9,9 +9,9 @@
 
 namespace downwash {
 
-inline constexpr int most_steps = 512;
+inline constexpr int max_steps = 512;
 
-/// How finely one map cell is divided along x and z; powers of two up to most_steps.
+/// How finely one map cell is divided along x and z; powers of two up to max_steps.
 struct CellSteps {
     std::uint16_t x = 1, z = 1;
 };
@@ -33,7 +33,7 @@ struct CellField {
 };
 
 /// The cheapest division whose bilinear interpolation error in the flyable part is estimated below 0.0065, which
-/// leaves a third of the promised 0.01 for what hides between the probes. Where even most_steps do not reach it the
+/// leaves a third of the promised 0.01 for what hides between the probes. Where even max_steps do not reach it the
 /// most exact division.
 [[nodiscard]] CellSteps steps_for(const CellSquare& cell, const CellField& field);
 

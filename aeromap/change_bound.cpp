@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-double largest_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
+double max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
     if (effect.settings().map) {
         return infinity;
     }
@@ -52,6 +52,11 @@ double largest_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
     const double unit_m = effect.rotor_radius_m();
     return effect.ground().largest_change_beyond(below_m / unit_m) +
            effect.ceiling().largest_change_beyond(above_m / unit_m);
+}
+
+bool is_quiet(const DirectEffect& effect, const Scene::Bounds& hubs) {
+    constexpr double quiet_change = 0.006;
+    return !effect.settings().enabled || max_change(effect, hubs) <= quiet_change;
 }
 
 }  // namespace downwash

@@ -6,7 +6,7 @@ namespace downwash {
 namespace {
 
 /// Lines over one piece of a chord change places at most as often; more is rounding.
-constexpr int most_splits = 16;
+constexpr int max_splits = 16;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ double ChordEnvelope::excess() {
         double sum = 0;
         for (const SurfaceStretch& stretch : stretches_) {
             open_.assign(1, stretch);
-            sum += between(stretch.low, stretch.high, first_at(stretch.low), first_at(stretch.high), most_splits);
+            sum += between(stretch.low, stretch.high, first_at(stretch.low), first_at(stretch.high), max_splits);
         }
         return sum;
     }
@@ -53,7 +53,7 @@ double ChordEnvelope::excess() {
                                    [&](const SurfaceStretch& stretch) { return stretch.high <= low; }),
                     open_.end());
         if (low < high && !open_.empty()) {
-            sum += between(low, high, first_at(low), first_at(high), most_splits);
+            sum += between(low, high, first_at(low), first_at(high), max_splits);
         }
     }
     return sum;

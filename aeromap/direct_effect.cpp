@@ -17,8 +17,8 @@
 namespace downwash {
 namespace {
 
-bool is_at_least(double x, double least) {
-    return std::isfinite(x) && x >= least;
+bool is_at_least(double x, double min) {
+    return std::isfinite(x) && x >= min;
 }
 
 void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<KeyError>& errors) {
@@ -53,9 +53,7 @@ const AeroSettings& checked(const AeroSettings& settings, double radius_m) {
     if (!(std::isfinite(radius_m) && radius_m > 0)) {
         errors.push_back({"robot.rotors.radius_m", "must be a finite length above 0 in metres"});
     }
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
+    throw_if_any(std::move(errors));
     return settings;
 }
 
@@ -78,7 +76,7 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
       settings_(checked(settings, rotor_radius_m)),
       rotor_radius_m_(rotor_radius_m),
       disc_radius_m_(rotor_radius_m),
-      least_clearance_m_(settings.min_distance_radii * rotor_radius_m),
+      min_clearance_m_(settings.min_distance_radii * rotor_radius_m),
       ground_(on_rotor(settings.ground), settings.max_factor, neighbours),
       ceiling_(settings.ceiling, settings.max_factor, neighbours),
       ground_mean_(mean_of(ground_)),
@@ -90,7 +88,7 @@ DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const Ae
     DirectEffect effect(std::move(scene), settings, rotor_radius_m, neighbours);
     const double b_over_radius = settings.ground.parameters[1];
     effect.disc_radius_m_ = rotor_radius_m * (b_over_radius > 0 ? b_over_radius : neighbours.center_radii);
-    effect.least_clearance_m_ = -std::numeric_limits<double>::infinity();
+    effect.min_clearance_m_ = -std::numeric_limits<double>::infinity();
     effect.ground_ = EffectCurve::fountain(settings.ground, settings.max_factor, neighbours);
     effect.ceiling_ = EffectCurve(EffectModel::none, settings.max_factor);
     effect.ground_mean_ = mean_of(effect.ground_);
@@ -127,14 +125,14 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
 }
 
 bool DirectEffect::is_flyable(const Vector3& hub_m) const {
-    if (!(std::isfinite(hub_m[0]) && std::isfinite(hub_m[1]) && std::isfinite(hub_m[2]))) {
+    if (!is_finite(hub_m)) {
         return false;
     }
-    if (!settings_.enabled || least_clearance_m_ < 0) {
+    if (!settings_.enabled || min_clearance_m_ < 0) {
         return true;
     }
     return (!settings_.map || settings_.map->is_flyable(hub_m)) &&
-           disc_is_clear(*scene_, hub_m, disc_radius_m_, least_clearance_m_);
+           disc_is_clear(*scene_, hub_m, disc_radius_m_, min_clearance_m_);
 }
 
 }  // namespace downwash

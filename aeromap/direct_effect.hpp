@@ -58,7 +58,7 @@ class DOWNWASH_EXPORT DirectEffect {
     /// Radius of the disc that the effect is averaged over: the rotor's, or that of the circle through all axes.
     [[nodiscard]] double disc_radius_m() const noexcept { return disc_radius_m_; }
     /// Least distance of the disc from every obstacle in the flyable area; negative: everything is flyable.
-    [[nodiscard]] double least_clearance_m() const noexcept { return least_clearance_m_; }
+    [[nodiscard]] double min_clearance_m() const noexcept { return min_clearance_m_; }
     /// K of wide flat surfaces below and above; without meaning when the settings bring a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
@@ -68,7 +68,7 @@ class DOWNWASH_EXPORT DirectEffect {
     AeroSettings settings_;
     double rotor_radius_m_;
     double disc_radius_m_;
-    double least_clearance_m_;
+    double min_clearance_m_;
     EffectCurve ground_, ceiling_;
     std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;  ///< null for curves that have none
     std::shared_ptr<const Footprints> footprints_;

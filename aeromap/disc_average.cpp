@@ -30,7 +30,7 @@ constexpr double far_stake = 0.01;
 constexpr double gauss_2 = 0.57735026918962576;
 
 /// With more parts over the disc chord_sum takes their place.
-constexpr std::size_t most_with_crossings = 24;
+constexpr std::size_t max_with_crossings = 24;
 
 /// A part of an obstacle that may be the first surface for some point of the disc.
 struct FacingPart {
@@ -262,8 +262,8 @@ std::optional<PlaneCover> only_plane(const DiscQuery& query, const std::pmr::vec
 
 /// Whether all candidates are level polygons none of which hides another: then areas are enough.
 bool are_beside_each_other(const std::pmr::vector<FacingPart>& candidates) {
-    constexpr std::size_t most = 6;  // each is compared with each
-    if (candidates.size() > most) {
+    constexpr std::size_t max_candidates = 6;  // each is compared with each
+    if (candidates.size() > max_candidates) {
         return false;
     }
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -331,7 +331,7 @@ double disc_average(const DiscQuery& query, const Footprints& footprints) {
     };
     const std::span<const Footprint> primitives = footprints.of_primitives();
     std::for_each(primitives.begin(), primitives.end(), add_over_disc);
-    const bool are_few = candidates.size() + others.size() <= most_with_crossings;
+    const bool are_few = candidates.size() + others.size() <= max_with_crossings;
     if (are_few) {
         for (const std::size_t part : others) {
             add_over_disc(footprints.of_other(part, spare));

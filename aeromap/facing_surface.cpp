@@ -11,7 +11,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A box shows as many faces to one side.
-constexpr std::size_t most_planes = 3;
+constexpr std::size_t max_planes = 3;
 
 /// The gap of a plane along a chord: that at u = 0 and its rate.
 struct Line {
@@ -121,10 +121,10 @@ bool add_plane_stretches(const DiscQuery& query, const ChordFrame& frame, const 
                          const Interval& shadow, ChordEnvelope& envelope) {
     const std::vector<Footprint::Plane>& seen = planes(query, part);
     const std::size_t count = seen.size();
-    if (count == 0 || count > most_planes) {
+    if (count == 0 || count > max_planes) {
         return false;
     }
-    std::array<Line, most_planes> lines{};
+    std::array<Line, max_planes> lines{};
     for (std::size_t i = 0; i < count; ++i) {
         lines[i] = {plane_gap_m(query, seen[i], frame.x_of(0, v), frame.y_of(0, v)),
                     plane_rate(query, seen[i], frame.du_x, frame.du_y)};
@@ -135,7 +135,7 @@ bool add_plane_stretches(const DiscQuery& query, const ChordFrame& frame, const 
         const double lead = (lines[i].gap_m - line.gap_m) + (lines[i].rate - line.rate) * shadow.low;
         line = lead > 0 ? lines[i] : line;
     }
-    std::array<SurfaceStretch, most_planes> stretches{};
+    std::array<SurfaceStretch, max_planes> stretches{};
     std::size_t stretch_count = 0;
     double from = shadow.low;
     for (std::size_t turn = 0; turn < count && from < shadow.high; ++turn) {

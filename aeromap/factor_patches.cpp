@@ -11,16 +11,14 @@ namespace {
 
 /// Of the parabolas at the points looked at.
 constexpr double allowed_error = 0.002;
-/// A block where K cannot differ more than this from 1 is not looked at closer.
-constexpr double quiet_change = 0.006;
 
 /// The finest division of a cell has 512 steps, and its probes look at their quarters.
-constexpr std::uint64_t cell_units = 4 * most_steps;
+constexpr std::uint64_t cell_units = 4 * max_steps;
 constexpr std::uint64_t block_units = cell_units * FactorPatches::block_cells;
-constexpr std::uint64_t least_units = cell_units / 2;
+constexpr std::uint64_t min_units = cell_units / 2;
 
 /// A few megabytes; some ten thousand are usual.
-constexpr std::size_t most_known = 1U << 17U;
+constexpr std::size_t max_known = 1U << 17U;
 
 /// A node without parabolas. Block 0 is no quarter.
 constexpr std::int32_t direct = 0;
@@ -69,7 +67,7 @@ void FactorPatches::fit(std::size_t node, const Square& square, bool is_flyable,
             return;
         }
     }
-    if (square.side <= least_units) {
+    if (square.side <= min_units) {
         return;
     }
     const std::size_t quarters = nodes_.size();
@@ -94,8 +92,9 @@ bool FactorPatches::is_met(const Square& square, const Values& values) {
 bool FactorPatches::is_quiet(const Square& square) const {
     const Vector3 from = hub_m(square.x, square.z);
     const Vector3 to = hub_m(square.x + square.side, square.z + square.side);
-    return largest_change(grid_.effect, {{std::min(from[0], to[0]), std::min(from[1], to[1]), from[2]},
-                                         {std::max(from[0], to[0]), std::max(from[1], to[1]), to[2]}}) <= quiet_change;
+    Scene::Bounds hubs{from, from};
+    hubs.include({to, to});
+    return downwash::is_quiet(grid_.effect, hubs);
 }
 
 double FactorPatches::factor(double x_m, double z_m) {
@@ -128,7 +127,7 @@ double FactorPatches::factor(double x_m, double z_m) {
 }
 
 double FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
-    if (known_.size() >= most_known) {
+    if (known_.size() >= max_known) {
         known_.clear();
     }
     const auto [known, is_new] = known_.try_emplace(x * (2 * block_units) + z);

@@ -6,7 +6,7 @@ namespace downwash {
 namespace {
 
 /// About a kilobyte each.
-constexpr std::size_t most_kept = 16384;
+constexpr std::size_t max_kept = 16384;
 
 std::vector<Footprint> footprints_of_primitives(const Scene& scene) {
     std::vector<Footprint> footprints;
@@ -35,7 +35,7 @@ const Footprint& Footprints::of_other(std::size_t part, std::list<Footprint>& sp
     if (const Footprint* kept = place.load(std::memory_order_acquire)) {
         return *kept;
     }
-    if (kept_.load(std::memory_order_relaxed) >= most_kept) {
+    if (kept_.load(std::memory_order_relaxed) >= max_kept) {
         return spare.emplace_back(scene_, part);
     }
     auto made = std::make_unique<const Footprint>(scene_, part);

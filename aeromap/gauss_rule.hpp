@@ -58,7 +58,6 @@ constexpr std::array<GaussNode, N> plain(const std::array<GaussNode, N / 2>& upp
     return rule;
 }
 
-inline constexpr auto plain_2 = plain<2>({{{0.57735026918962576, 1}}});
 inline constexpr auto plain_6 = plain<6>(legendre_6);
 inline constexpr auto plain_12 = plain<12>(legendre_12);
 

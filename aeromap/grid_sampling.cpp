@@ -15,15 +15,13 @@ namespace {
 
 GridAxis axis_over(double low_m, double high_m, double step_m, const char* name) {
     if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m && step_m > 0)) {
-        throw InputError(std::vector<KeyError>{{"", std::string("a grid wants its axis ") + name +
-                                                        " from a lower to a higher number of metres and a step "
-                                                        "above 0: found " +
-                                                        to_text(low_m, 6) + " to " + to_text(high_m, 6) + ", step " +
-                                                        to_text(step_m, 6)}});
+        throw_input_error(std::string("the axis ") + name + " of a grid runs from " + to_text(low_m, 6) + " to " +
+                          to_text(high_m, 6) + " m in steps of " + to_text(step_m, 6) +
+                          " m: expected the lower end first and steps above 0");
     }
     const double steps = std::max(1.0, std::ceil((high_m - low_m) / step_m - 1e-9));
-    if (!(steps < static_cast<double>(most_grid_nodes))) {
-        throw InputError(std::vector<KeyError>{{"", "a grid of this step has too many nodes; choose it coarser"}});
+    if (!(steps < static_cast<double>(max_grid_nodes))) {
+        throw_input_error("a grid of this step has too many nodes; choose it coarser");
     }
     return {low_m, high_m, static_cast<std::size_t>(steps) + 1};
 }
@@ -31,10 +29,9 @@ GridAxis axis_over(double low_m, double high_m, double step_m, const char* name)
 void require_storable(const FactorGridParts& parts, std::size_t layers) {
     const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                          static_cast<double>(parts.z.count) * static_cast<double>(layers);
-    if (nodes > static_cast<double>(most_grid_nodes)) {
-        throw InputError(std::vector<KeyError>{{"", "a grid of " + to_text(nodes, 3) + " nodes is more than the " +
-                                                        std::to_string(most_grid_nodes) +
-                                                        " that are possible: choose a coarser step"}});
+    if (nodes > static_cast<double>(max_grid_nodes)) {
+        throw_input_error("a grid of " + to_text(nodes, 3) + " nodes is more than the " +
+                          std::to_string(max_grid_nodes) + " that are possible: choose a coarser step");
     }
 }
 
@@ -99,9 +96,9 @@ FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampl
     FactorGridParts parts = parts_over(sampling, provenance);
     for (const MapLayer& layer : layers) {
         if (!parts.lateral_offsets_m.empty() && parts.lateral_offsets_m.back() == layer.lateral_m) {
-            throw InputError(std::vector<KeyError>{
-                {"", "two rotors " + to_text(layer.lateral_m, 6) +
-                         " m beside the plane feel different effects, as their neighbours differ: choose one rotor"}});
+            throw_input_error(
+                "two rotors " + to_text(layer.lateral_m, 6) +
+                " m beside the plane feel different effects, as their neighbours differ: choose one rotor");
         }
         parts.lateral_offsets_m.push_back(layer.lateral_m);
     }

@@ -14,17 +14,12 @@
 namespace downwash {
 namespace {
 
-/// A cell whose K cannot differ more than this from 1 is not looked at closer.
-constexpr double quiet_change = 0.006;
-/// How exact clearances are taken to be: the cell's verdict and the exact test must never disagree.
-constexpr double clearance_slack_m = 1e-6;
-
 class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
         : grid_(grid),
           radius_m_(grid.effect.disc_radius_m()),
-          least_clearance_m_(grid.effect.least_clearance_m()),
+          min_clearance_m_(grid.effect.min_clearance_m()),
           first_(first),
           last_(last),
           patches_(grid, first) {
@@ -40,7 +35,7 @@ class RowsBuilder {
     CellRows build() {
         if (grid_.effect.settings().enabled) {
             classify(0, grid_.columns, first_, last_);
-            if (grid_.effect.settings().map && least_clearance_m_ >= 0) {
+            if (grid_.effect.settings().map && min_clearance_m_ >= 0) {
                 ask_given_map();
             }
         }
@@ -92,10 +87,10 @@ class RowsBuilder {
         const double dx = x - middle_.x_m;
         const double dz = z - middle_.z_m;
         const double away = std::sqrt(dx * dx + dz * dz) + clearance_slack_m;
-        if (middle_.clearance_m + away + reach < least_clearance_m_) {
+        if (middle_.clearance_m + away + reach < min_clearance_m_) {
             return true;
         }
-        return middle_.clearance_m - away + reach < least_clearance_m_ && !is_clear(x, z, least_clearance_m_ - reach);
+        return middle_.clearance_m - away + reach < min_clearance_m_ && !is_clear(x, z, min_clearance_m_ - reach);
     }
 
     /// Moving the disc by d changes its clearance by at most d: one place decides a whole block of cells when its
@@ -108,9 +103,9 @@ class RowsBuilder {
             return is_clear(x_at(i0) + half_x, z_at(k0) + half_z, distance_m);
         };
         CellFlyability verdict = CellFlyability::mixed;
-        if (is_clear_in_middle(least_clearance_m_ + reach)) {
+        if (is_clear_in_middle(min_clearance_m_ + reach)) {
             verdict = CellFlyability::flyable;
-        } else if (!is_clear_in_middle(least_clearance_m_ - reach)) {
+        } else if (!is_clear_in_middle(min_clearance_m_ - reach)) {
             verdict = CellFlyability::forbidden;
         } else if (i1 - i0 > 1 || k1 - k0 > 1) {
             if (i1 - i0 >= k1 - k0) {
@@ -154,8 +149,9 @@ class RowsBuilder {
     [[nodiscard]] Scene::Bounds hubs_in(const CellSquare& cell) const {
         const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
         const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);
-        return {{std::min(from[0], to[0]), std::min(from[1], to[1]), from[2]},
-                {std::max(from[0], to[0]), std::max(from[1], to[1]), to[2]}};
+        Scene::Bounds hubs{from, from};
+        hubs.include({to, to});
+        return hubs;
     }
 
     void add_cell(std::size_t i, std::size_t k) {
@@ -171,16 +167,14 @@ class RowsBuilder {
             middle_.clearance_m = clearance_m(middle_.x_m, middle_.z_m);
         }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
-        const bool is_quiet =
-            !grid_.effect.settings().enabled || largest_change(grid_.effect, hubs_in(cell)) <= quiet_change;
-        const CellSteps steps = is_quiet ? CellSteps{} : steps_for(cell, field);
+        const CellSteps steps = is_quiet(grid_.effect, hubs_in(cell)) ? CellSteps{} : steps_for(cell, field);
         rows_.steps.push_back(steps);
         append_nodes(cell, steps, field, rows_.nodes);
     }
 
     const LayerGrid& grid_;
     double radius_m_;
-    double least_clearance_m_;
+    double min_clearance_m_;
     std::size_t first_, last_;
     CellField everywhere_, partly_;
     CellRows rows_;
@@ -216,10 +210,10 @@ CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) 
 }
 
 double longest_cell_side_m(const DirectEffect& effect) {
-    const double from_radii = std::max(0.0, effect.least_clearance_m()) / effect.rotor_radius_m();
+    const double from_radii = std::max(0.0, effect.min_clearance_m()) / effect.rotor_radius_m();
     const double slope = std::max(steepest(effect.ground(), from_radii), steepest(effect.ceiling(), from_radii));
     // A kink of slope s per radius, halfway between two nodes h apart, is missed by s h / 4R.
-    const double resolved_radii = most_steps * 4 * 0.004 / std::max(slope, 1e-3);
+    const double resolved_radii = max_steps * 4 * 0.004 / std::max(slope, 1e-3);
     return effect.rotor_radius_m() * std::clamp(resolved_radii, 0.02, 0.45);
 }
 

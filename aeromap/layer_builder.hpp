@@ -30,7 +30,7 @@ struct CellRows {
 /// Rows [first, last) of a layer.
 [[nodiscard]] CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last);
 
-/// The longest cell side for which most_steps resolve the steepest curve of the effect, at least R / 50; at most 0.45
+/// The longest cell side for which max_steps resolve the steepest curve of the effect, at least R / 50; at most 0.45
 /// R, so that the probes of a cell miss nothing of the disc's size.
 [[nodiscard]] double longest_cell_side_m(const DirectEffect& effect);
 

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_files = 32;
-constexpr std::uintmax_t most_bytes = 1'000'000'000;
+constexpr std::size_t max_files = 32;
+constexpr std::uintmax_t max_bytes = 1'000'000'000;
 constexpr std::size_t digest_letters = 64;
 constexpr std::string_view extension = ".aeromap";
 /// A file that was not finished for so long never will be.
@@ -64,7 +64,7 @@ void trim(const fs::path& folder) {
         }
     }
     std::sort(files.begin(), files.end(), [](const CachedFile& a, const CachedFile& b) { return a.used < b.used; });
-    for (std::size_t oldest = 0; files.size() - oldest > most_files || bytes > most_bytes; ++oldest) {
+    for (std::size_t oldest = 0; files.size() - oldest > max_files || bytes > max_bytes; ++oldest) {
         fs::remove(files[oldest].path);
         bytes -= files[oldest].bytes;
     }
@@ -77,7 +77,7 @@ std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layer
     try {
         const std::string key = map_key(layers, plane, extent);
         const fs::path path = folder_ / (key + std::string(extension));
-        const std::string file = read_file(path, most_bytes);
+        const std::string file = read_file(path, max_bytes);
         const std::string_view content = checked_content(file, head_of(key));
         std::optional<AeroMap> map = AeroMap::from_bytes(layers, plane, extent, content);
         if (!map) {
@@ -96,7 +96,7 @@ bool MapCache::keep(const AeroMap& map) const noexcept {
         const std::string key = map_key(map.layers(), map.plane(), map.extent());
         std::string file = head_of(key) + map.to_bytes();
         file += sha256_hex(file);
-        if (file.size() > most_bytes) {
+        if (file.size() > max_bytes) {
             return false;
         }
         fs::create_directories(folder_);

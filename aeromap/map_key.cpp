@@ -122,7 +122,7 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
         const auto& [enabled, ground, ceiling, map_file, map, max_factor, min_distance_radii, grid_m] =
             effect->settings();
         description.add("layer").add(lateral_m).add(enabled ? "on" : "off").add(grid_m);
-        description.add(effect->rotor_radius_m()).add(effect->disc_radius_m()).add(effect->least_clearance_m());
+        description.add(effect->rotor_radius_m()).add(effect->disc_radius_m()).add(effect->min_clearance_m());
         add_effect(description, ground);
         add_effect(description, ceiling);
         description.add(max_factor).add(min_distance_radii);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/layer_builder.hpp"
@@ -16,13 +15,9 @@ namespace {
 /// Of the interpolation at the points looked at. Between eighths of an edge a parabola misses up to 1.6 times as much
 /// of a kink along it; the rest up to the promised 0.01 is for kinks whose trace at those points a bend hides in part.
 constexpr double allowed_error = 0.003;
-/// A box where K cannot differ more than this from 1 is not looked at closer.
-constexpr double quiet_change = 0.006;
-/// How exact clearances are taken to be.
-constexpr double clearance_slack_m = 1e-6;
-constexpr std::uint32_t most_halvings = 7;
+constexpr std::uint32_t max_halvings = 7;
 constexpr std::uint32_t shortest_edge = 8;  // has eighths on the lattice
-constexpr std::uint32_t cell_edge = shortest_edge << most_halvings;
+constexpr std::uint32_t cell_edge = shortest_edge << max_halvings;
 constexpr std::uint32_t bits_per_axis = 21;
 
 }  // namespace
@@ -63,14 +58,13 @@ void VolumeMap::Builder::fill(std::size_t node, const Box& box, bool is_flyable)
     if (!is_flyable) {
         // Moving the disc by d changes its clearance by at most d.
         const Vector3 edges = edges_m(box);
-        const double reach_m =
-            0.5 * std::sqrt(edges[0] * edges[0] + edges[1] * edges[1] + edges[2] * edges[2]) + clearance_slack_m;
+        const double reach_m = 0.5 * std::sqrt(dot(edges, edges)) + clearance_slack_m;
         const double clearance_m =
             disc_clearance_m(effect_.scene(), hub_m(box.at(1, 1, 1, 2)), effect_.disc_radius_m());
-        if (clearance_m + reach_m < effect_.least_clearance_m()) {
+        if (clearance_m + reach_m < effect_.min_clearance_m()) {
             return;
         }
-        is_flyable = clearance_m - reach_m >= effect_.least_clearance_m();
+        is_flyable = clearance_m - reach_m >= effect_.min_clearance_m();
     }
     std::size_t axis = too_long(box);
     if (axis == no_axis) {
@@ -82,8 +76,8 @@ void VolumeMap::Builder::fill(std::size_t node, const Box& box, bool is_flyable)
             return;
         }
     }
-    if (++boxes_ > most_volume_boxes) {
-        throw InputError(std::vector<KeyError>{{"", "the volume needs more than 2^23 boxes; choose it smaller"}});
+    if (++boxes_ > max_volume_boxes) {
+        throw_input_error("the volume needs more than 2^23 boxes; choose it smaller");
     }
     const std::size_t lower = nodes_.size();
     nodes_[node] = {static_cast<std::uint32_t>(axis), static_cast<std::uint32_t>(lower)};
@@ -96,19 +90,13 @@ void VolumeMap::Builder::fill(std::size_t node, const Box& box, bool is_flyable)
 }
 
 bool VolumeMap::Builder::is_quiet(const Box& box) const {
-    if (!effect_.settings().enabled) {
-        return true;
-    }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Scene::Bounds hubs{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    const Vector3 first = hub_m(box.low);
+    Scene::Bounds hubs{first, first};
+    for (std::uint32_t corner = 1; corner < 8; ++corner) {
         const Vector3 hub = hub_m(box.at(corner & 1U, corner >> 1U & 1U, corner >> 2U, 1));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            hubs.low_m[axis] = std::min(hubs.low_m[axis], hub[axis]);
-            hubs.high_m[axis] = std::max(hubs.high_m[axis], hub[axis]);
-        }
+        hubs.include({hub, hub});
     }
-    return largest_change(effect_, hubs) <= quiet_change;
+    return downwash::is_quiet(effect_, hubs);
 }
 
 /// The longest edge, when K could turn unseen along it.

@@ -20,8 +20,7 @@ constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 void require_valid(const MapExtent& extent, double lateral_low_m, double lateral_high_m) {
     const auto require_range = [](double low_m, double high_m, const char* axis) {
         if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m)) {
-            throw InputError(std::vector<KeyError>{
-                {"", std::string("the volume's ") + axis + " must be two finite numbers, the lower one first"}});
+            throw_input_error(std::string("the volume's ") + axis + " must be two finite numbers, the lower one first");
         }
     };
     require_range(extent.x_low_m, extent.x_high_m, "x");
@@ -46,8 +45,8 @@ VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMo
         cell_m_[axis] = length_m / cells[axis];
         cells_per_m_[axis] = cells[axis] / length_m;
     }
-    if (!(cells[0] * cells[1] * cells[2] <= static_cast<double>(most_volume_boxes))) {
-        throw InputError(std::vector<KeyError>{{"", "the volume has more than 2^23 cells; choose it smaller"}});
+    if (!(cells[0] * cells[1] * cells[2] <= static_cast<double>(max_volume_boxes))) {
+        throw_input_error("the volume has more than 2^23 cells; choose it smaller");
     }
     std::transform(cells.begin(), cells.end(), cells_.begin(),
                    [](double count) { return static_cast<std::uint32_t>(count); });

@@ -16,7 +16,7 @@
 namespace downwash {
 
 /// The most boxes that a volume may consist of: 2^23, about a gigabyte.
-inline constexpr std::size_t most_volume_boxes = 8388608;
+inline constexpr std::size_t max_volume_boxes = 8388608;
 
 /// K stored over a block of rotor positions in three dimensions, for vehicles that leave one plane.
 ///
@@ -33,7 +33,7 @@ class DOWNWASH_EXPORT VolumeMap {
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
     /// left
     /// @param threads at least 1; the bytes do not depend on it   @param on_progress see run_parallel
-    /// @throws InputError when the block is empty or not finite, or needs more than most_volume_boxes
+    /// @throws InputError when the block is empty or not finite, or needs more than max_volume_boxes
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const MapExtent& extent,
               double lateral_low_m, double lateral_high_m, int threads = 1,
               const std::function<void(double)>& on_progress = {});

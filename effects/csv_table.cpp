@@ -10,14 +10,14 @@
 namespace downwash {
 namespace {
 
-constexpr std::size_t most_bytes = 16'000'000;
-constexpr std::size_t most_rows = 100'000;
-constexpr std::size_t most_columns = 32;
+constexpr std::size_t max_bytes = std::size_t{16} << 20U;
+constexpr std::size_t max_rows = 100'000;
+constexpr std::size_t max_columns = 32;
 
 /// What keeps a line from being the header; empty when nothing does.
 std::string header_error(const std::vector<std::string>& columns) {
-    if (columns.size() > most_columns) {
-        return "more than " + std::to_string(most_columns) + " columns";
+    if (columns.size() > max_columns) {
+        return "more than " + std::to_string(max_columns) + " columns";
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (columns[i].empty()) {
@@ -38,7 +38,7 @@ void add_line(CsvTable& table, const CsvLines& line, LineErrors& errors) {
     }
     std::vector<std::string> cells;
     line.for_each_cell([&cells](std::string_view cell, std::size_t) {
-        if (cells.size() <= most_columns) {
+        if (cells.size() <= max_columns) {
             cells.emplace_back(cell);
         }
     });
@@ -66,18 +66,11 @@ std::optional<std::size_t> CsvTable::find(std::string_view column) const {
 }
 
 std::string read_csv_text(const std::filesystem::path& file) {
-    LineErrors errors{file.string()};
-    std::string text;
     try {
-        text = read_file(file, most_bytes + 1);
+        return read_whole_file(file, max_bytes);
     } catch (const FileError& error) {
-        errors.add(0, error.what());
+        throw_input_error(file.string() + ": " + error.what());
     }
-    if (text.size() > most_bytes) {
-        errors.add(0, "has more than " + std::to_string(most_bytes / 1'000'000) + " MB; expected a short table");
-    }
-    errors.throw_any();
-    return text;
 }
 
 CsvTable parse_csv(std::string_view text, LineErrors& errors) {
@@ -87,9 +80,9 @@ CsvTable parse_csv(std::string_view text, LineErrors& errors) {
         if (line.is_comment()) {
             continue;
         }
-        if (table.rows.size() == most_rows) {
+        if (table.rows.size() == max_rows) {
             errors.add(line.number(),
-                       "is row " + std::to_string(most_rows + 1) + "; expected at most " + std::to_string(most_rows));
+                       "is row " + std::to_string(max_rows + 1) + "; expected at most " + std::to_string(max_rows));
             break;
         }
         add_line(table, line, errors);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-using Parameters = std::array<double, most_model_parameters>;
+using Parameters = std::array<double, max_model_parameters>;
 
 /// 1 / (1 - loss), where `loss` of the induced velocity is the surface's doing; infinite from the pole on, where the
 /// formula has lost its meaning.

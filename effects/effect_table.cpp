@@ -18,22 +18,22 @@ namespace {
 
 namespace mc = monotone_cubic;
 
-constexpr double most_z_over_r = 1000;
-constexpr double most_d_over_r = 10000;
-constexpr double most_factor = 100;
-constexpr double least_step = 1e-6;
+constexpr double max_z_over_r = 1000;
+constexpr double max_d_over_r = 10000;
+constexpr double max_factor = 100;
+constexpr double min_step = 1e-6;
 
 bool is_in(double value, double low, double high) {
     return value >= low && value <= high;
 }
 
-void check_axis(const std::vector<double>& axis, const char* name, double most, std::vector<KeyError>& errors) {
+void check_axis(const std::vector<double>& axis, const char* name, double max, std::vector<KeyError>& errors) {
     bool is_sound = axis.size() >= 2;
     for (std::size_t i = 0; i < axis.size(); ++i) {
-        is_sound = is_sound && is_in(axis[i], 0, most) && (i == 0 || axis[i] - axis[i - 1] >= least_step);
+        is_sound = is_sound && is_in(axis[i], 0, max) && (i == 0 || axis[i] - axis[i - 1] >= min_step);
     }
     if (!is_sound) {
-        errors.push_back({name, "expected two or more numbers from 0 to " + to_text(most) +
+        errors.push_back({name, "expected two or more numbers from 0 to " + to_text(max) +
                                     ", each at least 1e-6 above the one before"});
     }
 }
@@ -64,17 +64,15 @@ EffectTable::EffectTable(std::vector<double> z_over_r, std::vector<double> d_ove
     : z_over_r_(std::move(z_over_r)), d_over_r_(std::move(d_over_r)), factors_(std::move(factors)) {
     const std::size_t columns = depends_on_d() ? d_over_r_.size() : 1;
     std::vector<KeyError> errors;
-    check_axis(z_over_r_, "z_over_r", most_z_over_r, errors);
+    check_axis(z_over_r_, "z_over_r", max_z_over_r, errors);
     if (depends_on_d()) {
-        check_axis(d_over_r_, "d_over_r", most_d_over_r, errors);
+        check_axis(d_over_r_, "d_over_r", max_d_over_r, errors);
     }
     if (factors_.size() != z_over_r_.size() * columns ||
-        !std::all_of(factors_.begin(), factors_.end(), [](double k) { return is_in(k, 0, most_factor); })) {
+        !std::all_of(factors_.begin(), factors_.end(), [](double k) { return is_in(k, 0, max_factor); })) {
         errors.push_back({"factor", "expected a number from 0 to 100 for every combination of distances"});
     }
-    if (!errors.empty()) {
-        throw InputError(errors);
-    }
+    throw_if_any(std::move(errors));
 
     if (depends_on_d()) {
         slopes_d_.resize(factors_.size());
@@ -118,8 +116,8 @@ double EffectTable::distance_below(double factor) const {
     if (behind < z_over_r_.size()) {
         return z_over_r_[behind];
     }
-    const double most = *std::max_element(factors_.begin(), factors_.end());
-    return factor > 1 ? z_over_r_.back() * std::sqrt((most - 1) / (factor - 1))
+    const double largest = *std::max_element(factors_.begin(), factors_.end());
+    return factor > 1 ? z_over_r_.back() * std::sqrt((largest - 1) / (factor - 1))
                       : std::numeric_limits<double>::infinity();
 }
 
@@ -204,7 +202,7 @@ std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*co
     std::vector<double> axis;
     for (const auto& [value, line] : values) {
         if (axis.empty() || value > axis.back()) {
-            if (!axis.empty() && value - axis.back() < least_step) {
+            if (!axis.empty() && value - axis.back() < min_step) {
                 errors.add(line, name + " " + to_text(value) + " is hardly more than " + to_text(axis.back()) +
                                      "; expected steps of at least 1e-6, or the very same number");
             }
@@ -253,9 +251,9 @@ std::vector<Entry> entries_of(const CsvTable& csv, LineErrors& errors) {
     }
     std::vector<Entry> entries;
     for (const CsvTable::Row& row : csv.rows) {
-        const auto z_over_r = number_in(csv, row, *z, 0, most_z_over_r, errors);
-        const auto d_over_r = d ? number_in(csv, row, *d, 0, most_d_over_r, errors) : std::optional(0.0);
-        const auto k = number_in(csv, row, *factor, 0, most_factor, errors);
+        const auto z_over_r = number_in(csv, row, *z, 0, max_z_over_r, errors);
+        const auto d_over_r = d ? number_in(csv, row, *d, 0, max_d_over_r, errors) : std::optional(0.0);
+        const auto k = number_in(csv, row, *factor, 0, max_factor, errors);
         if (z_over_r && d_over_r && k) {
             entries.push_back({*z_over_r, *d_over_r, *k, row.line});
         }

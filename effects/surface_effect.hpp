@@ -29,7 +29,7 @@ enum class EffectModel {
 };
 
 /// No model has more numbers than this.
-inline constexpr std::size_t most_model_parameters = 2;
+inline constexpr std::size_t max_model_parameters = 2;
 
 /// One side's model with its parameters.
 struct DOWNWASH_EXPORT SurfaceEffect {
@@ -39,7 +39,7 @@ struct DOWNWASH_EXPORT SurfaceEffect {
     SurfaceEffect(EffectModel which);
 
     EffectModel model = EffectModel::none;
-    std::array<double, most_model_parameters> parameters{};  ///< in the order of info(model).parameters
+    std::array<double, max_model_parameters> parameters{};  ///< in the order of info(model).parameters
     // Of the model `table` only:
     std::string file;                          ///< where the table comes from
     std::shared_ptr<const EffectTable> table;  ///< never empty while the model is `table`

@@ -58,10 +58,10 @@ void check(const GeodeticOrigin& origin) {
     const bool is_sound = std::abs(origin.latitude_deg) <= 90 && std::abs(origin.longitude_deg) <= 180 &&
                           std::abs(origin.altitude_m) <= 1e5 && std::abs(origin.bearing_deg) <= 360;
     if (!is_sound) {
-        throw InputError(
-            {{"", "the origin is at latitude " + to_text(origin.latitude_deg) + ", longitude " +
-                      to_text(origin.longitude_deg) + ", altitude " + to_text(origin.altitude_m) + " m, bearing " +
-                      to_text(origin.bearing_deg) + ": expected -90 to 90, -180 to 180, -1e5 to 1e5 and -360 to 360"}});
+        throw_input_error("the origin is at latitude " + to_text(origin.latitude_deg) + ", longitude " +
+                          to_text(origin.longitude_deg) + ", altitude " + to_text(origin.altitude_m) + " m, bearing " +
+                          to_text(origin.bearing_deg) +
+                          ": expected -90 to 90, -180 to 180, -1e5 to 1e5 and -360 to 360");
     }
 }
 
@@ -116,12 +116,11 @@ std::vector<Corner> corners_of(const RunRecord& run) {
 
 std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
     if (!settings.origin) {
-        throw InputError(
-            {KeyError{"", "a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE"}});
+        throw_input_error("a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE");
     }
     check(*settings.origin);
     if (!run.plan) {
-        throw InputError({KeyError{"", "this run found no plan, so there is nothing to fly"}});
+        throw_input_error("this run found no plan, so there is nothing to fly");
     }
     const OnEarth earth(*settings.origin);
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());

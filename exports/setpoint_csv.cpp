@@ -20,7 +20,7 @@ void append(std::string& row, const Vector3& vector) {
 
 std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings) {
     if (!run.plan) {
-        throw InputError({KeyError{"", "this run found no plan, so there is nothing to fly"}});
+        throw_input_error("this run found no plan, so there is nothing to fly");
     }
     const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
     return setpoints(*run.plan, run.problem.plane, end_s,

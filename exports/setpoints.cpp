@@ -10,8 +10,8 @@
 namespace downwash {
 namespace {
 
-constexpr double most_setpoints = 1e6;
-constexpr double greatest_rate_hz = 10000;
+constexpr double max_setpoints = 1e6;
+constexpr double max_rate_hz = 10000;
 
 /// The reference at a time between two knots, or held after the last.
 class Reference {
@@ -58,15 +58,13 @@ Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
 }  // namespace
 
 std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, double end_s, double rate_hz) {
-    if (!(rate_hz > 0 && rate_hz <= greatest_rate_hz)) {
-        throw InputError(
-            {KeyError{"", "the rate is " + to_text(rate_hz) + " Hz, expected above 0 and at most 10000 Hz"}});
+    if (!(rate_hz > 0 && rate_hz <= max_rate_hz)) {
+        throw_input_error("the rate is " + to_text(rate_hz) + " Hz: expected above 0 and at most 10000 Hz");
     }
     end_s = std::max(end_s, plan.duration_s());
-    if (end_s * rate_hz > most_setpoints) {
-        throw InputError({KeyError{"", to_text(end_s, 6) + " s at " + to_text(rate_hz) +
-                                           " Hz are more than a million set-points; "
-                                           "lower the rate"}});
+    if (end_s * rate_hz > max_setpoints) {
+        throw_input_error(to_text(end_s, 6) + " s at " + to_text(rate_hz) +
+                          " Hz are more than a million set-points: lower the rate");
     }
     std::vector<double> times_s;
     constexpr double nearly = 1e-9;  // of a period: the end counts once

@@ -12,12 +12,12 @@ namespace downwash {
 namespace {
 
 constexpr std::array<std::string_view, 4> field_names{"factor", "ground", "ceiling", "flyable"};
-constexpr double largest_coordinate_m = 1e6;
+constexpr double max_coordinate_m = 1e6;
 constexpr double edge_slack_m = 1e-9;
 constexpr double layer_slack_m = 1e-6;
 
 bool is_coordinate(double value) {
-    return std::abs(value) <= largest_coordinate_m;  // NaN fails
+    return std::abs(value) <= max_coordinate_m;  // NaN fails
 }
 
 void check_axis(std::string_view name, const GridAxis& axis, std::vector<KeyError>& errors) {
@@ -55,7 +55,7 @@ std::size_t checked_nodes(const FactorGridParts& parts) {
     std::size_t nodes = 1;
     for (const std::size_t count :
          {parts.x.count, parts.y.count, parts.z.count, std::max<std::size_t>(1, parts.lateral_offsets_m.size())}) {
-        if (count > most_grid_nodes || nodes * count > most_grid_nodes) {
+        if (count > max_grid_nodes || nodes * count > max_grid_nodes) {
             return 0;
         }
         nodes *= count;
@@ -75,7 +75,7 @@ void check_field(const GridField& field, std::size_t nodes, std::vector<KeyError
     }
     const bool is_flag = field.name == "flyable";
     const auto is_good = [is_flag](double value) {
-        return is_flag ? value == 0 || value == 1 : value >= 0 && value <= largest_grid_factor;  // NaN fails
+        return is_flag ? value == 0 || value == 1 : value >= 0 && value <= max_grid_factor;  // NaN fails
     };
     const auto bad = std::find_if_not(field.values.begin(), field.values.end(), is_good);
     if (bad != field.values.end()) {
@@ -160,9 +160,7 @@ FactorGrid::FactorGrid(FactorGridParts parts) : parts_(std::move(parts)) {
         check_fields(parts_, nodes, errors);
     }
     check_provenance(parts_.provenance, errors);
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
+    throw_if_any(std::move(errors));
     const auto factor = std::find_if(parts_.fields.begin(), parts_.fields.end(),
                                      [](const GridField& field) { return field.name == "factor"; });
     std::rotate(parts_.fields.begin(), factor, factor + 1);

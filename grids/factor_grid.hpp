@@ -105,10 +105,10 @@ class DOWNWASH_EXPORT FactorGrid {
 };
 
 /// The most nodes a grid may have, all layers together.
-inline constexpr std::size_t most_grid_nodes = std::size_t{1} << 27U;
+inline constexpr std::size_t max_grid_nodes = std::size_t{1} << 27U;
 
 /// The largest factor a grid may hold.
-inline constexpr double largest_grid_factor = 100;
+inline constexpr double max_grid_factor = 100;
 
 /// The names a field may have, "factor" first.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const std::string_view> grid_field_names();

@@ -38,6 +38,6 @@ DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
 [[nodiscard]] DOWNWASH_EXPORT std::string grid_csv_text(const FactorGrid& grid);
 
 /// Larger files are refused unread [bytes].
-inline constexpr std::size_t largest_grid_file = std::size_t{1} << 31U;
+inline constexpr std::size_t max_grid_file_bytes = std::size_t{1} << 31U;
 
 }  // namespace downwash

@@ -15,8 +15,8 @@ namespace downwash {
 namespace {
 
 /// Larger grids belong into .vti files.
-constexpr std::size_t most_rows = std::size_t{1} << 24U;
-constexpr std::size_t most_columns = 256;
+constexpr std::size_t max_rows = std::size_t{1} << 24U;
+constexpr std::size_t max_columns = 256;
 /// How far a coordinate may be off its node, in steps.
 constexpr double spacing_slack = 1e-6;
 
@@ -88,23 +88,22 @@ class CsvReader {
     /// Exactly so many finite numbers, or an error and none.
     std::vector<double> numbers_in(std::string_view text, std::size_t count) {
         std::vector<double> numbers;
-        std::string_view rest = trimmed(text);
-        while (!rest.empty() && numbers.size() <= count) {
-            const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-            const auto number = number_of(rest.substr(0, end));
-            if (!number || !std::isfinite(*number)) {
+        std::string_view rest = text;
+        for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+            const auto number = parse_number<double>(word);
+            if (!number || numbers.size() == count) {
+                numbers.clear();
                 break;
             }
             numbers.push_back(*number);
-            rest = trimmed(rest.substr(end));
         }
-        if (!rest.empty() || numbers.size() != count) {
-            errors_.add(
-                line_.number(), 1,
-                text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
-            return {};
+        if (numbers.size() == count) {
+            return numbers;
         }
-        return numbers;
+        errors_.add(
+            line_.number(), 1,
+            text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
+        return {};
     }
 
     void read_header() {
@@ -129,7 +128,7 @@ class CsvReader {
         if (has(lateral) && has(y)) {
             errors_.add(line_.number(), 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
         }
-        if (roles_.size() > most_columns) {
+        if (roles_.size() > max_columns) {
             errors_.add(line_.number(), 1, "has more than 256 columns");
         }
     }
@@ -148,24 +147,21 @@ class CsvReader {
                             " as in the line of column names");
         }
         csv_.lines.push_back(static_cast<std::uint32_t>(line_.number()));
-        if (csv_.lines.size() > most_rows) {
+        if (csv_.lines.size() > max_rows) {
             errors_.add(line_.number(), 1, "more than 2^24 rows: expected a larger grid as .vti");
             errors_.throw_any();
         }
     }
 
     void read_cell(std::string_view cell, std::size_t column, std::size_t role) {
-        const auto number = number_of(cell);
+        const auto number = parse_number<double>(cell);
         const bool is_coordinate = role < first_field;
-        const double least = is_coordinate ? -1e6 : 0;
-        const double most = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
-        if (!number) {
-            errors_.add(line_.number(), column,
-                        std::string(names_[role]) + " is " + text_number(cell) + ": expected a number");
-        } else if (!(*number >= least && *number <= most)) {
+        const double min = is_coordinate ? -1e6 : 0;
+        const double max = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
+        if (!number || *number < min || *number > max) {
             errors_.add(line_.number(), column,
                         std::string(names_[role]) + " is " + text_number(cell) + ": expected a number from " +
-                            to_text(least) + " to " + to_text(most));
+                            to_text(min) + " to " + to_text(max));
         }
         csv_.columns[role].push_back(number.value_or(0));
     }
@@ -208,7 +204,7 @@ class NodeFinder {
         const std::size_t layers = std::max<std::size_t>(1, parts.lateral_offsets_m.size());
         const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                              static_cast<double>(parts.z.count) * static_cast<double>(layers);
-        if (nodes > static_cast<double>(most_rows)) {
+        if (nodes > static_cast<double>(max_rows)) {
             errors_.add(0, "has " + std::to_string(csv_.lines.size()) + " rows for " + to_text(nodes) +
                                " combinations of its coordinates: expected one each");
             errors_.throw_any();
@@ -321,7 +317,7 @@ FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const
         }
     }
     errors.throw_any();
-    throw std::logic_error("a refused grid has an error");
+    throw std::logic_error("a rejected grid has an error");
 }
 
 }  // namespace downwash

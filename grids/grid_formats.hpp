@@ -2,7 +2,6 @@
 
 // Private to grids. What the formats of grids share; each is read in a file of its own.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,8 +19,5 @@ namespace downwash {
 
 /// The entry of such a line; what has no key is a "comment".
 [[nodiscard]] std::pair<std::string, std::string> provenance_entry(std::string_view line);
-
-/// The number that a text consists of, finite or not; empty when it is none.
-[[nodiscard]] std::optional<double> number_of(std::string_view text);
 
 }  // namespace downwash

@@ -33,10 +33,10 @@ class VtiReader {
     [[nodiscard]] pugi::xml_node only_child(pugi::xml_node parent, const char* name) const {
         const pugi::xml_node child = parent.child(name);
         if (!child) {
-            file_.refuse(parent, std::string("<") + parent.name() + "> holds no <" + name + ">");
+            file_.fail(parent, std::string("<") + parent.name() + "> holds no <" + name + ">");
         }
         if (const pugi::xml_node second = child.next_sibling(name)) {
-            file_.refuse(second, std::string("a second <") + name + ">: expected one; merge them before");
+            file_.fail(second, std::string("a second <") + name + ">: expected one; merge them before");
         }
         return child;
     }
@@ -48,20 +48,16 @@ class VtiReader {
             return *otherwise;
         }
         Numbers<N> numbers{};
-        std::string_view rest = trimmed(found.value());
+        std::string_view rest = found.value();
+        bool is_sound = true;
         for (double& number : numbers) {
-            const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
-            const auto value = number_of(rest.substr(0, end));
-            if (!value || !(std::abs(*value) <= 1e15)) {
-                file_.refuse(node, std::string(name) + "=\"" + excerpt(found.value()) + "\": expected " +
-                                       std::to_string(N) + " finite numbers");
-            }
-            number = *value;
-            rest = trimmed(rest.substr(end));
+            const auto value = parse_number<double>(take_word(rest));
+            is_sound = is_sound && value && std::abs(*value) <= 1e15;
+            number = value.value_or(0);
         }
-        if (!rest.empty()) {
-            file_.refuse(node, std::string(name) + "=\"" + excerpt(found.value()) + "\": expected " +
-                                   std::to_string(N) + " finite numbers");
+        if (!is_sound || !trimmed(rest).empty()) {
+            file_.fail(node, std::string(name) + "=\"" + excerpt(found.value()) + "\": expected " + std::to_string(N) +
+                                 " finite numbers");
         }
         return numbers;
     }
@@ -69,7 +65,7 @@ class VtiReader {
     void read_extent() {
         extent_ = attribute<6>(image_, "WholeExtent");
         if (attribute<6>(piece_, "Extent") != extent_) {
-            file_.refuse(piece_, "the piece has another Extent than the image's WholeExtent: expected one whole piece");
+            file_.fail(piece_, "the piece has another Extent than the image's WholeExtent: expected one whole piece");
         }
         double nodes = 1;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -78,16 +74,16 @@ class VtiReader {
             const double least = axis == 1 ? low : low + 1;
             if (low != std::floor(low) || high != std::floor(high) || high < least || std::abs(low) > 1e9 ||
                 std::abs(high) > 1e9) {
-                file_.refuse(image_, std::string("WholeExtent runs from ") + to_text(low) + " to " + to_text(high) +
-                                         " along " + "xyz"[axis] +
-                                         ": expected whole numbers, at least two nodes along "
-                                         "x and z and one along y");
+                file_.fail(image_, std::string("WholeExtent runs from ") + to_text(low) + " to " + to_text(high) +
+                                       " along " + "xyz"[axis] +
+                                       ": expected whole numbers, at least two nodes along "
+                                       "x and z and one along y");
             }
             count_[axis] = static_cast<std::size_t>(high - low) + 1;
             nodes *= high - low + 1;
         }
-        if (nodes > static_cast<double>(most_grid_nodes)) {
-            file_.refuse(image_, "the grid has " + to_text(nodes) + " nodes: expected at most 2^27");
+        if (nodes > static_cast<double>(max_grid_nodes)) {
+            file_.fail(image_, "the grid has " + to_text(nodes) + " nodes: expected at most 2^27");
         }
     }
 
@@ -101,8 +97,8 @@ class VtiReader {
         const auto d = attribute<9>(image_, "Direction", &no_turn);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!(spacing_m_[axis] > 0) && count_[axis] > 1) {
-                file_.refuse(image_, "Spacing is " + to_text(spacing_m_[axis]) + " along " + "xyz"[axis] +
-                                         ": expected more than 0 m");
+                file_.fail(image_, "Spacing is " + to_text(spacing_m_[axis]) + " along " + "xyz"[axis] +
+                                       ": expected more than 0 m");
             }
         }
         constexpr double slack = 1e-6;
@@ -111,8 +107,8 @@ class VtiReader {
                                    std::abs(d[0] - d[4]) <= slack && std::abs(d[1] + d[3]) <= slack &&
                                    std::abs(d[0] * d[0] + d[3] * d[3] - 1) <= slack;
         if (!turns_about_z) {
-            file_.refuse(image_, "Direction=\"" + excerpt(image_.attribute("Direction").value()) +
-                                     "\": expected a rotation about the vertical, c -s 0 s c 0 0 0 1");
+            file_.fail(image_, "Direction=\"" + excerpt(image_.attribute("Direction").value()) +
+                                   "\": expected a rotation about the vertical, c -s 0 s c 0 0 0 1");
         }
         const Numbers<3> steps_m{extent_[0] * spacing_m_[0], extent_[2] * spacing_m_[1], extent_[4] * spacing_m_[2]};
         const Vector3 first_m{origin_m[0] + d[0] * steps_m[0] + d[1] * steps_m[1],
@@ -132,7 +128,7 @@ class VtiReader {
         if (const pugi::xml_node array = find(field_data, "lateral_offsets_m")) {
             const double tuples = attribute<1>(array, "NumberOfTuples")[0];
             if (!(tuples >= 1 && tuples <= 4096 && tuples == std::floor(tuples))) {
-                file_.refuse(array, "NumberOfTuples is " + to_text(tuples) + ": expected 1 to 4096 lateral offsets");
+                file_.fail(array, "NumberOfTuples is " + to_text(tuples) + ": expected 1 to 4096 lateral offsets");
             }
             parts_.lateral_offsets_m = file_.numbers(array, static_cast<std::size_t>(tuples));
         }
@@ -197,8 +193,8 @@ class VtiReader {
     std::vector<double> layers_of(const std::string& stem, bool is_needed) {
         const std::size_t layer_nodes = count_[0] * count_[1] * count_[2];
         const std::size_t layers = std::max<std::size_t>(1, parts_.lateral_offsets_m.size());
-        if (layers * layer_nodes > most_grid_nodes) {
-            file_.refuse(image_, "the grid has more than 2^27 nodes in its " + std::to_string(layers) + " layers");
+        if (layers * layer_nodes > max_grid_nodes) {
+            file_.fail(image_, "the grid has more than 2^27 nodes in its " + std::to_string(layers) + " layers");
         }
         std::vector<double> values;
         for (std::size_t layer = 0; layer < layers; ++layer) {
@@ -208,7 +204,7 @@ class VtiReader {
                 if (!is_needed && layer == 0) {
                     return {};
                 }
-                refuse_missing(name);
+                fail_missing(name);
             }
             const std::vector<double> layer_values = file_.numbers(array, layer_nodes);
             values.insert(values.end(), layer_values.begin(), layer_values.end());
@@ -222,11 +218,11 @@ class VtiReader {
         return found == arrays.end() ? pugi::xml_node() : found->second;
     }
 
-    [[noreturn]] void refuse_missing(const std::string& name) const {
+    [[noreturn]] void fail_missing(const std::string& name) const {
         if (find(file_.arrays_in(piece_.child("CellData")), name)) {
-            file_.refuse(piece_, "'" + excerpt(name) +
-                                     "' is CellData: expected PointData (ParaView's filter Cell Data to Point Data "
-                                     "makes it so)");
+            file_.fail(piece_, "'" + excerpt(name) +
+                                   "' is CellData: expected PointData (ParaView's filter Cell Data to Point Data "
+                                   "makes it so)");
         }
         std::string present;
         for (const auto& [other, array] : point_data_) {
@@ -234,8 +230,8 @@ class VtiReader {
                 present += (present.empty() ? "" : ", ") + excerpt(other);
             }
         }
-        file_.refuse(piece_, "PointData holds no array '" + excerpt(name) + "'; it holds " +
-                                 (present.empty() ? "none" : present));
+        file_.fail(piece_, "PointData holds no array '" + excerpt(name) + "'; it holds " +
+                               (present.empty() ? "none" : present));
     }
 
     const VtkFile& file_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "downwash/base/base64.hpp"
+#include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -17,17 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little || std::endian::native == std::endian::big);
 
 /// zlib cannot shrink anything more than this.
-constexpr std::size_t greatest_ratio = 1040;
-
-template <class Number>
-Number number_at(const char* bytes, bool is_big_endian) {
-    std::array<char, sizeof(Number)> own;
-    std::copy_n(bytes, own.size(), own.begin());
-    if (is_big_endian != (std::endian::native == std::endian::big)) {
-        std::reverse(own.begin(), own.end());
-    }
-    return std::bit_cast<Number>(own);
-}
+constexpr std::size_t max_ratio = 1040;
 
 template <class Number>
 double as_double(const char* bytes, bool is_big_endian) {
@@ -87,18 +78,18 @@ std::size_t word_at(std::string_view header, std::size_t index, const VtkEncodin
                                       : number_at<std::uint32_t>(word, encoding.is_big_endian);
 }
 
-void require_size(std::size_t size, std::size_t least, std::size_t most) {
-    if (size < least || size > most) {
-        const std::string expected = least == most ? std::to_string(most) : "at most " + std::to_string(most);
+void require_size(std::size_t size, std::size_t min, std::size_t max) {
+    if (size < min || size > max) {
+        const std::string expected = min == max ? std::to_string(max) : "at most " + std::to_string(max);
         throw VtkDataError("announces " + std::to_string(size) + " bytes: expected " + expected +
                            "; is the byte_order or header_type wrong?");
     }
 }
 
 /// One count of bytes, then the bytes; base64 runs through both.
-std::string plain_bytes(Source& source, const VtkEncoding& encoding, std::size_t least, std::size_t most) {
+std::string plain_bytes(Source& source, const VtkEncoding& encoding, std::size_t min, std::size_t max) {
     const std::size_t size = word_at(source.peek(encoding.header_bytes), 0, encoding);
-    require_size(size, least, most);
+    require_size(size, min, max);
     return source.take(encoding.header_bytes + size).erase(0, encoding.header_bytes);
 }
 
@@ -122,18 +113,18 @@ struct BlockSizes {
     }
 };
 
-BlockSizes take_block_sizes(Source& source, const VtkEncoding& encoding, std::size_t least, std::size_t most) {
+BlockSizes take_block_sizes(Source& source, const VtkEncoding& encoding, std::size_t min, std::size_t max) {
     constexpr std::size_t fixed_words = 3;
-    constexpr std::size_t largest_block = UINT32_MAX;
+    constexpr std::size_t max_block = UINT32_MAX;
     const std::string head = source.peek(fixed_words * encoding.header_bytes);
     const std::size_t count = word_at(head, 0, encoding);
     BlockSizes sizes{word_at(head, 1, encoding), word_at(head, 2, encoding), {}};
-    if (count > source.size() / encoding.header_bytes || sizes.block > largest_block || sizes.last > sizes.block) {
+    if (count > source.size() / encoding.header_bytes || sizes.block > max_block || sizes.last > sizes.block) {
         throw VtkDataError("announces " + std::to_string(count) + " blocks of " + std::to_string(sizes.block) +
                            " bytes and a last one of " + std::to_string(sizes.last) +
                            "; is the byte_order or header_type wrong?");
     }
-    require_size(count * sizes.block - (sizes.last == 0 || count == 0 ? 0 : sizes.block - sizes.last), least, most);
+    require_size(count * sizes.block - (sizes.last == 0 || count == 0 ? 0 : sizes.block - sizes.last), min, max);
     const std::string words = source.take((fixed_words + count) * encoding.header_bytes);
     for (std::size_t block = 0; block < count; ++block) {
         sizes.compressed.push_back(word_at(words, fixed_words + block, encoding));
@@ -142,8 +133,8 @@ BlockSizes take_block_sizes(Source& source, const VtkEncoding& encoding, std::si
 }
 
 /// The sizes, then the blocks, in base64 each for itself.
-std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::size_t least, std::size_t most) {
-    const BlockSizes sizes = take_block_sizes(source, encoding, least, most);
+std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::size_t min, std::size_t max) {
+    const BlockSizes sizes = take_block_sizes(source, encoding, min, max);
     std::size_t size = 0;
     std::size_t compressed_size = 0;
     for (std::size_t block = 0; block < sizes.compressed.size(); ++block) {
@@ -155,7 +146,7 @@ std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::siz
         compressed_size += sizes.compressed[block];
         size += sizes.of(block);
     }
-    if (size / greatest_ratio > compressed_size) {
+    if (size / max_ratio > compressed_size) {
         throw VtkDataError("announces " + std::to_string(size) + " bytes out of " + std::to_string(compressed_size) +
                            " compressed ones: more than zlib can");
     }
@@ -172,10 +163,6 @@ std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::siz
     return bytes;
 }
 
-bool is_blank(char c) {
-    return c == ' ' || c == '\n' || c == '\t' || c == '\r';
-}
-
 }  // namespace
 
 const VtkNumberType* find_vtk_number_type(std::string_view name) {
@@ -184,12 +171,12 @@ const VtkNumberType* find_vtk_number_type(std::string_view name) {
     return found == number_types.end() ? nullptr : found;
 }
 
-std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& encoding, std::size_t least,
-                      std::size_t most) {
+std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& encoding, std::size_t min,
+                      std::size_t max) {
     Source source(data, is_base64);
-    std::string bytes = encoding.is_compressed ? inflated_bytes(source, encoding, least, most)
-                                               : plain_bytes(source, encoding, least, most);
-    if (!std::all_of(source.rest().begin(), source.rest().end(), is_blank)) {
+    std::string bytes =
+        encoding.is_compressed ? inflated_bytes(source, encoding, min, max) : plain_bytes(source, encoding, min, max);
+    if (!trimmed(source.rest()).empty()) {
         throw VtkDataError("goes on for " + std::to_string(source.rest().size()) +
                            " bytes behind its end; is the header_type wrong?");
     }
@@ -203,25 +190,17 @@ std::vector<double> vtk_ascii_numbers(std::string_view text, std::size_t count) 
     }
     std::vector<double> numbers;
     numbers.reserve(count);
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    while (true) {
-        at = std::find_if_not(at, end, is_blank);
-        if (at == end) {
-            break;
-        }
-        const char* word_end = std::find_if(at, end, is_blank);
+    for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
         double value = 0;
-        const auto [parsed, error] = std::from_chars(at, word_end, value);
-        if (error != std::errc() || parsed != word_end) {
-            throw VtkDataError("number " + std::to_string(numbers.size() + 1) + " is '" +
-                               excerpt({at, static_cast<std::size_t>(word_end - at)}) + "': expected a number");
+        const auto [parsed, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || parsed != word.data() + word.size()) {
+            throw VtkDataError("number " + std::to_string(numbers.size() + 1) + " is '" + excerpt(word) +
+                               "': expected a number");
         }
         if (numbers.size() == count) {
             throw VtkDataError("holds more than " + std::to_string(count) + " numbers");
         }
         numbers.push_back(value);
-        at = word_end;
     }
     if (numbers.size() != count) {
         throw VtkDataError("holds " + std::to_string(numbers.size()) + " numbers: expected " + std::to_string(count));

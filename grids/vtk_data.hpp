@@ -36,10 +36,11 @@ struct VtkNumberType {
 
 /// The bytes of an array behind its header, uncompressed.
 /// @param data of the array alone; blanks may follow
-/// @param least, most how many bytes the array may have; nothing is allocated before the header was checked for that
+/// @param min_bytes, max_bytes how many bytes the array may have; nothing is allocated before the header was checked
+/// for that
 /// @throws VtkDataError when they are others, or `data` ends before or later
 [[nodiscard]] std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& encoding,
-                                    std::size_t least, std::size_t most);
+                                    std::size_t min_bytes, std::size_t max_bytes);
 
 /// Numbers apart from each other by blanks.
 /// @throws VtkDataError when there are not exactly so many

@@ -25,9 +25,9 @@ class VtkFile {
     [[nodiscard]] pugi::xml_node root() const { return root_; }
 
     /// @throws InputError with the place of a node
-    [[noreturn]] void refuse(pugi::xml_node node, const std::string& message) const;
+    [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
     /// @throws InputError with the name of the file
-    [[noreturn]] void refuse_whole(const std::string& message) const;
+    [[noreturn]] void fail_whole(const std::string& message) const;
 
     /// The arrays below a node by name.
     using Arrays = std::map<std::string_view, pugi::xml_node>;
@@ -43,14 +43,16 @@ class VtkFile {
     [[nodiscard]] static std::string title(pugi::xml_node array);
 
  private:
+    template <class Read>
+    auto located(pugi::xml_node array, const Read& read) const;
     void cut_out_data();
     void read_encoding();
     [[nodiscard]] int one_of(const char* attribute, const std::array<std::string_view, 2>& values,
                              const char* otherwise) const;
     [[nodiscard]] bool is_ascii(pugi::xml_node array) const;
-    [[nodiscard]] std::string bytes_of(pugi::xml_node array, std::size_t least, std::size_t most) const;
-    [[nodiscard]] std::string appended_bytes(pugi::xml_node array, std::size_t least, std::size_t most) const;
-    [[noreturn]] void refuse_at(std::ptrdiff_t offset, const std::string& message) const;
+    [[nodiscard]] std::string bytes_of(pugi::xml_node array, std::size_t min_bytes, std::size_t max_bytes) const;
+    [[nodiscard]] std::string appended_bytes(pugi::xml_node array, std::size_t min_bytes, std::size_t max_bytes) const;
+    [[noreturn]] void fail_at(std::ptrdiff_t offset, const std::string& message) const;
 
     std::string_view bytes_;
     std::string name_;

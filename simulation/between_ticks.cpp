@@ -15,7 +15,7 @@ PlanarPose between(const PlanarPose& from, const PlanarPose& to, double share) {
 }
 
 /// @param unseen_m the motion between both poses
-double least_clearance_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
+double min_clearance_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
                          double to_m, double unseen_m) {
     constexpr double least_motion_m = 0.001;
     if (from_m + to_m >= unseen_m || unseen_m <= least_motion_m) {
@@ -26,8 +26,8 @@ double least_clearance_m(const FlightModel& model, const PlanarPose& from, doubl
     if (middle_m <= 0) {
         return middle_m;
     }
-    const double first_m = least_clearance_m(model, from, from_m, middle, middle_m, 0.5 * unseen_m);
-    return first_m <= 0 ? first_m : least_clearance_m(model, middle, middle_m, to, to_m, 0.5 * unseen_m);
+    const double first_m = min_clearance_m(model, from, from_m, middle, middle_m, 0.5 * unseen_m);
+    return first_m <= 0 ? first_m : min_clearance_m(model, middle, middle_m, to, to_m, 0.5 * unseen_m);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ bool comes_nearer_between(const FlightModel& model, const PlanarPose& from, cons
 
 double least_clearance_between_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
                                  double to_m) {
-    return least_clearance_m(model, from, from_m, to, to_m, motion_m(model, from, to));
+    return min_clearance_m(model, from, from_m, to, to_m, motion_m(model, from, to));
 }
 
 }  // namespace downwash::simulation

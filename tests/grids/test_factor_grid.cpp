@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/base/key_error.hpp"
+#include "../support/error_of.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "grids.hpp"
 
@@ -15,12 +15,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string error_of(const FactorGridParts& parts) {
-    try {
-        const FactorGrid grid(parts);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::error_of([&] { return FactorGrid(parts); });
 }
 
 }  // namespace

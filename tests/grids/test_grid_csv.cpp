@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "../support/error_of.hpp"
 #include "../support/scratch_folder.hpp"
 #include "downwash/base/files.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "grids.hpp"
 
@@ -12,12 +12,7 @@ using namespace downwash;
 namespace {
 
 std::string error_of(const std::string& text) {
-    try {
-        static_cast<void>(parse_factor_grid(text, "g.csv"));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::error_of([&] { return parse_factor_grid(text, "g.csv"); });
 }
 
 }  // namespace
@@ -95,7 +90,7 @@ TEST_CASE("every error of a CSV grid is told with its line") {
          "g.csv:1:1: expected lateral_m (layers beside the plane) or y_m (a volume), not both"},
         {head + "0,0,1\n1,0,nan\n0,one,1\n1,1e7,-1\n",
          "g.csv:3:5: factor is 'nan': expected a number from 0 to 100\n"
-         "g.csv:4:3: z_m is 'one': expected a number\n"
+         "g.csv:4:3: z_m is 'one': expected a number from -1000000 to 1000000\n"
          "g.csv:5:3: z_m is '1e7': expected a number from -1000000 to 1000000\n"
          "g.csv:5:7: factor is '-1': expected a number from 0 to 100"},
         {head + "0,0\n", "g.csv:2:1: has 2 cells: expected 3 as in the line of column names"},
@@ -153,13 +148,8 @@ TEST_CASE("a file of a byte more than two GiB is refused by its size, whatever i
         const auto file = folder / name;
         write_file(file, "");
         std::filesystem::resize_file(file, 2147483649);  // sparse: it takes no space
-        std::string message = "none";
-        try {
-            static_cast<void>(read_factor_grid(file));
-        } catch (const InputError& error) {
-            message = error.what();
-        }
-        CHECK(message == file.string() + " is larger than 2 GiB: expected a grid of thrust factors");
+        CHECK(test::error_of([&] { return read_factor_grid(file); }) ==
+              file.string() + " is larger than 2048 MiB: expected a smaller file");
     }
 }
 

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/error_of.hpp"
 #include "downwash/base/files.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "grids.hpp"
 
@@ -21,12 +21,7 @@ std::string foreign_text(const std::string& name) {
 }
 
 std::string error_of(const std::string& text) {
-    try {
-        static_cast<void>(parse_factor_grid(text, "g.vti"));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::error_of([&] { return parse_factor_grid(text, "g.vti"); });
 }
 
 /// A text with its first occurrence of `from` replaced.

@@ -29,7 +29,7 @@ inline Vector3 near_shadow_edge(Random& random, const DirectEffect& effect) {
     hub_m[0] += away_m * std::cos(angle);
     hub_m[1] += away_m * std::sin(angle);
     const double far = random.uniform(0, 1);
-    const double gap_m = effect.least_clearance_m() + far * far * radius_m;
+    const double gap_m = effect.min_clearance_m() + far * far * radius_m;
     hub_m[2] = random.integer(0, 1) == 0 ? bounds.low_m[2] - gap_m : bounds.high_m[2] + gap_m;
     return hub_m;
 }
