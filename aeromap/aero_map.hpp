@@ -23,19 +23,21 @@ struct MapExtent {
     double z_low_m = 0, z_high_m = 0;
 };
 
-/// What one layer of a map stores: an effect, along the plane of motion shifted sideways.
+/// One layer of a map: an effect in the plane of motion shifted sideways.
 struct MapLayer {
     std::shared_ptr<const DirectEffect> effect;
     double lateral_m = 0;  ///< to the left of the plane
 };
 
-/// Cells that a map would have, all layers together. A cell is grid_m or a whole part of it, as steep models need.
+/// The number of cells that a map would have, all layers together. A cell is grid_m wide, or a whole fraction of it for
+/// steep models.
 [[nodiscard]] DOWNWASH_EXPORT double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent);
 
-/// The most cells a map may have: 2^24, some hundred megabytes.
+/// A map has no more cells than this: 2^24, some hundred megabytes.
 inline constexpr double max_map_cells = 16777216;
 
-/// K stored over rotor positions in the plane of motion, one layer for all rotors that share lateral offset and effect.
+/// K stored over rotor positions in the plane of motion, with one layer for all rotors that share lateral offset and
+/// effect.
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
 /// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
@@ -49,17 +51,17 @@ class DOWNWASH_EXPORT AeroMap {
  public:
     /// Builds every layer. The bytes do not depend on the number of threads.
     /// @param threads at least 1
-    /// @param on_progress called now and then with the share that is built, from the calling thread
-    /// @throws InputError when the extent is empty or not finite, grid_m or an offset is out of range, or when the map
-    /// would have too many cells
+    /// @param on_progress called from the calling thread with the share that is built
+    /// @throws InputError if the extent is empty or not finite, grid_m or an offset is out of range, or the map would
+    /// have too many cells
     AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads = 1,
             const std::function<void(double)>& on_progress = {});
 
-    /// What the map stores, as bytes that only a machine of the same byte order understands.
+    /// The content of the map as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
 
-    /// The map again, to the last bit, without building it. Empty when the bytes are not such a map of these layers, or
-    /// when some of its values are not what the effects give today.
+    /// The map from its bytes, equal to the last bit. Empty if the bytes are not a map of these layers, or if some of
+    /// its values differ from what the effects give today.
     [[nodiscard]] static std::optional<AeroMap> from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
                                                            const MapExtent& extent, std::string_view bytes);
 
@@ -95,20 +97,20 @@ class DOWNWASH_EXPORT AeroMap {
         return bilinear(corner, s, t);
     }
 
-    /// Whether two layers hold the same values, as those of the left and the right rotors of a vehicle that flies along
-    /// the middle of a scene do. Look-ups inside the extent then agree to the last bit.
+    /// Whether two layers have the same values, such as those of the left and right rotors of a vehicle that flies
+    /// along the middle of a scene. Look-ups inside the extent then agree to the last bit.
     [[nodiscard]] bool are_equal(std::size_t layer, std::size_t other) const noexcept {
         return rasters_[layer] == rasters_[other];
     }
 
-    /// Valid as long as the map.
+    /// Valid while the map exists.
     [[nodiscard]] MapView view(std::size_t layer) const noexcept {
         const Raster& raster = *rasters_[layer];
         return {extent_.x_low_m,     extent_.z_low_m,          cells_per_m_,       columns_, rows_,
                 raster.cells.data(), raster.flyability.data(), raster.nodes.data()};
     }
 
-    /// Whether a rotor hub there is inside the flyable area; exact (decided by the cell where the whole cell agrees).
+    /// Whether a rotor hub is inside the flyable area. Exact; the cell decides if it agrees as a whole.
     [[nodiscard]] bool is_flyable(std::size_t layer, double x_m, double z_m) const;
 
  private:
@@ -121,7 +123,7 @@ class DOWNWASH_EXPORT AeroMap {
         void append(const CellRows& rows);
     };
 
-    /// A map that holds nothing yet.
+    /// A map without values.
     struct Empty {};
     AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent);
 

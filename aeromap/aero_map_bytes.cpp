@@ -130,8 +130,8 @@ bool AeroMap::is_sound(const Raster& raster) const {
            static_cast<std::size_t>(factors) == raster.nodes.size();
 }
 
-/// Evaluates K anew at the lower corners of some cells where surfaces are felt and nothing was interpolated. Whoever
-/// improves the models or the integration without a new map_format_version is found out here.
+/// Evaluates K again at the lower corners of some cells where surfaces have an effect and nothing was interpolated.
+/// This notices changes of models or integration without a new map_format_version.
 bool AeroMap::agrees_with_effect(std::size_t layer) const {
     constexpr std::size_t samples = 64;
     const auto& [cells, flyability, nodes] = *rasters_[layer];

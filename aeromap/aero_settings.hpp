@@ -15,11 +15,11 @@ struct AeroSettings {
     bool enabled = true;                                   ///< false: K = 1 everywhere
     SurfaceEffect ground{EffectModel::cheeseman_bennett};  ///< surfaces below a rotor
     SurfaceEffect ceiling{EffectModel::sanchez_cuevas};    ///< surfaces above a rotor
-    std::optional<std::string> map_file;                   ///< where `map` comes from
-    std::shared_ptr<const FactorGrid> map;                 ///< K as given, in place of both models; empty: none
+    std::optional<std::string> map_file;                   ///< the file of `map`
+    std::shared_ptr<const FactorGrid> map;                 ///< K given as a grid, in place of both models; empty: none
     double max_factor = 2.0;                               ///< cap of each side and of their superposition, >= 1
-    double min_distance_radii = 0.3;                       ///< flyable area: least distance of the disc, in radii
-    double grid_m = 0.05;                                  ///< cell size of the map; cells refine themselves
+    double min_distance_radii = 0.3;                       ///< flyable area: minimum distance of the disc, in radii
+    double grid_m = 0.05;                                  ///< cell size of the map, which refines its cells
 };
 
 }  // namespace downwash

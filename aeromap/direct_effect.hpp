@@ -12,13 +12,13 @@ namespace downwash {
 class CurveMean;
 class Footprints;
 
-/// The exact surface effect on one rotor at any point of the world: the reference that a map interpolates and that the
-/// flight of a reported plan is flown with. The disc is level and rays are vertical (docs/model.md 4.1). Immutable.
+/// The exact surface effect on one rotor at any point of the world. Maps interpolate it, and executed flights evaluate
+/// it. The disc is level and rays are vertical (docs/model.md 4.1). Immutable.
 class DOWNWASH_EXPORT DirectEffect {
  public:
     /// The effect on a rotor.
     /// @param rotor_radius_m R > 0   @param neighbours the vehicle's other rotors, for the multirotor models
-    /// @throws InputError when a setting or the radius is out of its range
+    /// @throws InputError if a setting or the radius is out of range
     DirectEffect(std::shared_ptr<const Scene> scene, const AeroSettings& settings, double rotor_radius_m,
                  const RotorNeighbours& neighbours = {});
 
@@ -44,7 +44,7 @@ class DOWNWASH_EXPORT DirectEffect {
     /// max_factor of 10.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
-    /// K, the factor on the commanded free-air thrust.
+    /// The thrust ratio K on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
     /// Whether the level disc keeps min_distance_radii * R from every obstacle (docs/model.md 4.4), and a given map
@@ -59,7 +59,7 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] double disc_radius_m() const noexcept { return disc_radius_m_; }
     /// Least distance of the disc from every obstacle in the flyable area; negative: everything is flyable.
     [[nodiscard]] double min_clearance_m() const noexcept { return min_clearance_m_; }
-    /// K of wide flat surfaces below and above; without meaning when the settings bring a map.
+    /// K of wide flat surfaces below and above; not used if the settings contain a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
 

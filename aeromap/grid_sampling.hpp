@@ -8,11 +8,11 @@
 
 namespace downwash {
 
-/// Where a grid is sampled. The spacing is rounded down so that the last node stands on the upper end.
+/// Where a grid is sampled. The spacing is rounded down so that the last node is at the upper end.
 struct GridSampling {
     PlaneOfMotion plane;
     MapExtent extent;
-    double step_m = 0;  ///< most distance between neighbouring nodes, > 0
+    double step_m = 0;  ///< maximum distance between neighbouring nodes, > 0
     int threads = 1;
     std::function<void(double)> on_progress;  ///< see run_parallel
 };
@@ -20,7 +20,7 @@ struct GridSampling {
 /// K, its two one-sided factors and the flyable area, evaluated directly at the nodes of a planar grid with one layer
 /// per lateral offset.
 /// @param layers of distinct lateral offsets, in any order
-/// @throws InputError when the extent is empty, two layers share an offset, or the grid would have too many nodes
+/// @throws InputError if the extent is empty, two layers share an offset, or the grid would have too many nodes
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampling,
                                                        const Provenance& provenance = {});
 
@@ -29,7 +29,7 @@ struct GridSampling {
                                                        double lateral_high_m, const GridSampling& sampling,
                                                        const Provenance& provenance = {});
 
-/// What made the effect: models with parameters and sources, radius and the rest of the settings.
+/// Where the effect comes from: models with parameters and sources, radius and the other settings.
 [[nodiscard]] DOWNWASH_EXPORT Provenance provenance_of(const DirectEffect& effect);
 
 }  // namespace downwash

@@ -11,7 +11,7 @@
 
 namespace downwash {
 
-/// Raised when maps of the same key would hold other values, or hold them otherwise.
+/// Incremented if maps of the same key get other values or another layout.
 inline constexpr int map_format_version = 8;
 
 /// A digest of everything that makes a map: scene, plane, extent, layers, models with their parameters and tables,
@@ -19,19 +19,19 @@ inline constexpr int map_format_version = 8;
 [[nodiscard]] DOWNWASH_EXPORT std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
                                                   const MapExtent& extent);
 
-/// Aero maps in a folder, kept from one run to the next. At most 32 files and 1 GB: what was not used for longest
-/// goes first. Nothing here throws: a file that is damaged, foreign or of another version is not found, a folder that
+/// Keeps aero maps in a folder from one run to the next: at most 32 files and 1 GB, removing the least recently used
+/// first. Nothing here throws: a file that is damaged, foreign or of another version is not found, and a folder that
 /// cannot be written keeps nothing. Programs may share a folder.
 class DOWNWASH_EXPORT MapCache {
  public:
-    /// @param folder made when a map is to be kept
+    /// @param folder created with the first map
     explicit MapCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// The map of these layers, to the last bit as it was built; nullptr when it is not there.
+    /// The map of these layers, to the last bit as it was built; nullptr if it is not there.
     [[nodiscard]] std::shared_ptr<const AeroMap> find(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
                                                       const MapExtent& extent) const noexcept;
 
-    /// Keeps a map. False when that is not possible.
+    /// Keeps a map; false if that is not possible.
     bool keep(const AeroMap& map) const noexcept;
 
  private:

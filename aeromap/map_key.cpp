@@ -66,9 +66,9 @@ void add_shape(Description& description, const Octomap& octomap) {
 
 void add_scene(Description& description, const Scene& scene) {
     description.add("scene");
-    for (const auto& [name, shape, center_m, rpy_rad] : scene.obstacles()) {
+    for (const auto& [name, shape, center_world_m, rpy_rad] : scene.obstacles()) {
         std::visit([&description](const auto& of_its_kind) { add_shape(description, of_its_kind); }, shape);
-        description.add_all(center_m).add_all(rpy_rad);
+        description.add_all(center_world_m).add_all(rpy_rad);
     }
 }
 

@@ -16,8 +16,8 @@ struct MapCell {
     std::uint16_t steps_z;  ///< intervals along z, a power of two
 };
 
-/// A layer of an AeroMap as plain arrays, for code that follows flights through it. What kernels for wide instructions
-/// call here is always inlined: no copy of it that only some processors understand must reach the linker.
+/// A layer of an AeroMap as plain arrays, for code that follows flights through it. Functions that kernels for wide
+/// instructions call are always inlined, so that no copy that only some processors can run reaches the linker.
 struct MapView {
     double x_low_m, z_low_m, cells_per_m;
     std::uint32_t columns, rows;
@@ -25,14 +25,14 @@ struct MapView {
     const CellFlyability* flyability;  ///< of each cell
     const float* nodes;                ///< K, x running fastest within a cell
 
-    /// Whether a place, in cells from the lower corner, has a cell. Written so that NaN has none.
+    /// Whether a place, in cells from the lower corner, has a cell; false for NaN.
     [[nodiscard, gnu::always_inline]] bool contains(double u, double w) const noexcept {
         return u >= 0 && w >= 0 && u < columns && w < rows;
     }
 };
 
-/// One interval of a cell's grid, between four neighbouring values: K is bilinear there. A flight stays in one for
-/// several ticks, so that it need not look up the next value from the beginning.
+/// One interval of a cell's grid, between four neighbouring values, where K is bilinear. A flight stays in one for
+/// several ticks and saves the look-up.
 struct MapPatch {
     double u, w;                ///< its lower corner, in cells from that of the layer
     double steps_x, steps_z;    ///< patches per cell
@@ -40,7 +40,7 @@ struct MapPatch {
     CellFlyability flyability;  ///< of the cell
 };
 
-/// A patch that no place is in.
+/// A patch without any place in it.
 inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, CellFlyability::mixed};
 
 /// Whether a share of a patch, (place - corner) * steps, lies in it. Exact: the share of a place in the patch is, and

@@ -15,7 +15,7 @@
 
 namespace downwash {
 
-/// The most boxes that a volume may consist of: 2^23, about a gigabyte.
+/// A volume has no more boxes than this: 2^23, about a gigabyte.
 inline constexpr std::size_t max_volume_boxes = 8388608;
 
 /// K stored over a block of rotor positions in three dimensions, for vehicles that leave one plane.
@@ -33,7 +33,7 @@ class DOWNWASH_EXPORT VolumeMap {
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
     /// left
     /// @param threads at least 1; the bytes do not depend on it   @param on_progress see run_parallel
-    /// @throws InputError when the block is empty or not finite, or needs more than max_volume_boxes
+    /// @throws InputError if the block is empty or not finite, or needs more than max_volume_boxes
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const MapExtent& extent,
               double lateral_low_m, double lateral_high_m, int threads = 1,
               const std::function<void(double)>& on_progress = {});
@@ -42,7 +42,7 @@ class DOWNWASH_EXPORT VolumeMap {
     [[nodiscard]] double factor(const Vector3& hub_m) const;
 
     [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
-    /// How many different ones. Boxes of equal values share theirs, as along a deck most do.
+    /// The number of different polynomials. Boxes of equal values share theirs, as most do along a deck.
     [[nodiscard]] std::size_t polynomials() const noexcept { return polynomials_.size() - 1; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 

@@ -16,7 +16,7 @@ namespace downwash {
 /// another letter, padding before the end, bits set in what the padding leaves over, 2 GiB or more.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> base64_bytes(std::string_view text);
 
-/// Letters that stand for so many bytes.
+/// Letters of the text of so many bytes.
 [[nodiscard]] constexpr std::size_t base64_letters(std::size_t bytes) noexcept {
     return (bytes + 2) / 3 * 4;
 }

@@ -1,4 +1,4 @@
 #pragma once
 
-/// Marks what a shared library of downwash offers to its users; everything else stays hidden inside.
+/// Marks what a shared library of Downwash exports; all other symbols are hidden.
 #define DOWNWASH_EXPORT __attribute__((visibility("default")))

@@ -10,17 +10,17 @@
 
 namespace downwash {
 
-/// Errors of one text file, each with its place; reading ends with the twentieth.
+/// Collects the errors of one text file with their places. Reading ends at the twentieth.
 class DOWNWASH_EXPORT LineErrors {
  public:
     /// @param file its name in messages
     explicit LineErrors(std::string file) : file_(std::move(file)) {}
 
-    /// In a line, counted from 1; 0 stands for the file as a whole. @throws InputError with the twentieth
+    /// @param line from 1; 0 means the whole file  @throws InputError with the twentieth error
     void add(std::size_t line, const std::string& message);
-    /// At a column, counted from 1 in bytes of the line. @throws InputError with the twentieth
+    /// @param column from 1, in bytes of the line  @throws InputError with the twentieth error
     void add(std::size_t line, std::size_t column, const std::string& message);
-    /// @throws InputError when there are any
+    /// @throws InputError if there are errors
     void throw_any() const;
 
  private:

@@ -13,10 +13,10 @@
 
 namespace downwash {
 
-/// Does task(0), task(1), ... task(count - 1) on some threads, in any order, and waits for all; rethrows what a task
-/// threw.
+/// Runs task(0), task(1), ... task(count - 1) on some threads, in any order, and waits for all of them. Rethrows what a
+/// task throws.
 /// @param threads at least 1, the calling one included
-/// @param on_progress called now and then with the share that is begun, from the calling thread
+/// @param on_progress called from the calling thread with the share of tasks that have begun
 template <class Task>
 void run_parallel(std::size_t count, int threads, const Task& task,
                   const std::function<void(double)>& on_progress = {}) {
@@ -49,46 +49,45 @@ void run_parallel(std::size_t count, int threads, const Task& task,
     }
 }
 
-/// Work that is done piece by piece: does the next piece, or says that there is none left. Works on nothing that
-/// another strand works on.
-using Strand = std::function<bool()>;
+/// A task that runs in steps: runs the next step; false if that was the last one. Tasks share no data.
+using SteppedTask = std::function<bool()>;
 
-/// Works on some strands side by side until none has a piece left: the pieces of one strand one after the other, those
-/// of different strands on any threads. A thread that is free takes the strand that has had the least time, so that
-/// strands of the same length end together. Rethrows what a piece threw.
+/// Runs some tasks to their ends side by side: the steps of one task one after the other, those of different tasks on
+/// any threads. A free thread takes the task that has had the least time, so that tasks of the same length end
+/// together. Rethrows what a step throws.
 /// @param threads at least 1, the calling one included
-inline void run_side_by_side(std::span<const Strand> strands, int threads) {
+inline void run_side_by_side(std::span<const SteppedTask> tasks, int threads) {
     using Clock = std::chrono::steady_clock;
     struct Turn {
         Clock::duration spent{};
-        bool is_taken = false;  ///< by a thread, or for good: it is at its end
+        bool is_taken = false;  ///< by a thread, or for good because the task has ended
     };
-    std::vector<Turn> turns(strands.size());
+    std::vector<Turn> turns(tasks.size());
     std::mutex mutex;
     const auto work = [&](std::size_t) {
         for (;;) {
-            std::size_t mine = strands.size();
+            std::size_t mine = tasks.size();
             {
                 const std::scoped_lock lock(mutex);
                 for (std::size_t i = 0; i < turns.size(); ++i) {
-                    if (!turns[i].is_taken && (mine == strands.size() || turns[i].spent < turns[mine].spent)) {
+                    if (!turns[i].is_taken && (mine == tasks.size() || turns[i].spent < turns[mine].spent)) {
                         mine = i;
                     }
                 }
-                if (mine == strands.size()) {
-                    return;  // whoever has one of the others goes on with it to its end
+                if (mine == tasks.size()) {
+                    return;  // the threads that have the others run them to their ends
                 }
                 turns[mine].is_taken = true;
             }
             const Clock::time_point began = Clock::now();
-            const bool goes_on = strands[mine]();
+            const bool goes_on = tasks[mine]();
             const Clock::time_point ended = Clock::now();
             const std::scoped_lock lock(mutex);
             turns[mine].spent += ended - began;
             turns[mine].is_taken = !goes_on;
         }
     };
-    const int workers = std::min(threads, static_cast<int>(strands.size()));
+    const int workers = std::min(threads, static_cast<int>(tasks.size()));
     run_parallel(static_cast<std::size_t>(workers), workers, work);
 }
 

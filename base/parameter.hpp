@@ -18,10 +18,10 @@ namespace downwash {
 using Value = std::variant<std::monostate, bool, double, std::uint64_t, std::string, std::vector<double>,
                            std::vector<Vector3>, std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// What is written behind a key of a problem file.
+/// The kind of value that a key of a problem file has.
 enum class ParameterKind {
     group,       ///< further keys
-    list,        ///< a list of groups; their keys stand in the table below "path[]"
+    list,        ///< a list of groups; the table has their keys below "path[]"
     number,      ///< a finite number
     integer,     ///< a whole number, not negative
     flag,        ///< true or false
@@ -31,25 +31,25 @@ enum class ParameterKind {
     numbers,     ///< a list of as many numbers as `elements`
     points,      ///< a list of [x, y, z]
     file,        ///< path of a file whose content belongs to the model, relative to the file that names it
-    samples,     ///< a list of numbers, as many as one likes
+    samples,     ///< a list of any number of numbers
     choices,     ///< a list of some of `names`
     files,       ///< a list of paths, relative to the file that names them
 };
 
-/// Values that make sense, in the unit of the file (degrees where the key says so). Empty: no limit.
+/// The allowed values, in the unit of the file (degrees if the key says so). Empty: no limit.
 struct Range {
     std::optional<double> low, high;
     bool excludes_low = false;
     bool excludes_high = false;
 };
 
-/// All that can be said of a parameter without touching its value: what --help, documentation and schemas are made of.
+/// The description of a parameter without access to its value: --help, documentation and schemas come from it.
 struct ParameterInfo {
     std::string path;  ///< "start.x_m" or "environment.obstacles[].name"
     ParameterKind kind = ParameterKind::group;
     std::string description;
     bool required = false;
-    bool nullable = false;         ///< `null` may be written: the value is not set
+    bool nullable = false;         ///< `null` is allowed: the value is not set
     bool exclusive = false;        ///< exactly one of the exclusive keys of a group must be there
     bool can_be_none = false;      ///< a group that `none` switches off
     bool can_be_file = false;      ///< a group that may be the path of a file instead
@@ -59,7 +59,7 @@ struct ParameterInfo {
     Range range;
     std::vector<std::string_view> names;     ///< of a choice, or of choices
     std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
-    std::string condition;                   ///< when it applies, for people; empty: always
+    std::string condition;                   ///< says in words when the parameter applies; empty: always
 };
 
 /// Last part of a key path: "x_m" of "start.x_m".
@@ -80,10 +80,10 @@ struct ParameterInfo {
 /// Whether the file holds degrees where the code holds radians.
 [[nodiscard]] DOWNWASH_EXPORT bool is_in_degrees(std::string_view path);
 
-/// What is expected, for people: "a number in m, above 0" or "one of mp-arm, mp-arm-da or mp-arm-ada".
+/// The expected value in words: "a number in m, above 0" or "one of mp-arm, mp-arm-da or mp-arm-ada".
 [[nodiscard]] DOWNWASH_EXPORT std::string expectation(const ParameterInfo& info);
 
-/// What is wrong with a value of the right type: not finite, out of range, not one of the names. Empty when it is fine.
+/// What is wrong with a value of the right type: not finite, out of range, not one of the names. Empty if it is valid.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> value_error(const ParameterInfo& info, const Value& value);
 
 /// The choice that a misspelt name most likely stands for, as a remedy: "; did you mean 'energy'?". May be empty.
@@ -101,15 +101,15 @@ struct Parameter : ParameterInfo {
     std::function<bool(const Model&, std::size_t)> applies;        ///< empty function: always
     std::function<std::string(const Model&, std::size_t)> digest;  ///< of a file: SHA-256 of what was read from it
 
-    /// Values greater than `low` make sense.
+    /// Allows values greater than `low`.
     Parameter above(double low) && { return range.low = low, range.excludes_low = true, std::move(*this); }
-    /// `low` and greater values make sense.
+    /// Allows `low` and greater values.
     Parameter at_least(double low) && { return range.low = low, std::move(*this); }
-    /// Values less than `high` make sense.
+    /// Allows values less than `high`.
     Parameter below(double high) && { return range.high = high, range.excludes_high = true, std::move(*this); }
-    /// `high` and lesser values make sense.
+    /// Allows `high` and lesser values.
     Parameter at_most(double high) && { return range.high = high, std::move(*this); }
-    /// A file must have it.
+    /// Every file must contain the key.
     Parameter is_required() && { return required = true, std::move(*this); }
     /// See ParameterInfo::exclusive.
     Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
@@ -126,7 +126,8 @@ struct Parameter : ParameterInfo {
         resize = [begin = std::move(begin)](Model& model, std::size_t, std::size_t) { begin(model); };
         return std::move(*this);
     }
-    /// Applies only when a test of the model holds, which `when` puts into words: see ParameterInfo::condition.
+    /// The parameter applies only if a test of the model is true. `when` says so in words: see
+    /// ParameterInfo::condition.
     Parameter only(std::string_view when, std::function<bool(const Model&, std::size_t)> test) && {
         return condition = when, applies = std::move(test), std::move(*this);
     }

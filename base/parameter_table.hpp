@@ -15,7 +15,7 @@ namespace downwash {
 template <class Model>
 class ParameterTable {
  public:
-    /// @pre a group stands before the parameters in it
+    /// @pre every group comes before its parameters
     explicit ParameterTable(std::vector<Parameter<Model>> rows) : rows_(std::move(rows)) {
         for (const Parameter<Model>& parameter : rows_) {
             children_[std::string(parent_path(parameter.path))].push_back(&parameter);
@@ -26,7 +26,7 @@ class ParameterTable {
 
     [[nodiscard]] const std::vector<Parameter<Model>>& rows() const noexcept { return rows_; }
 
-    /// The parameters right in a group, in the order of the table. "" is the top, "path[]" the elements of a list.
+    /// The direct members of a group, in the order of the table. "" is the top, "path[]" the elements of a list.
     [[nodiscard]] const std::vector<const Parameter<Model>*>& children(std::string_view path) const {
         static const std::vector<const Parameter<Model>*> none;
         const auto found = children_.find(path);
@@ -48,7 +48,7 @@ class ParameterTable {
     std::map<std::string, std::vector<const Parameter<Model>*>, std::less<>> children_;
 };
 
-/// Calls visit(parameter, key, index) for every value that a model has now; the key has the indices of lists in it.
+/// Calls visit(parameter, key, index) for every value that a model has now. The key contains the indices of lists.
 template <class Model, class Visit>
 void for_each_value(const ParameterTable<Model>& table, const Model& model, const Visit& visit,
                     std::string_view path = {}, const std::string& key = {}, std::size_t index = 0) {

@@ -12,7 +12,7 @@ namespace downwash {
 /// The SHA-256 digest of some bytes as 64 lower-case hexadecimal digits (FIPS 180-4).
 [[nodiscard]] DOWNWASH_EXPORT std::string sha256_hex(std::string_view bytes);
 
-/// That of numbers as they lie in memory; all our machines are little-endian.
+/// The digest of numbers as they lie in memory, which is the same on all little-endian machines.
 /// @tparam Numbers plain numbers, or arrays of them without bytes in between
 template <class Numbers>
 [[nodiscard]] std::string sha256_hex_of(std::span<const Numbers> numbers) {

@@ -45,12 +45,12 @@ template <class Number>
 /// Takes the next word, which ends at a blank or an end of line, from the front of a text; empty if there is none.
 [[nodiscard]] DOWNWASH_EXPORT std::string_view take_word(std::string_view& rest);
 
-/// The candidate that a misspelt word most likely stands for; empty when none is near (more than a third of its
-/// letters would have to change).
+/// The candidate that a misspelt word most likely means; empty if none is near (more than a third of its letters would
+/// have to change).
 [[nodiscard]] DOWNWASH_EXPORT std::string_view nearest_name(std::string_view word,
                                                             std::span<const std::string_view> candidates);
 
-/// A user's text as it may stand in a message: on one line, cut after some fifty bytes but never within a character.
+/// A user's text for a message: on one line, cut after about fifty bytes but never within a character.
 [[nodiscard]] DOWNWASH_EXPORT std::string excerpt(std::string_view text);
 
 /// "a, b or c". Empty without names.

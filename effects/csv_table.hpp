@@ -11,8 +11,8 @@
 
 namespace downwash {
 
-/// Comma separated text: empty lines and lines that begin with `#` are left out, the first line left names the columns,
-/// the others hold as many cells each. No quotes; spaces around cells do not count.
+/// Comma-separated text. Empty lines and lines that begin with `#` are skipped. The first other line names the columns,
+/// and the following ones have as many cells each. There are no quotes. Spaces around cells are ignored.
 struct CsvTable {
     struct Row {
         std::size_t line;
@@ -25,13 +25,13 @@ struct CsvTable {
     [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const;
 };
 
-/// The text of a regular file. @throws InputError when it cannot be read or has more than 16 MB
+/// The text of a regular file. @throws InputError if it cannot be read or has more than 16 MiB
 [[nodiscard]] std::string read_csv_text(const std::filesystem::path& file);
 
-/// @throws InputError for text that is no table, through `errors`
+/// @throws InputError if the text is not a table, through `errors`
 [[nodiscard]] CsvTable parse_csv(std::string_view text, LineErrors& errors);
 
-/// A number in [low, high]; an error of the row's line when the cell holds none.
+/// The number in a cell; empty, and an error in the row's line, if it is not a number in [low, high].
 [[nodiscard]] std::optional<double> number_in(const CsvTable& table, const CsvTable::Row& row, std::size_t column,
                                               double low, double high, LineErrors& errors);
 

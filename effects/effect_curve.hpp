@@ -7,7 +7,7 @@
 
 namespace downwash {
 
-/// K over zeta = z/R of one wide flat surface, as it is used: clamped. Immutable and safe to share.
+/// K over zeta = z/R of one wide flat surface, clamped as it is used. Immutable and safe to share.
 class DOWNWASH_EXPORT EffectCurve {
  public:
     /// A rotor's K: the formula clamped to [1, max_factor]; a table to [0, max_factor].
@@ -21,19 +21,19 @@ class DOWNWASH_EXPORT EffectCurve {
     /// @param z_over_r >= 0, infinite for no surface (then 1)
     [[nodiscard]] double operator()(double z_over_r) const;
 
-    /// Nowhere at `z_over_r` or beyond does K differ more than this from 1; exact for formulas that fall with distance,
-    /// up to a few percent more for others.
+    /// Upper bound of |K - 1| at `z_over_r` and beyond. Exact for formulas that fall with distance, up to a few percent
+    /// too large for others.
     [[nodiscard]] double largest_change_beyond(double z_over_r) const;
 
     /// Bound of |K(zeta) - K(far)| for all zeta from `near` to `far`; exact for formulas that fall with distance.
     [[nodiscard]] double largest_difference(double near, double far) const;
 
-    /// The farthest distance at which K meets its cap, in radii; negative when it never does. Of a curve that depends
-    /// on a wall: with no wall near.
+    /// The farthest distance in radii at which K reaches its cap; negative if it never does. A curve that depends on a
+    /// wall is taken without one.
     [[nodiscard]] double cap_distance() const noexcept { return cap_distance_; }
 
-    /// Up to this distance, in radii, K may not change with it although the air does: at its cap, or before a table's
-    /// first row. Negative: nowhere. Of a table that depends on a wall: whatever the wall, found to a row.
+    /// Up to this distance in radii K may be constant although the air is not: at the cap, or before a table's first
+    /// row. Negative: nowhere. For a table that depends on a wall: whatever the wall, exact to one row.
     [[nodiscard]] double flat_distance() const noexcept { return flat_distance_; }
 
     /// K never rises on the way outwards, and ends at 1.
@@ -42,8 +42,7 @@ class DOWNWASH_EXPORT EffectCurve {
     /// K is 1 everywhere.
     [[nodiscard]] bool is_none() const noexcept { return effect_.model == EffectModel::none; }
 
-    /// K is a table over (z/R, d/R), and d is the distance to a wall: the curve wants to be asked for through
-    /// at_wall().
+    /// K is a table over (z/R, d/R), and d is the distance to a wall. Use at_wall() to get the curve.
     [[nodiscard]] bool depends_on_wall() const noexcept;
     /// The curve of a rotor with the nearest wall d_over_r away (infinite: none). @pre depends_on_wall()
     [[nodiscard]] EffectCurve at_wall(double d_over_r) const;

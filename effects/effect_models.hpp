@@ -13,31 +13,31 @@ namespace downwash {
 struct ModelParameter {
     std::string_view name;  ///< as in a problem file
     double source_value;    ///< as the model's source gives it
-    double low, high;       ///< range in which it makes sense, both ends excluded when `is_open`
-    bool is_open;           ///< `low` itself makes no sense
+    double low, high;       ///< allowed range
+    bool is_open;           ///< `low` itself is not allowed
     std::string_view description;
 };
 
-/// What a person should know of a model before using it.
+/// The description of a model.
 struct EffectModelInfo {
     EffectModel model;
     std::string_view name;      ///< as in a problem file, for example "cheeseman-bennett"
     std::string_view surface;   ///< what it was made for: "ground", "ceiling" or "any"
     std::string_view source;    ///< where the formula comes from
-    std::string_view formula;   ///< for people, in plain text; K over zeta = z/R
-    std::string_view validity;  ///< range of z/R in which it was shown to hold
-    double valid_from;          ///< where that begins; 0 when no end is known
-    double valid_to;            ///< where it ends; infinite when no end is known
+    std::string_view formula;   ///< in plain text; K over zeta = z/R
+    std::string_view validity;  ///< range of z/R in which the model was shown to hold
+    double valid_from;          ///< where that range begins; 0 if unknown
+    double valid_to;            ///< where that range ends; infinite if unknown
     std::span<const ModelParameter> parameters;
 };
 
-/// Every model there is, in the order of EffectModel.
+/// All models, in the order of EffectModel.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const EffectModelInfo> effect_models();
 
-/// What is known of one of them.
+/// The description of one of them.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo& info(EffectModel model);
 
-/// The model of that name; nullptr when there is none.
+/// The model of that name; nullptr if there is none.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo* find_effect_model(std::string_view name);
 
 /// K of a wide flat surface at distance `z_over_r` >= 0 as the formula or table says, not clamped; infinite from a

@@ -24,17 +24,17 @@ class DOWNWASH_EXPORT EffectTable {
  public:
     /// @param z_over_r at least two distances in [0, 1000], each at least 1e-6 above the one before
     /// @param d_over_r the same in [0, 10000], or empty for a table over zeta alone
-    /// @param factors K in [0, 100]; those of one zeta stand together, in the order of d_over_r
+    /// @param factors K in [0, 100]; those of one zeta are adjacent, in the order of d_over_r
     /// @throws InputError
     EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors);
 
     [[nodiscard]] bool depends_on_d() const noexcept { return !d_over_r_.empty(); }
     [[nodiscard]] std::span<const double> z_over_r() const noexcept { return z_over_r_; }
     [[nodiscard]] std::span<const double> d_over_r() const noexcept { return d_over_r_; }
-    /// K at the nodes, those of one zeta together.
+    /// K at the nodes; those of one zeta are adjacent.
     [[nodiscard]] std::span<const double> factors() const noexcept { return factors_; }
 
-    /// K over zeta at one d. Small, to be made and asked often; the table must outlive it.
+    /// K over zeta at one d. Cheap to make. The table must outlive it.
     class DOWNWASH_EXPORT Curve {
      public:
         /// @param z_over_r >= 0, infinite for no surface
@@ -51,15 +51,15 @@ class DOWNWASH_EXPORT EffectTable {
         double left_ = 1, right_ = 0, slope_left_ = 0, slope_right_ = 0;
     };
 
-    /// @param d_over_r any number but NaN; without meaning for a table over zeta alone
+    /// @param d_over_r any number but NaN; ignored by a table over zeta alone
     [[nodiscard]] Curve at(double d_over_r = 0) const { return {*this, d_over_r}; }
 
-    /// Nowhere at `z_over_r` or beyond, whatever d, does K differ more than this from 1. Exact at the nodes, else the
-    /// bound of the node before.
+    /// Upper bound of |K - 1| at `z_over_r` and beyond for any d. Exact at the nodes, elsewhere the bound of the node
+    /// before.
     [[nodiscard]] double largest_change_beyond(double z_over_r) const;
 
-    /// A distance from which on K is below `factor` whatever d: the row behind the last one that reaches it. 0 when
-    /// none does, infinite when K never gets there. @param factor >= 1
+    /// A distance beyond which K is below `factor` for any d: the row behind the last one that reaches it. 0 if none
+    /// does, infinite if K never falls below it. @param factor >= 1
     [[nodiscard]] double distance_below(double factor) const;
 
  private:
@@ -78,7 +78,7 @@ class DOWNWASH_EXPORT EffectTable {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in errors.
+/// The same from text; errors use `name` as the name of the file.
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text,
                                                                                     std::string_view name);
 

@@ -20,12 +20,12 @@ struct Measurement {
     std::vector<std::string> cells;  ///< the whole row, as written
 };
 
-/// What a file of measurements holds.
+/// The content of a file of measurements.
 struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
     std::vector<Measurement> points;   ///< in the order of the file
 
-    /// Where a column stands among `columns`; empty when there is none of that name.
+    /// The position of a column in `columns`; empty if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;
     /// The distinct entries of a column, in the order of their first appearance; none without such a column.
     [[nodiscard]] std::vector<std::string> entries(std::string_view column) const;
@@ -39,7 +39,7 @@ struct DOWNWASH_EXPORT Measurements {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
 
-/// The same from text; `name` stands for the file in errors.
+/// The same from text; errors use `name` as the name of the file.
 [[nodiscard]] DOWNWASH_EXPORT Measurements parse_measurements(std::string_view text, std::string_view name);
 
 }  // namespace downwash

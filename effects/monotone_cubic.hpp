@@ -19,7 +19,7 @@ inline double slope(double h_left, double secant_left, double h_right, double se
     return (weight_left + weight_right) / (weight_left / secant_left + weight_right / secant_right);
 }
 
-/// What the ends of an interval contribute to a value within it.
+/// The weights of the ends of an interval in a value within it.
 struct Weights {
     double left, right;              ///< of the values there
     double slope_left, slope_right;  ///< of the slopes there

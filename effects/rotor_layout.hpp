@@ -7,11 +7,10 @@
 
 namespace downwash {
 
-/// Where the other rotors of a vehicle are, seen from one of them, in rotor radii in the rotor plane. Empty: one rotor
-/// alone.
+/// The distances from one rotor of a vehicle to the others, in rotor radii in the rotor plane. Empty: a single rotor.
 struct RotorNeighbours {
     std::vector<double> distances_radii;  ///< to every other rotor's axis, ascending
-    double center_radii = 0;              ///< mean distance of all rotors' axes from the centre between them
+    double center_radii = 0;              ///< mean distance of all rotors' axes from their centre
 
     [[nodiscard]] std::size_t rotors() const noexcept { return distances_radii.size() + 1; }
     friend bool operator==(const RotorNeighbours&, const RotorNeighbours&) = default;

@@ -28,7 +28,7 @@ enum class EffectModel {
     table,
 };
 
-/// No model has more numbers than this.
+/// No model has more parameters than this.
 inline constexpr std::size_t max_model_parameters = 2;
 
 /// One side's model with its parameters.

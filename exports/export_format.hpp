@@ -10,7 +10,7 @@
 
 namespace downwash {
 
-/// Where the world frame lies on the Earth.
+/// The position of the world frame on the Earth.
 struct GeodeticOrigin {
     double latitude_deg = 0;   ///< WGS 84, -90 to 90
     double longitude_deg = 0;  ///< -180 to 180
@@ -18,7 +18,7 @@ struct GeodeticOrigin {
     double bearing_deg = 0;    ///< compass direction of the x axis, clockwise from north, -360 to 360
 };
 
-/// What a format may need besides the run.
+/// Settings that a format may need besides the run.
 struct ExportSettings {
     std::optional<double> rate_hz;  ///< of set-points; empty: that of the controller
     std::optional<GeodeticOrigin> origin;
@@ -27,7 +27,7 @@ struct ExportSettings {
 /// One format.
 struct ExportFormat {
     std::string_view name;
-    std::string_view file_name;  ///< of its file in a run's folder, unless somebody says otherwise
+    std::string_view file_name;  ///< default name of its file in a run's folder
     std::string_view description;
     bool is_to_be_flown = false;  ///< commands for a vehicle
     bool has_rate = false;        ///< made of set-points at ExportSettings::rate_hz
@@ -35,12 +35,11 @@ struct ExportFormat {
     std::string (*write)(const RunRecord& run, const ExportSettings& settings);
 };
 
-/// Every format that a run can be written in.
+/// All formats for a run.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const ExportFormat> export_formats();
 
-/// The bytes of a run in a format. Equal runs give equal bytes.
-/// @throws InputError when the run has nothing of the kind (no plan, no flight), or settings are missing or out of
-/// range
+/// A run as the bytes of a format. Equal runs give equal bytes.
+/// @throws InputError if the run lacks what the format shows (plan, flight), or a setting is missing or out of range
 [[nodiscard]] DOWNWASH_EXPORT std::string exported(const RunRecord& run, const ExportFormat& format,
                                                    const ExportSettings& settings);
 

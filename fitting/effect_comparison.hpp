@@ -10,7 +10,7 @@
 
 namespace downwash {
 
-/// How a model errs over a band of distances.
+/// The error of a model over a band of distances.
 struct ErrorBand {
     double z_low = 0, z_high = 0;  ///< z/R in [z_low, z_high); the last band is open, z_high infinite
     std::size_t points = 0;
@@ -20,18 +20,18 @@ struct ErrorBand {
     double mean_error = 0;
 };
 
-/// A model beside measurements, as it is flown: clamped to [1, max_factor].
+/// A model compared with measurements. K is clamped to [1, max_factor], as in flights.
 struct ModelScore {
     SurfaceEffect effect;
     bool is_refitted = false;  ///< false: with the parameters of its source
-    bool is_at_bound = false;  ///< refitted, and the data want a parameter outside the range that makes sense
+    bool is_at_bound = false;  ///< refitted, and a parameter is at the end of its allowed range
     double rmse = 0;
     std::vector<ErrorBand> bands;
 };
 
-/// All models of one surface beside the measurements of one source.
+/// All models of one surface compared with the measurements of one source.
 struct DataSetComparison {
-    std::string source, surface;  ///< empty where the file has no such column
+    std::string source, surface;  ///< empty if the file has no such column
     std::size_t points = 0;
     double z_low = 0, z_high = 0;  ///< nearest and farthest z/R
     std::vector<ModelScore> scores;

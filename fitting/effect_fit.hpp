@@ -13,23 +13,23 @@
 
 namespace downwash {
 
-/// How a model is fitted.
+/// Options of a fit.
 struct FitOptions {
     RotorNeighbours neighbours;                         ///< for the multirotor models; default: one rotor alone
     std::vector<std::pair<std::string, double>> fixed;  ///< parameters that keep a value, by name
-    bool is_weighted = false;                           ///< each residual counts by 1 / sigma
+    bool is_weighted = false;                           ///< weights each residual by 1 / sigma
 };
 
-/// A number of the model after the fit.
+/// A parameter of the model after the fit.
 struct FittedParameter {
     std::string_view name;
     double value = 0;
-    std::optional<double> standard_error;  ///< empty where the data give none: fixed, at a bound, undetermined
+    std::optional<double> standard_error;  ///< empty if the data give none: fixed, at a bound, undetermined
     bool is_fixed = false;
-    bool is_at_bound = false;  ///< the data would like it outside the range that makes sense
+    bool is_at_bound = false;  ///< the best value is at or beyond the end of the allowed range
 };
 
-/// A model fitted to measurements by least squares, with what says how far to trust it.
+/// A model fitted to measurements by least squares, with statistics of its quality.
 struct EffectFit {
     SurfaceEffect effect;                     ///< the model with the fitted parameters
     std::vector<FittedParameter> parameters;  ///< all of the model, in its order
@@ -42,9 +42,9 @@ struct EffectFit {
     /// p.
     std::optional<double> reduced_chi_squared;
     bool is_converged = true;
-    /// Parameters that the data do not determine: another value fits as well. Their values mean nothing. Those that
-    /// have a standard error nevertheless go together with another one (correlation above 0.999 in size), and for one
-    /// of the pair it is larger than the value.
+    /// Parameters that the data do not determine: other values fit as well, so these mean nothing. Some have a standard
+    /// error nevertheless: they are correlated with another parameter (above 0.999 in size), and for one of the pair
+    /// the standard error is larger than the value.
     std::vector<std::string_view> undetermined;
 
     /// Correlation of two parameters, in [-1, 1]; empty where one has no standard error.

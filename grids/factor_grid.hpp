@@ -13,7 +13,7 @@
 
 namespace downwash {
 
-/// Equally spaced coordinates [m], both ends included. One that has no extent holds a single coordinate.
+/// Equally spaced coordinates [m], both ends included. An axis without extent has a single coordinate.
 struct GridAxis {
     double low_m = 0, high_m = 0;
     std::size_t count = 1;
@@ -28,23 +28,24 @@ struct GridAxis {
     bool operator==(const GridAxis&) const = default;
 };
 
-/// A number at every node of a grid: node (i, j, k) of layer l stands at ((l * nz + k) * ny + j) * nx + i.
+/// A number at every node of a grid: the value of node (i, j, k) of layer l has the index ((l * nz + k) * ny + j) * nx
+/// + i.
 struct GridField {
     std::string name;
     std::vector<double> values;
     bool operator==(const GridField&) const = default;
 };
 
-/// What made a grid, as ordered pairs of key and value: program, problem, models and their sources, radius, ...
+/// Where a grid comes from, as ordered pairs of key and value: program, problem, models and their sources, radius, ...
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-/// What a grid of thrust factors consists of.
+/// The parts of a grid of thrust ratios.
 struct FactorGridParts {
-    /// Where the coordinates x, y, z of the grid begin and which way they run; y runs to the left, z up.
+    /// The frame of the coordinates x, y, z: y points to the left, z up.
     PlaneOfMotion frame;
     GridAxis x, y, z;
-    /// Of a planar grid: the distances to the left of the plane [m] at which its layers hold, rising. Empty: one
-    /// layer, which holds at any distance.
+    /// Of a planar grid: the distances to the left of the plane [m] at which its layers are valid, rising. Empty: one
+    /// layer that is valid at any distance.
     std::vector<double> lateral_offsets_m;
     /// "factor" and any of "ground", "ceiling" (one-sided factors) and "flyable" (0 or 1), each once.
     std::vector<GridField> fields;
@@ -55,9 +56,9 @@ struct FactorGridParts {
 /// nodes in a vertical plane, one layer or one per lateral offset) or a volume (nx x ny x nz). Immutable.
 class DOWNWASH_EXPORT FactorGrid {
  public:
-    /// @throws InputError when an axis is not finite, is larger than 1e6 m, or has high <= low (y of a planar grid: not
-    /// 0, 0, 1), when the grid has more than 2^27 nodes, a field is unknown, missing, of another length or out of
-    /// range (factors: 0 to 100), or a piece of provenance holds what cannot stand in one line of text
+    /// @throws InputError if an axis is not finite, is larger than 1e6 m, or has high <= low (y of a planar grid: not
+    /// 0, 0, 1), if the grid has more than 2^27 nodes, if a field is unknown, missing, of another length or out of
+    /// range (factors: 0 to 100), or if a piece of provenance does not fit on one line of text
     explicit FactorGrid(FactorGridParts parts);
 
     [[nodiscard]] bool is_planar() const noexcept { return parts_.y.count == 1; }
@@ -86,10 +87,10 @@ class DOWNWASH_EXPORT FactorGrid {
     /// contain it: nothing is extrapolated.
     [[nodiscard]] double factor(const Vector3& hub_m) const noexcept;
 
-    /// Whether a rotor may fly with its hub there: the grid contains it, and all corners of the cell that holds it are
-    /// flagged 1 in the field "flyable", as far as there is one.
+    /// Whether a rotor may fly with its hub there: the grid contains the hub, and all corners of its cell are 1 in the
+    /// field "flyable", if there is such a field.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const noexcept { return is_flyable_between({&hub_m, 1}); }
-    /// The same for all hubs between these corners (in their convex hull) at once; false in doubt.
+    /// The same for all hubs in the convex hull of some corners at once; false in doubt.
     [[nodiscard]] bool is_flyable_between(std::span<const Vector3> corners_m) const noexcept;
 
  private:
@@ -104,10 +105,10 @@ class DOWNWASH_EXPORT FactorGrid {
     FactorGridParts parts_;
 };
 
-/// The most nodes a grid may have, all layers together.
+/// A grid has no more nodes than this, all layers together.
 inline constexpr std::size_t max_grid_nodes = std::size_t{1} << 27U;
 
-/// The largest factor a grid may hold.
+/// No value of a grid is larger.
 inline constexpr double max_grid_factor = 100;
 
 /// The names a field may have, "factor" first.

@@ -10,14 +10,15 @@
 
 namespace downwash {
 
-/// What a file of a grid does not say itself.
+/// What the file of a grid does not contain.
 struct GridReading {
     PlaneOfMotion plane;           ///< of the plane coordinates x_m, z_m in a CSV file without a frame of its own
     std::string array = "factor";  ///< the array or column that holds K
 };
 
-/// Reads a grid of thrust factors: VTK ImageData (what begins with '<') or CSV; docs/grids.md describes both.
-/// @throws InputError that names the file and the line and column or byte, what was found and what was expected
+/// Reads a grid of thrust ratios from VTK ImageData (a text that begins with '<') or CSV; docs/grids.md describes both.
+/// A build without the component VTK reads CSV only.
+/// @throws InputError with file, line and column (or byte), what was found and what was expected
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid read_factor_grid(const std::filesystem::path& file,
                                                           const GridReading& reading = {});
 
@@ -26,10 +27,10 @@ struct GridReading {
                                                            const GridReading& reading = {});
 
 /// Writes a grid as VTK ImageData (.vti) or CSV (.csv), whole or not at all. Reading it gives the same grid to the bit.
-/// @throws InputError when the file ends otherwise or cannot be written
+/// @throws InputError if the name has another ending or the file cannot be written
 DOWNWASH_EXPORT void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid);
 
-/// Whether write_factor_grid would get as far as its first byte. @throws InputError when it would not
+/// @throws InputError if write_factor_grid could not begin to write this file
 DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
 
 /// What write_factor_grid writes to a .vti file.
@@ -37,7 +38,7 @@ DOWNWASH_EXPORT void require_grid_writable(const std::filesystem::path& file);
 /// What it writes to a .csv file.
 [[nodiscard]] DOWNWASH_EXPORT std::string grid_csv_text(const FactorGrid& grid);
 
-/// Larger files are refused unread [bytes].
+/// Larger files are rejected unread.
 inline constexpr std::size_t max_grid_file_bytes = std::size_t{1} << 31U;
 
 }  // namespace downwash

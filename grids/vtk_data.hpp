@@ -17,7 +17,7 @@ struct VtkDataError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// What the head of a file says about all its binary arrays.
+/// How a file encodes all its binary arrays.
 struct VtkEncoding {
     bool is_big_endian = false;
     std::size_t header_bytes = 4;  ///< of each count before the data, 4 or 8
@@ -38,12 +38,12 @@ struct VtkNumberType {
 /// @param data of the array alone; blanks may follow
 /// @param min_bytes, max_bytes how many bytes the array may have; nothing is allocated before the header was checked
 /// for that
-/// @throws VtkDataError when they are others, or `data` ends before or later
+/// @throws VtkDataError if the array has another size, or `data` ends before or after it
 [[nodiscard]] std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& encoding,
                                     std::size_t min_bytes, std::size_t max_bytes);
 
-/// Numbers apart from each other by blanks.
-/// @throws VtkDataError when there are not exactly so many
+/// Numbers separated by blanks.
+/// @throws VtkDataError if their number is not `count`
 [[nodiscard]] std::vector<double> vtk_ascii_numbers(std::string_view text, std::size_t count);
 
 /// @pre bytes.size() is a multiple of type.bytes

@@ -15,11 +15,11 @@
 
 namespace downwash {
 
-/// A file of VTK's XML format: the XML, and the data behind it that need not be XML.
+/// A file of VTK's XML format: XML, and appended data that need not be XML.
 class VtkFile {
  public:
     /// @param bytes that outlive this object
-    /// @throws InputError when they are no such file
+    /// @throws InputError if they are not such a file
     VtkFile(std::string_view bytes, std::string name);
 
     [[nodiscard]] pugi::xml_node root() const { return root_; }
@@ -33,13 +33,13 @@ class VtkFile {
     using Arrays = std::map<std::string_view, pugi::xml_node>;
     [[nodiscard]] Arrays arrays_in(pugi::xml_node parent) const;
 
-    /// The numbers of an array. @throws InputError when there are not exactly so many
+    /// The numbers of an array. @throws InputError if their number is not `count`
     [[nodiscard]] std::vector<double> numbers(pugi::xml_node array, std::size_t count) const;
 
     /// The texts of an array, a megabyte at most.
     [[nodiscard]] std::vector<std::string> texts(pugi::xml_node array) const;
 
-    /// What a message calls an array.
+    /// The name of an array for messages.
     [[nodiscard]] static std::string title(pugi::xml_node array);
 
  private:

@@ -61,7 +61,7 @@ void read_file_of(Problem& problem, std::size_t index, const std::string& file,
 Parameter<Problem> center(const std::string& path, std::string_view description) {
     return parameters::vector<Problem>(
                path + ".center_m", description, {"x", "y", "z"},
-               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_m; })
+               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_world_m; })
         .at_least(-farthest_m)
         .at_most(farthest_m);
 }

@@ -140,11 +140,11 @@ class OutlineOf {
     void operator()(const Octomap& octomap) const {
         constexpr double half_diagonal = 0.8661;  // of a cube, in its sides
         const auto cube_at = [this](const OccupiedCube& cube) {
-            return box_at(cube.center_m, {cube.side_m, cube.side_m, cube.side_m}, frame_);
+            return box_at(cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m}, frame_);
         };
         std::vector<std::vector<PlanePoint>> sections;
         for (const OccupiedCube& cube : octomap.tree->cubes) {
-            if (std::abs(frame_(cube.center_m)[1]) <= half_diagonal * cube.side_m) {
+            if (std::abs(frame_(cube.center_local_m)[1]) <= half_diagonal * cube.side_m) {
                 add_section(cube_at(cube), sections);
             }
         }

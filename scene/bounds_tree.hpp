@@ -11,8 +11,8 @@
 
 namespace downwash {
 
-/// A hierarchy of bounding boxes over numbered parts: finds those in question among millions without asking each. A
-/// few parts are asked one after the other, in their order.
+/// A hierarchy of bounding boxes over numbered parts. It finds the few relevant ones among millions without visiting
+/// all. It visits a small number of parts one after the other, in their order.
 class BoundsTree {
  public:
     BoundsTree() = default;

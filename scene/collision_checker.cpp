@@ -81,7 +81,7 @@ std::vector<Piece> pieces_of(const RobotShape& robot) {
     std::vector<Piece> pieces;
     for (const BodyShape& body : robot.bodies) {
         const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-        pieces.push_back({convex_of(body.shape, body.center_m, placement_of(body.shape, identity))});
+        pieces.push_back({convex_of(body.shape, body.center_body_m, placement_of(body.shape, identity))});
     }
     const Vector3 half_arm{0.5 * robot.arm_length_m, 0, 0};
     const Convex arm{

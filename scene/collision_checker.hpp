@@ -31,8 +31,8 @@ class DOWNWASH_EXPORT CollisionChecker {
     CollisionChecker(CollisionChecker&&) noexcept;
     CollisionChecker& operator=(CollisionChecker&&) noexcept;
 
-    /// True when some body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Never
-    /// false when it is; true is certain but for 1e-8 m.
+    /// True if a body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Never false if it
+    /// is; true is certain but for 1e-8 m.
     [[nodiscard]] bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
 
     /// No point of the multirotor's bodies is farther from its centre of mass [m].
@@ -51,18 +51,18 @@ class DOWNWASH_EXPORT CollisionChecker {
 /// This decides the flyable area (thesis figure 5.4).
 [[nodiscard]] DOWNWASH_EXPORT double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radius_m);
 
-/// True when the level disc keeps at least `distance_m` (>= 0) from every obstacle and touches none; the answer of
-/// disc_clearance_m, sooner.
+/// True if the level disc keeps at least `distance_m` (>= 0) from every obstacle and touches none. Agrees with
+/// disc_clearance_m, but is faster.
 [[nodiscard]] DOWNWASH_EXPORT bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                  double distance_m);
 
-/// True when no obstacle reaches into the upright cylinder of a height (>= 0) that stands on the level disc. Never true
-/// when one does; false is certain but for some 1e-6 m.
+/// True if no obstacle reaches into the upright cylinder of a height (>= 0) on the level disc. Never true if one does;
+/// false is certain but for some 1e-6 m.
 [[nodiscard]] DOWNWASH_EXPORT bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m,
                                                    double height_m);
 
-/// Distance from a point to the nearest obstacle within the horizontal plane through the point [m]: that to walls, not
-/// to ground and ceiling. 0 inside an obstacle, infinity when the plane cuts none. Never above the truth but for
+/// Distance from a point to the nearest obstacle within the horizontal plane through the point [m]: to walls, not to
+/// ground and ceiling. 0 inside an obstacle, infinity if the plane cuts none. Never above the truth but for
 /// rounding, and below it by at most 1e-8 m before a wall, 1e-6 m before a slope of one in a hundred; where the plane
 /// grazes a round solid by up to a hundredth of its radius.
 [[nodiscard]] DOWNWASH_EXPORT double horizontal_clearance_m(const Scene& scene, const Vector3& point_m);

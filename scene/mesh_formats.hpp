@@ -9,9 +9,9 @@
 
 namespace downwash::foreign {
 
-/// @throws InputError; an empty mesh is for the caller to refuse
+/// @throws InputError; the caller rejects an empty mesh
 [[nodiscard]] TriangleMesh parse_stl(std::string_view bytes, const std::string& name);
-/// @throws InputError; an empty mesh is for the caller to refuse
+/// @throws InputError; the caller rejects an empty mesh
 [[nodiscard]] TriangleMesh parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace downwash::foreign

@@ -225,7 +225,7 @@ class NodeReader {
         for (unsigned axis = 0; axis < 3; ++axis) {
             // Halves and whole numbers are exact; only the product rounds.
             const double middle = place.low[axis] + 0.5 * place.cells() - 0.5 * cells_across;
-            cube.center_m[axis] = middle * header_.resolution_m;
+            cube.center_local_m[axis] = middle * header_.resolution_m;
         }
         tree_.cubes.push_back(cube);
     }

@@ -11,18 +11,18 @@
 namespace downwash {
 
 /// Reads the occupied space of an octree that OctoMap wrote: binary (.bt) or with probabilities (.ot, little-endian,
-/// id OcTree), where a leaf of probability 0.5 or more is occupied. The first line of the file says which it is.
-/// Each occupied leaf becomes a cube, one pruned n levels above the deepest with 2^n times the resolution as its side;
-/// space that is free or unknown does not. (Hornung et al. 2013, OctoMap 1.9.7's readBinaryNode and readNodesRecurs.)
+/// id OcTree). A leaf of probability 0.5 or more is occupied. The first line of the file gives its format. Each
+/// occupied leaf becomes a cube; a leaf pruned n levels above the deepest one has a side of 2^n times the resolution.
+/// Free and unknown space gives nothing. (Hornung et al. 2013, OctoMap 1.9.7's readBinaryNode and readNodesRecurs.)
 ///
-/// The stream of nodes is checked in one walk, and that walk already gives the cubes: no library has to read it again.
-/// A file of more than 512 MiB, with a resolution outside 0.0001 to 30 m (at which the farthest corners are 1e6 m
-/// away), nodes nested deeper than 16 levels, another number of nodes than it says, bytes left over, probabilities that
-/// are none, or none or more than 2,000,000 occupied leaves is refused.
+/// One walk checks the stream of nodes and makes the cubes; docs/dependencies.md says why OctoMap does not read it.
+/// A file is rejected if it has more than 512 MiB, a resolution outside 0.0001 to 30 m (at which the farthest corners
+/// are 1e6 m away), nodes nested deeper than 16 levels, another number of nodes than it states, bytes left over, values
+/// that are not probabilities, or none or more than 2,000,000 occupied leaves.
 /// @throws InputError "'file' line 3: what is wrong, what was expected", "byte 84" among the nodes
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const OccupancyTree> read_octomap(const std::filesystem::path& file);
 
-/// The same for bytes that stand in memory; the name is for messages. @throws InputError
+/// The same for bytes in memory; the name is for messages. @throws InputError
 [[nodiscard]] DOWNWASH_EXPORT OccupancyTree parse_octomap(std::string_view bytes, const std::string& name);
 
 }  // namespace downwash

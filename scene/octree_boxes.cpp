@@ -27,7 +27,7 @@ constexpr double place_tolerance = 1e-9;
 bool add_block(const OccupiedCube& cube, std::vector<Block>& blocks) {
     Block block{cube.side_m, {}, {}};
     for (std::size_t k = 0; k < 3; ++k) {
-        const double place = cube.center_m[k] / cube.side_m - 0.5;
+        const double place = cube.center_local_m[k] / cube.side_m - 0.5;
         if (!(std::abs(place) < 1e9) || std::abs(place - std::round(place)) > place_tolerance) {
             return false;
         }
@@ -80,7 +80,7 @@ void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyErro
     const auto& cubes = octomap.tree->cubes;
     const auto is_sound = [](const OccupiedCube& cube) {
         const auto is_near = [](double x) { return std::abs(x) <= farthest_m; };
-        return std::all_of(cube.center_m.begin(), cube.center_m.end(), is_near) && cube.side_m > 0 &&
+        return std::all_of(cube.center_local_m.begin(), cube.center_local_m.end(), is_near) && cube.side_m > 0 &&
                cube.side_m <= farthest_m;
     };
     if (cubes.empty()) {
@@ -98,7 +98,7 @@ std::vector<LocalBox> merged_boxes(const OccupancyTree& tree) {
     std::vector<LocalBox> boxes;
     for (const OccupiedCube& cube : tree.cubes) {
         if (!add_block(cube, blocks)) {
-            boxes.push_back({cube.center_m, {cube.side_m, cube.side_m, cube.side_m}});
+            boxes.push_back({cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m}});
         }
     }
     for (const std::size_t axis : {0U, 1U, 2U}) {

@@ -49,7 +49,7 @@ struct SizeInspector {
 };
 
 void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<KeyError>& errors) {
-    if (!is_finite(obstacle.center_m)) {
+    if (!is_finite(obstacle.center_world_m)) {
         errors.push_back({key + ".center_m", "must be three finite numbers, the position in the world in metres"});
     }
     const auto is_small = [](double angle_rad) { return std::abs(angle_rad) <= greatest_angle_rad; };
@@ -74,7 +74,9 @@ struct PartsMaker {
     const std::string& key;
     Scene::Solids& solids;
 
-    Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const { return obstacle.center_m + rotation * p_m; }
+    Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const {
+        return obstacle.center_world_m + rotation * p_m;
+    }
     void require_room(std::size_t more, const char* name) const {
         if (solids.parts.count() + more > max_pieces) {
             throw_input_error("brings the scene above " + std::to_string(max_pieces) +
@@ -83,7 +85,7 @@ struct PartsMaker {
         }
     }
     Scene::Bounds operator()(const Primitive& primitive) const {
-        solids.parts.add(primitive, obstacle.center_m, placement_of(primitive, rotation_of(obstacle.rpy_rad)));
+        solids.parts.add(primitive, obstacle.center_world_m, placement_of(primitive, rotation_of(obstacle.rpy_rad)));
         return solids.parts.primitive_bounds.back();
     }
     Scene::Bounds operator()(const Octomap& octomap) const {

@@ -23,10 +23,10 @@ struct OutlineEllipse {
     bool seen_from_above, seen_from_below;
 };
 
-/// Where a part's vertical extent is not smooth, projected on the ground: its edges and the rim of its shadow.
-/// What is seen from above can crease its upper surface, what is seen from below its lower one. Whoever integrates over
-/// the shadow splits there. A box gives the distinct projections of its edges, a sphere a circle, a cylinder the two
-/// straight sides of its shadow and its rims, a triangle its edges, an upright one nothing.
+/// Where a part's vertical extent is not smooth, projected on the ground: its edges and the rim of its shadow. An edge
+/// seen from above can crease the upper surface, one seen from below the lower surface. Split integrals over the shadow
+/// there. A box gives the distinct projections of its edges, a sphere a circle, a cylinder the two straight sides of
+/// its shadow and its rims, a triangle its edges, an upright triangle nothing.
 struct ShadowOutline {
     /// Unit horizontal direction in which upper and lower surface fall or bend most; any edge's where both are level.
     double slope_x = 1, slope_y = 0;

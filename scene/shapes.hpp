@@ -49,7 +49,7 @@ struct Mesh {
 
 /// A cube of space that is occupied, its edges along the local axes.
 struct OccupiedCube {
-    Vector3 center_m{};
+    Vector3 center_local_m{};
     double side_m = 0;  ///< > 0
 };
 
@@ -75,14 +75,14 @@ using Shape = std::variant<Box, Cylinder, Sphere, Mesh, Octomap>;
 struct Obstacle {
     std::string name;
     Shape shape;
-    Vector3 center_m{};  ///< position of the local frame's origin in N
-    Vector3 rpy_rad{};   ///< orientation of the local frame in N: R = Rz(yaw) Ry(pitch) Rx(roll)
+    Vector3 center_world_m{};  ///< position of the local frame's origin in N
+    Vector3 rpy_rad{};         ///< orientation of the local frame in N: R = Rz(yaw) Ry(pitch) Rx(roll)
 };
 
 /// A solid that belongs to the multirotor, aligned with its body frame (b1 forward, y left, b3 up).
 struct BodyShape {
     Primitive shape;
-    Vector3 center_m{};  ///< in the body frame, from the multirotor's centre of mass
+    Vector3 center_body_m{};  ///< in the body frame, from the multirotor's centre of mass
 };
 
 /// What of the robot can touch something: the multirotor's bodies and the arm as a capsule.

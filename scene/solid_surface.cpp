@@ -92,7 +92,7 @@ class SurfaceBuilder {
     }
     void operator()(const Octomap& octomap) {
         for (const OccupiedCube& cube : octomap.tree->cubes) {
-            add_box(cube.center_m, {cube.side_m, cube.side_m, cube.side_m});
+            add_box(cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m});
         }
     }
 

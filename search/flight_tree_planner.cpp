@@ -233,7 +233,7 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
     const int refiner_threads = std::max(1, threads_ / 2);
     refined_flights_.use_threads(refiner_threads);
     flights_.use_threads(std::max(1, threads_ - refiner_threads));
-    const Strand strands[] = {
+    const SteppedTask tasks[] = {
         [&] {
             if (proposed) {
                 execute(*proposed);
@@ -260,7 +260,7 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             return goes_on;
         },
     };
-    run_side_by_side(strands, std::min(threads_, 2));
+    run_side_by_side(tasks, std::min(threads_, 2));
     if (proposed) {
         settle(std::move(*proposed));
     }

@@ -44,7 +44,7 @@ void add_multirotor(Rows& rows) {
         [](Rows& to, const std::string& path) {
             to.push_back(parameters::vector<Robot>(
                              path + ".center_m", "centre from the multirotor's centre of mass", {"x", "y", "z"},
-                             [](auto& r, std::size_t i) -> auto& { return r.body[i].center_m; })
+                             [](auto& r, std::size_t i) -> auto& { return r.body[i].center_body_m; })
                              .at_least(-100)
                              .at_most(100));
         });

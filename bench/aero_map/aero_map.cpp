@@ -284,7 +284,7 @@ void print_meshes(const Options& options) {
         const double build_s = best_of(1, [&] { map = model->make_map(problem.bounds); });
         RandomPoints random(*map);
         const std::vector<Point> anywhere = random.scattered(512);
-        const Vector3& center_m = problem.obstacles.front().center_m;
+        const Vector3& center_m = problem.obstacles.front().center_world_m;
         std::vector<Point> above;
         std::vector<Point> below;
         for (int i = 0; i < 256; ++i) {

@@ -35,8 +35,8 @@ Problem with_random_primitives(Problem problem, unsigned seed) {
             default:
                 obstacle.shape = Sphere{uniform(0.2, 1.2)};
         }
-        obstacle.center_m = {uniform(problem.bounds.x_low_m, problem.bounds.x_high_m), uniform(-0.6, 0.6),
-                             uniform(problem.bounds.z_low_m, problem.bounds.z_high_m)};
+        obstacle.center_world_m = {uniform(problem.bounds.x_low_m, problem.bounds.x_high_m), uniform(-0.6, 0.6),
+                                   uniform(problem.bounds.z_low_m, problem.bounds.z_high_m)};
         obstacle.rpy_rad = {uniform(-pi, pi), uniform(-pi, pi), uniform(-pi, pi)};
         problem.obstacles.push_back(obstacle);
     }
@@ -70,8 +70,8 @@ Problem with_pipe_mesh(Problem problem, std::uint32_t around, std::uint32_t alon
     Obstacle obstacle;
     obstacle.name = "pipe";
     obstacle.shape = Mesh{"", 1, std::move(pipe)};
-    obstacle.center_m = {0.5 * (problem.bounds.x_low_m + problem.bounds.x_high_m), 0,
-                         0.5 * (problem.bounds.z_low_m + problem.bounds.z_high_m)};
+    obstacle.center_world_m = {0.5 * (problem.bounds.x_low_m + problem.bounds.x_high_m), 0,
+                               0.5 * (problem.bounds.z_low_m + problem.bounds.z_high_m)};
     problem.obstacles = {obstacle};
     return problem;
 }

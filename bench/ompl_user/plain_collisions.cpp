@@ -45,9 +45,9 @@ PlainCollisions::PlainCollisions(const Problem& problem)
                                           Eigen::AngleAxisd(obstacle.rpy_rad[0], Eigen::Vector3d::UnitX());
         std::visit(
             [&](const auto& shape) {
-                obstacles_.emplace_back(
-                    geometry_of(shape), (placed * turn_of(shape)).toRotationMatrix(),
-                    Eigen::Vector3d(obstacle.center_m[0], obstacle.center_m[1], obstacle.center_m[2]));
+                obstacles_.emplace_back(geometry_of(shape), (placed * turn_of(shape)).toRotationMatrix(),
+                                        Eigen::Vector3d(obstacle.center_world_m[0], obstacle.center_world_m[1],
+                                                        obstacle.center_world_m[2]));
             },
             obstacle.shape);
     }
@@ -58,7 +58,7 @@ PlainCollisions::PlainCollisions(const Problem& problem)
                 part_turns_.push_back(turn_of(shape));
             },
             part.shape);
-        part_centers_m_.emplace_back(part.center_m[0], part.center_m[1], part.center_m[2]);
+        part_centers_m_.emplace_back(part.center_body_m[0], part.center_body_m[1], part.center_body_m[2]);
     }
     const ArmParameters& arm = problem.robot.arm;
     parts_.emplace_back(std::make_shared<fcl::Capsuled>(arm.radius_m, arm.length_m));

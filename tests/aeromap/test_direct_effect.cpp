@@ -98,7 +98,7 @@ TEST_CASE("Moving and turning scene and rotor together changes nothing") {
         };
         std::vector<Obstacle> there = here;
         for (Obstacle& obstacle : there) {
-            obstacle.center_m = moved(obstacle.center_m);
+            obstacle.center_world_m = moved(obstacle.center_world_m);
             obstacle.rpy_rad[2] += turn;
         }
         const Vector3 hub{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6)};

@@ -136,7 +136,7 @@ TEST_CASE("a map is built once and found from then on") {
 TEST_CASE("whatever makes a map is part of its key") {
     using Change = void (*)(Making&);
     const std::vector<std::pair<const char*, Change>> changes{
-        {"center", [](Making& m) { m.obstacles[0].center_m[1] += 1e-12; }},
+        {"center", [](Making& m) { m.obstacles[0].center_world_m[1] += 1e-12; }},
         {"attitude", [](Making& m) { m.obstacles[0].rpy_rad[2] = 1e-9; }},
         {"size",
          [](Making& m) {

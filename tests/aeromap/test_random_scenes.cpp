@@ -96,7 +96,7 @@ Scene::Bounds bounds_of(const Obstacle& obstacle) {
 /// Moved up or down so that it ends at a height: its top where `is_below`, else its lower side.
 Obstacle ending_at(Obstacle obstacle, double z_m, bool is_below) {
     const Scene::Bounds bounds = bounds_of(obstacle);
-    obstacle.center_m[2] += z_m - (is_below ? bounds.high_m[2] : bounds.low_m[2]);
+    obstacle.center_world_m[2] += z_m - (is_below ? bounds.high_m[2] : bounds.low_m[2]);
     return obstacle;
 }
 
@@ -120,7 +120,7 @@ Mesh mirrored(const Mesh& mesh) {
 Octomap mirrored(const Octomap& octomap) {
     OccupancyTree tree = *octomap.tree;
     for (OccupiedCube& cube : tree.cubes) {
-        cube.center_m[1] = -cube.center_m[1];
+        cube.center_local_m[1] = -cube.center_local_m[1];
     }
     return {"", std::make_shared<const OccupancyTree>(std::move(tree))};
 }
@@ -141,7 +141,7 @@ Sphere mirrored(const Sphere& sphere) {
 /// The obstacle on the other side of the plane y = 0: its own frame is mirrored likewise, so that its pitch stays.
 Obstacle mirrored(Obstacle obstacle) {
     obstacle.shape = std::visit([](const auto& shape) { return Shape(mirrored(shape)); }, obstacle.shape);
-    obstacle.center_m[1] = -obstacle.center_m[1];
+    obstacle.center_world_m[1] = -obstacle.center_world_m[1];
     obstacle.rpy_rad[0] = -obstacle.rpy_rad[0];
     obstacle.rpy_rad[2] = -obstacle.rpy_rad[2];
     return obstacle;
@@ -314,7 +314,7 @@ TEST_CASE("An obstacle of any kind wholly behind another, as seen from the disc,
                     tree.resolution_m *= scale;
                     for (OccupiedCube& cube : tree.cubes) {
                         cube.side_m *= scale;
-                        for (double& coordinate : cube.center_m) {
+                        for (double& coordinate : cube.center_local_m) {
                             coordinate *= scale;
                         }
                     }
@@ -324,7 +324,7 @@ TEST_CASE("An obstacle of any kind wholly behind another, as seen from the disc,
             hidden.shape);
         const Scene::Bounds of_front = bounds_of(front);
         const double behind_m = is_below ? of_front.low_m[2] - 0.001 : of_front.high_m[2] + 0.001;
-        hidden.center_m = {front.center_m[0], front.center_m[1], 0};
+        hidden.center_world_m = {front.center_world_m[0], front.center_world_m[1], 0};
         hidden = ending_at(hidden, behind_m, is_below);
 
         const Vector3 hub{random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), 0};

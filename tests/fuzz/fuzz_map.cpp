@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         settings.grid_m = 0.1;
         Obstacle ground;
         ground.shape = Box{{4, 4, 1}};
-        ground.center_m = {0, 0, -0.5};
+        ground.center_world_m = {0, 0, -0.5};
         const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{ground});
         const auto effect = std::make_shared<const DirectEffect>(scene, settings, 0.3);
         return std::vector<MapLayer>{{effect, 0}, {effect, 0.1}};  // of equal values

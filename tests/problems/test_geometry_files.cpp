@@ -58,7 +58,7 @@ TEST_CASE("a mesh is read from beside its problem and keeps its place and scale"
     CHECK(mesh.scale == 0.5);
     CHECK(mesh.surface->triangles.size() == 12);
     CHECK(mesh.surface->vertices_m[0] == pole_triangles()[0][0]);
-    CHECK(obstacle.center_m == Vector3{0, 1, 2});
+    CHECK(obstacle.center_world_m == Vector3{0, 1, 2});
     CHECK(obstacle.rpy_rad == Vector3{0, 0, 1.5707963267948966});
 }
 
@@ -71,12 +71,12 @@ TEST_CASE("an octree is read from beside its problem, at the origin unless place
     CHECK(octomap.tree->resolution_m == 0.1);
     REQUIRE(octomap.tree->cubes.size() == 1);
     CHECK(octomap.tree->cubes[0].side_m == 32768 * 0.1);
-    CHECK(octomap.tree->cubes[0].center_m == Vector3{-16384 * 0.1, -16384 * 0.1, -16384 * 0.1});
-    CHECK(problem.obstacles[1].center_m == Vector3{0, 0, -50});
+    CHECK(octomap.tree->cubes[0].center_local_m == Vector3{-16384 * 0.1, -16384 * 0.1, -16384 * 0.1});
+    CHECK(problem.obstacles[1].center_world_m == Vector3{0, 0, -50});
     folder.write("pole.stl", binary_stl(pole_triangles()));
     write_with(folder, "mesh: {file: pole.stl}");
     const Problem plain = read_problem(folder / "problem.yaml");
-    CHECK(plain.obstacles.at(1).center_m == Vector3{});
+    CHECK(plain.obstacles.at(1).center_world_m == Vector3{});
     CHECK(plain.obstacles[1].rpy_rad == Vector3{});
     CHECK(std::get<Mesh>(plain.obstacles[1].shape).scale == 1);
 }

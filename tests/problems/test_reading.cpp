@@ -26,7 +26,7 @@ TEST_CASE("a problem is read as it is written, angles in radians") {
     CHECK(problem.bounds.z_high_m == 5);
     REQUIRE(problem.obstacles.size() == 2);
     CHECK(std::get<Cylinder>(problem.obstacles[1].shape).length_m == 5);
-    CHECK(problem.obstacles[1].center_m == Vector3{4, 3, 2.5});
+    CHECK(problem.obstacles[1].center_world_m == Vector3{4, 3, 2.5});
     CHECK(problem.aero.ceiling.parameters[0] == 6.9);
     CHECK(problem.start.arm_rad == 1.5707963267948966);
     CHECK(problem.goal.end_effector.has_value());

@@ -28,12 +28,12 @@ class ProblemMaker {
         problem.plane = PlaneOfMotion({0.01 * uniform(), 0, 0}, 1e-3 * uniform());
         for (Obstacle& obstacle : problem.obstacles) {
             obstacle.rpy_rad = {1e-3 * uniform(), 1e-5 * uniform(), uniform()};
-            obstacle.center_m[1] += uniform();
+            obstacle.center_world_m[1] += uniform();
         }
         Obstacle ball;
         ball.name = "ball \"quoted\" \\ \n\t \xc3\xa4 # : - [";
         ball.shape = Sphere{0.1 + uniform()};
-        ball.center_m = {0, 30 + uniform(), 2};
+        ball.center_world_m = {0, 30 + uniform(), 2};
         problem.obstacles.push_back(ball);
         problem.description = "two\nlines: {and} \"more\"";
         problem.robot.controller.max_tilt_rad = 0.1 + uniform();

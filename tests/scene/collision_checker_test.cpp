@@ -138,7 +138,7 @@ TEST_CASE("Clearance agrees with alternating projections where solids stand squa
         const std::vector<Obstacle> obstacles{dice.gridded_obstacle()};
         const Obstacle body = dice.gridded_obstacle();
         const RobotShape robot{{{reference::primitive_of(body.shape), {0, 0, 0}}}, 0, 0, 0.25, 0.01};
-        const PlaneOfMotion plane(body.center_m, body.rpy_rad[2]);
+        const PlaneOfMotion plane(body.center_world_m, body.rpy_rad[2]);
         const PlanarPose pose{0, 0, body.rpy_rad[1], body.rpy_rad[0]};
         const reference::Enclosure truth = reference::clearance(reference::robot_at(pose, plane, robot), obstacles);
         CAPTURE(round);
@@ -215,8 +215,8 @@ TEST_CASE("Moving scene and plane together changes no clearance") {
 
         const PlaneOfMotion motion(dice.vector(-3, 3), dice.between(-4, 4));
         for (Obstacle& obstacle : obstacles) {
-            const Vector3& c = obstacle.center_m;
-            obstacle.center_m = motion.to_world(c[0], c[1], c[2]);
+            const Vector3& c = obstacle.center_world_m;
+            obstacle.center_world_m = motion.to_world(c[0], c[1], c[2]);
             obstacle.rpy_rad[2] += motion.heading_rad();
         }
         const Vector3& origin = plane.origin_m();

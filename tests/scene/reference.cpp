@@ -162,7 +162,7 @@ downwash::Primitive primitive_of(const downwash::Shape& shape) {
 
 Solid solid_of(const downwash::Obstacle& obstacle) {
     const Vector3& rpy = obstacle.rpy_rad;
-    return placed(primitive_of(obstacle.shape), obstacle.center_m,
+    return placed(primitive_of(obstacle.shape), obstacle.center_world_m,
                   {rolled_pitched_yawed({1, 0, 0}, rpy), rolled_pitched_yawed({0, 1, 0}, rpy),
                    rolled_pitched_yawed({0, 0, 1}, rpy)});
 }
@@ -189,7 +189,7 @@ std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::Pl
     const Vector3 center = plane.to_world(pose.x_m, 0, pose.z_m);
     std::vector<Solid> solids;
     for (const downwash::BodyShape& body : robot.bodies) {
-        const Vector3& c = body.center_m;
+        const Vector3& c = body.center_body_m;
         solids.push_back(placed(body.shape, plus(plus(plus(center, c[0], b1), c[1], b2), c[2], b3), {b1, b2, b3}));
     }
     const Vector3 arm = in_world(std::cos(a), 0, -std::sin(a));
@@ -242,7 +242,7 @@ downwash::Obstacle Dice::gridded_obstacle() {
     } else {
         drawn.shape = downwash::Sphere{length() / 2};
     }
-    drawn.center_m = {0.25 * steps(-6, 6), 0.25 * steps(-6, 6), 0.25 * steps(-6, 6)};
+    drawn.center_world_m = {0.25 * steps(-6, 6), 0.25 * steps(-6, 6), 0.25 * steps(-6, 6)};
     drawn.rpy_rad = {half_right * steps(-2, 2), half_right * steps(-2, 2), half_right * steps(-2, 2)};
     return drawn;
 }

@@ -86,7 +86,7 @@ TEST_CASE("FCL finds the same contacts between boxes, cylinders and spheres") {
     for (unsigned round = 0; round < 60; ++round) {
         Obstacle obstacle = dice.obstacle();
         obstacle.shape = reference::shape_of(dice.shape(0.4, 1));
-        obstacle.center_m = dice.vector(-0.2, 0.2);
+        obstacle.center_world_m = dice.vector(-0.2, 0.2);
         compare(dice.shape(0.1, 0.4), obstacle, placed(reference::solid_of(obstacle)), 200, round);
     }
 }
@@ -112,9 +112,10 @@ TEST_CASE("FCL's octree finds the same contacts") {
     const Octomap octomap = test::octree_of(is_occupied, {-1, -1, -1}, {1, 1, 1}, 0.125);
     const auto tree = std::make_shared<octomap::OcTree>(0.125);
     for (const OccupiedCube& cube : octomap.tree->cubes) {
-        tree->updateNode(octomap::point3d(static_cast<float>(cube.center_m[0]), static_cast<float>(cube.center_m[1]),
-                                          static_cast<float>(cube.center_m[2])),
-                         10.0F);
+        tree->updateNode(
+            octomap::point3d(static_cast<float>(cube.center_local_m[0]), static_cast<float>(cube.center_local_m[1]),
+                             static_cast<float>(cube.center_local_m[2])),
+            10.0F);
     }
     compare(plate, {"", octomap, {}, {}}, {std::make_shared<fcl::OcTreed>(tree), fcl::Transform3d::Identity()}, 3000,
             51);

@@ -46,7 +46,7 @@ Cubes sorted(Cubes cubes) {
 Cubes cubes_of(const OccupancyTree& tree) {
     Cubes cubes;
     for (const OccupiedCube& cube : tree.cubes) {
-        cubes.emplace_back(cube.side_m, cube.center_m[0], cube.center_m[1], cube.center_m[2]);
+        cubes.emplace_back(cube.side_m, cube.center_local_m[0], cube.center_local_m[1], cube.center_local_m[2]);
     }
     return sorted(cubes);
 }

@@ -37,7 +37,7 @@ std::vector<Obstacle> cubes_of(const OccupancyTree& tree, const Obstacle& place)
         one.shape = Box{{cube.side_m, cube.side_m, cube.side_m}};
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                one.center_m[k] += cube.center_m[axis] * frame.axes[axis][k];
+                one.center_world_m[k] += cube.center_local_m[axis] * frame.axes[axis][k];
             }
         }
         cubes.push_back(one);
@@ -92,7 +92,7 @@ TEST_CASE("Boxes fill exactly what the cubes fill") {
         for (int i = 0; i < 2000; ++i) {
             const Vector3 p = dice.vector(-1.6, 1.6);
             const bool is_occupied = std::any_of(tree.cubes.begin(), tree.cubes.end(), [&](const OccupiedCube& cube) {
-                return is_in(p, cube.center_m, {cube.side_m, cube.side_m, cube.side_m});
+                return is_in(p, cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m});
             });
             const bool is_filled = std::any_of(boxes.begin(), boxes.end(),
                                                [&](const LocalBox& box) { return is_in(p, box.center_m, box.size_m); });

@@ -16,7 +16,7 @@ constexpr double quarter_turn = 1.57079632679489661923;
 
 /// The point in the obstacle's own frame, with the C library's angles.
 Vector3 local(const Obstacle& obstacle, const Vector3& p) {
-    Vector3 d{p[0] - obstacle.center_m[0], p[1] - obstacle.center_m[1], p[2] - obstacle.center_m[2]};
+    Vector3 d{p[0] - obstacle.center_world_m[0], p[1] - obstacle.center_world_m[1], p[2] - obstacle.center_world_m[2]};
     const auto turn_back = [&](std::size_t a, std::size_t b, double angle) {
         const double c = std::cos(angle);
         const double s = std::sin(angle);

@@ -25,7 +25,7 @@ inline Problem cluttered_problem() {
     Obstacle pipe;
     pipe.name = "pipe";
     pipe.shape = Cylinder{0.25, 6, {0, 1, 0}};
-    pipe.center_m = {3, 0, 2.5};
+    pipe.center_world_m = {3, 0, 2.5};
     problem.obstacles.push_back(pipe);
     return problem;
 }

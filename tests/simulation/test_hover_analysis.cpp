@@ -401,7 +401,7 @@ TEST_CASE("mirroring scene and arm changes nothing about holding") {
     const Problem problem = cluttered_problem();
     Problem mirrored = problem;
     for (Obstacle& obstacle : mirrored.obstacles) {
-        obstacle.center_m[0] = -obstacle.center_m[0];
+        obstacle.center_world_m[0] = -obstacle.center_world_m[0];
     }
     const auto here = make_flight_model(problem);
     const auto there = make_flight_model(mirrored);

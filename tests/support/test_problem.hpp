@@ -12,7 +12,7 @@ inline Obstacle box(std::string name, const Vector3& size_m, const Vector3& cent
     Obstacle obstacle;
     obstacle.name = std::move(name);
     obstacle.shape = Box{size_m};
-    obstacle.center_m = center_m;
+    obstacle.center_world_m = center_m;
     return obstacle;
 }
 
