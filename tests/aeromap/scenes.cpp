@@ -34,6 +34,19 @@ Obstacle any_obstacle(Random& random, const Vector3& center_m) {
     return obstacle;
 }
 
+Vector3 any_point(Random& random, const Vector3& half_m) {
+    return {random.uniform(-half_m[0], half_m[0]), random.uniform(-half_m[1], half_m[1]),
+            random.uniform(-half_m[2], half_m[2])};
+}
+
+std::vector<Obstacle> any_obstacles(Random& random, int count, const Vector3& half_m) {
+    std::vector<Obstacle> obstacles;
+    for (int i = 0; i < count; ++i) {
+        obstacles.push_back(any_obstacle(random, any_point(random, half_m)));
+    }
+    return obstacles;
+}
+
 std::vector<Obstacle> bridge() {
     return {{"ground", Box{{40, 40, 1}}, {0, 0, -0.5}, {}},
             {"deck", Box{{30, 8, 1}}, {0, 0, 10.5}, {}},
@@ -92,6 +105,11 @@ std::vector<MapLayer> layers(const std::shared_ptr<const DirectEffect>& effect, 
 
 std::shared_ptr<const Scene> scene_of(std::vector<Obstacle> obstacles) {
     return std::make_shared<const Scene>(std::move(obstacles));
+}
+
+std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius_m,
+                                              const AeroSettings& settings) {
+    return std::make_shared<const DirectEffect>(scene_of(std::move(obstacles)), settings, radius_m);
 }
 
 }  // namespace downwash::test

@@ -48,16 +48,11 @@ Comparison compare(const AeroMap& map, int points, unsigned seed) {
 std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius, double grid_m = 0.05) {
     AeroSettings settings;
     settings.grid_m = grid_m;
-    return std::make_shared<const DirectEffect>(scene_of(std::move(obstacles)), settings, radius);
+    return test::effect_in(std::move(obstacles), radius, settings);
 }
 
 std::vector<Obstacle> random_obstacles(test::Random& random, int count) {
-    std::vector<Obstacle> obstacles;
-    for (int i = 0; i < count; ++i) {
-        obstacles.push_back(
-            test::any_obstacle(random, {random.uniform(-2, 2), random.uniform(-0.6, 0.6), random.uniform(-1.5, 1.5)}));
-    }
-    return obstacles;
+    return test::any_obstacles(random, count, {2, 0.6, 1.5});
 }
 
 }  // namespace

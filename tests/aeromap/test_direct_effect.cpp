@@ -85,13 +85,9 @@ TEST_CASE("A vertical wall beside the disc has no effect") {
 TEST_CASE("Moving and turning scene and rotor together changes nothing") {
     test::Random random(5);
     for (int i = 0; i < 300; ++i) {
-        std::vector<Obstacle> here;
-        for (int k = 0; k < 3; ++k) {
-            here.push_back(test::any_obstacle(
-                random, {random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-1, 1)}));
-        }
+        const std::vector<Obstacle> here = test::any_obstacles(random, 3, {0.8, 0.8, 1});
         const double turn = random.uniform(-3, 3);
-        const Vector3 shift{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
+        const Vector3 shift = test::any_point(random, {9, 9, 9});
         const auto moved = [&](const Vector3& p) {
             return Vector3{shift[0] + std::cos(turn) * p[0] - std::sin(turn) * p[1],
                            shift[1] + std::sin(turn) * p[0] + std::cos(turn) * p[1], shift[2] + p[2]};
@@ -101,7 +97,7 @@ TEST_CASE("Moving and turning scene and rotor together changes nothing") {
             obstacle.center_world_m = moved(obstacle.center_world_m);
             obstacle.rpy_rad[2] += turn;
         }
-        const Vector3 hub{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6)};
+        const Vector3 hub = test::any_point(random, {0.5, 0.5, 0.6});
         const DirectEffect first(scene_of(here), {}, radius);
         if (first.is_flyable(hub)) {
             const DirectEffect second(scene_of(there), {}, radius);

@@ -200,13 +200,9 @@ TEST_CASE("Anywhere flyable among random obstacles the effect agrees with counte
     int compared = 0;
     double worst = 0;
     while (compared < 150) {
-        std::vector<Obstacle> obstacles;
-        for (int i = 0; i < 4; ++i) {
-            obstacles.push_back(test::any_obstacle(
-                random, {random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-1, 1)}));
-        }
+        const std::vector<Obstacle> obstacles = test::any_obstacles(random, 4, {0.8, 0.8, 1});
         const DirectEffect effect(scene_of(obstacles), {}, random.uniform(0.08, 0.2));
-        const Vector3 hub{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6)};
+        const Vector3 hub = test::any_point(random, {0.5, 0.5, 0.6});
         const DirectEffect::Factors factors = effect.factors(hub);
         if (factors.total < 1.01 || !effect.is_flyable(hub)) {
             continue;

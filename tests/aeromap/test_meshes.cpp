@@ -29,7 +29,7 @@ double difference(const DirectEffect::Factors& a, const DirectEffect::Factors& b
 }
 
 Vector3 some_hub(test::Random& random) {
-    return {random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.8, 0.8)};
+    return test::any_point(random, {0.6, 0.6, 0.8});
 }
 
 /// A box about as large as a rotor.

@@ -28,7 +28,7 @@ DirectEffect effect_of(std::vector<Obstacle> obstacles) {
 }
 
 Vector3 anywhere(test::Random& random, double size_m) {
-    return {random.uniform(-size_m, size_m), random.uniform(-size_m, size_m), random.uniform(-size_m, size_m)};
+    return test::any_point(random, {size_m, size_m, size_m});
 }
 
 /// A flat heap.

@@ -12,7 +12,7 @@
 #include "scenes.hpp"
 
 using namespace downwash;
-using test::scene_of;
+using test::effect_in;
 
 namespace {
 
@@ -38,18 +38,8 @@ VolumeMap map_of(const std::shared_ptr<const DirectEffect>& effect, const Block&
     return VolumeMap(effect, block.frame, block.extent, block.lateral_low_m, block.lateral_high_m, threads);
 }
 
-std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius_m,
-                                              const AeroSettings& settings = {}) {
-    return std::make_shared<const DirectEffect>(scene_of(std::move(obstacles)), settings, radius_m);
-}
-
 std::vector<Obstacle> random_obstacles(test::Random& random, int count) {
-    std::vector<Obstacle> obstacles;
-    for (int i = 0; i < count; ++i) {
-        obstacles.push_back(test::any_obstacle(
-            random, {random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)}));
-    }
-    return obstacles;
+    return test::any_obstacles(random, count, {0.5, 0.4, 0.4});
 }
 
 struct Comparison {

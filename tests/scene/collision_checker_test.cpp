@@ -11,23 +11,16 @@
 #include "reference.hpp"
 
 using namespace downwash;
+using reference::checker_of;
 
 namespace {
 
 constexpr double quarter = 1.57079632679489661923;
 const double infinity = std::numeric_limits<double>::infinity();
 
-CollisionChecker checker_of(std::vector<Obstacle> obstacles, const RobotShape& robot, const PlaneOfMotion& plane = {}) {
-    return {std::make_shared<const Scene>(std::move(obstacles)), plane, robot};
-}
-
 /// A box 0.4 x 0.3 x 0.1 m about the centre of mass and an arm of 0.5 m.
 RobotShape plain_robot() {
     return {{{Box{{0.4, 0.3, 0.1}}, {}}}, 0, 0, 0.5, 0.02};
-}
-
-PlaneOfMotion some_plane(reference::Dice& dice) {
-    return {dice.vector(-0.5, 0.5), dice.between(-4, 4)};
 }
 
 }  // namespace
@@ -119,7 +112,7 @@ TEST_CASE("Clearance agrees with alternating projections in random scenes") {
     for (int round = 0; round < 300; ++round) {
         const std::vector<Obstacle> obstacles = dice.obstacles(2);
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = some_plane(dice);
+        const PlaneOfMotion plane = dice.plane();
         const CollisionChecker checker = checker_of(obstacles, robot, plane);
         const PlanarPose pose = dice.pose();
         const reference::Enclosure truth = reference::clearance(reference::robot_at(pose, plane, robot), obstacles);
@@ -161,7 +154,7 @@ TEST_CASE("Clearance agrees with samples of the robot's surface") {
     for (int round = 0; round < 100; ++round) {
         const std::vector<Obstacle> obstacles = dice.obstacles(3);
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = some_plane(dice);
+        const PlaneOfMotion plane = dice.plane();
         const PlanarPose pose = dice.pose();
         double sampled = infinity;
         for (const reference::Solid& part : reference::robot_at(pose, plane, robot)) {
@@ -188,7 +181,7 @@ TEST_CASE("Being nearer than a margin is what the clearance says") {
     reference::Dice dice(4);
     int near = 0;
     for (int round = 0; round < 300; ++round) {
-        const CollisionChecker checker = checker_of(dice.obstacles(3), dice.robot(), some_plane(dice));
+        const CollisionChecker checker = checker_of(dice.obstacles(3), dice.robot(), dice.plane());
         for (int i = 0; i < 50; ++i) {
             const PlanarPose pose = dice.pose();
             const double clearance = checker.clearance_m(pose);
@@ -210,7 +203,7 @@ TEST_CASE("Moving scene and plane together changes no clearance") {
     for (int round = 0; round < 200; ++round) {
         std::vector<Obstacle> obstacles = dice.obstacles(3);
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = some_plane(dice);
+        const PlaneOfMotion plane = dice.plane();
         const CollisionChecker before = checker_of(obstacles, robot, plane);
 
         const PlaneOfMotion motion(dice.vector(-3, 3), dice.between(-4, 4));
@@ -235,7 +228,7 @@ TEST_CASE("Moving scene and plane together changes no clearance") {
 TEST_CASE("Clearance changes no faster than the robot moves") {
     reference::Dice dice(6);
     for (int round = 0; round < 200; ++round) {
-        const CollisionChecker checker = checker_of(dice.obstacles(3), dice.robot(), some_plane(dice));
+        const CollisionChecker checker = checker_of(dice.obstacles(3), dice.robot(), dice.plane());
         for (int i = 0; i < 50; ++i) {
             const PlanarPose pose = dice.pose();
             PlanarPose moved = pose;
@@ -279,7 +272,7 @@ TEST_CASE("Thin and large solids are measured as well as others") {
 
 TEST_CASE("Threads that share a checker get the answers of one thread") {
     reference::Dice dice(8);
-    const CollisionChecker checker = checker_of(dice.obstacles(5), dice.robot(), some_plane(dice));
+    const CollisionChecker checker = checker_of(dice.obstacles(5), dice.robot(), dice.plane());
     std::vector<PlanarPose> poses;
     std::vector<double> expected;
     std::vector<bool> contact;

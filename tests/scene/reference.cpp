@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace reference {
 namespace {
@@ -214,6 +216,11 @@ Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash:
     return least;
 }
 
+downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles, const downwash::RobotShape& robot,
+                                      const downwash::PlaneOfMotion& plane) {
+    return {std::make_shared<const downwash::Scene>(std::move(obstacles)), plane, robot};
+}
+
 downwash::Primitive Dice::shape(double least_m, double most_m) {
     const auto length = [&] { return between(least_m, most_m); };
     const double kind = between(0, 3);
@@ -265,6 +272,11 @@ downwash::RobotShape Dice::robot() {
 
 downwash::PlanarPose Dice::pose() {
     return {between(-2.5, 2.5), between(-2.5, 2.5), between(-0.7, 0.7), between(-7, 7)};
+}
+
+downwash::PlaneOfMotion Dice::plane() {
+    const Vector3 origin = vector(-0.5, 0.5);
+    return {origin, between(-4, 4)};
 }
 
 }  // namespace reference

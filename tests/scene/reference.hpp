@@ -46,7 +46,10 @@ std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::Pl
                             const downwash::RobotShape& robot);
 Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles);
 
-/// Draws scenes, robots and poses.
+downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles, const downwash::RobotShape& robot,
+                                      const downwash::PlaneOfMotion& plane = {});
+
+/// Draws scenes, robots, planes and poses.
 class Dice {
  public:
     explicit Dice(unsigned seed) : engine_(seed) {}
@@ -61,6 +64,7 @@ class Dice {
     std::vector<downwash::Obstacle> obstacles(int count);
     downwash::RobotShape robot();
     downwash::PlanarPose pose();
+    downwash::PlaneOfMotion plane();
 
  private:
     std::mt19937 engine_;

@@ -56,8 +56,7 @@ bool are_in_contact(const Placed& a, const Placed& b) {
 /// Compares contacts of a body with an obstacle at random poses in the plane y = 0, but for those within a micrometre
 /// of touching. The arm is a short one inside of the body.
 void compare(const Primitive& body, const Obstacle& obstacle, const Placed& there, int poses, unsigned seed) {
-    const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{obstacle});
-    const CollisionChecker checker(scene, {}, {{{body, {}}}, 0, 0, 0.02, 0.01});
+    const CollisionChecker checker = reference::checker_of({obstacle}, {{{body, {}}}, 0, 0, 0.02, 0.01});
     reference::Dice dice(seed);
     int contacts = 0;
     int free = 0;

@@ -11,6 +11,7 @@
 #include "reference.hpp"
 
 using namespace downwash;
+using reference::checker_of;
 using test::box_mesh;
 using test::first_triangles;
 using test::joined;
@@ -19,17 +20,9 @@ using test::reversed;
 
 namespace {
 
-CollisionChecker checker_of(std::vector<Obstacle> obstacles, const RobotShape& robot, const PlaneOfMotion& plane = {}) {
-    return {std::make_shared<const Scene>(std::move(obstacles)), plane, robot};
-}
-
 /// A ball of 0.1 m with an arm of 0.1 m inside of it.
 RobotShape ball() {
     return {{{Sphere{0.1}, {}}}, 0, 0, 0.05, 0.02};
-}
-
-PlaneOfMotion some_plane(reference::Dice& dice) {
-    return {dice.vector(-0.5, 0.5), dice.between(-4, 4)};
 }
 
 /// A triangle with corners in a cube of 4 m.
@@ -212,7 +205,7 @@ TEST_CASE("A box of triangles is as near as the same box as a primitive, from ou
         Obstacle mesh = box;
         mesh.shape = box_mesh(std::get<Box>(box.shape).size_m);
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = some_plane(dice);
+        const PlaneOfMotion plane = dice.plane();
         const CollisionChecker expected = checker_of({box}, robot, plane);
         const CollisionChecker found = checker_of({mesh}, robot, plane);
         const Scene box_scene({box});
@@ -254,7 +247,7 @@ TEST_CASE("Triangles are as far away as alternating projections say") {
             solids.push_back(reference::triangle(corners.back()));
         }
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = some_plane(dice);
+        const PlaneOfMotion plane = dice.plane();
         const PlanarPose pose = dice.pose();
         reference::Enclosure truth{1e9, 1e9};
         for (const reference::Solid& part : reference::robot_at(pose, plane, robot)) {

@@ -111,9 +111,9 @@ TEST_CASE("An octree is as near as all of its cubes one by one") {
         const Scene scene({octree});
         const Scene expected_scene(cubes);
         const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane(dice.vector(-0.5, 0.5), dice.between(-4, 4));
-        const CollisionChecker found(std::make_shared<const Scene>(std::vector<Obstacle>{octree}), plane, robot);
-        const CollisionChecker expected(std::make_shared<const Scene>(cubes), plane, robot);
+        const PlaneOfMotion plane = dice.plane();
+        const CollisionChecker found = reference::checker_of({octree}, robot, plane);
+        const CollisionChecker expected = reference::checker_of(cubes, robot, plane);
         for (int i = 0; i < 20; ++i) {
             const PlanarPose pose = dice.pose();
             const double clearance = std::max(0.0, expected.clearance_m(pose));
