@@ -20,7 +20,7 @@ struct PlanarPose {
 
 /// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
 /// Bounding boxes dismiss what is plainly apart; between the others distances are enclosed to 1e-8 m
-/// (scene/convex.hpp). Solids less than 1e-6 m apart are in contact, and so are a body inside a closed mesh and a pose
+/// (scene/convex.hpp). Solids less than 1e-8 m apart are in contact, and so are a body inside a closed mesh and a pose
 /// that is not finite. No query allocates.
 /// @pre angles of at most 1e5 rad
 class DOWNWASH_EXPORT CollisionChecker {

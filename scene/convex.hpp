@@ -49,8 +49,8 @@ inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
 /// returned.
 double distance_m(const Convex& a, const Convex& b, double enough_m) noexcept;
 
-/// Solids nearer to each other than this are in contact [m].
-inline constexpr double contact_m = 1e-6;
+/// Solids nearer to each other than this, which is how exactly distances are known, are in contact [m].
+inline constexpr double contact_m = 1e-8;
 
 /// True when the distance is below `margin_m` (>= contact_m) or the solids touch; a distance at most 1e-8 m above it
 /// may count as below. Sooner than the distance itself.

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// A disc touches what is nearer than this.
+constexpr double touching_m = 1e-6;
+
 Convex level_disc(const Vector3& center_m, double radius_m) {
     return {.center_m = center_m, .disc_radius_m = radius_m};
 }
@@ -50,7 +53,7 @@ double disc_clearance_m(const Scene& scene, const Vector3& center_m, double radi
 }
 
 bool disc_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double distance_m) {
-    return !scene.solids().are_near(level_disc(center_m, radius_m), distance_m);
+    return !scene.solids().are_near(level_disc(center_m, radius_m), std::max(distance_m, touching_m));
 }
 
 bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_m, double height_m) {
@@ -58,7 +61,7 @@ bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_
     Convex column = level_disc({center_m[0], center_m[1], center_m[2] + half_m}, radius_m);
     column.segment_count = 1;
     column.half_axes_m[0] = {0, 0, half_m};
-    return !scene.solids().are_near(column, 0);
+    return !scene.solids().are_near(column, touching_m);
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
