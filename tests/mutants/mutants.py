@@ -22,7 +22,7 @@ BUILD = COPY / "build"
 JOBS = os.environ.get("JOBS", "2")
 LONGEST_RUN_S = 600  # a mutant may never come to an end
 MODULES = ("base scene dynamics effects grids aeromap controllers simulation problems search rivals planner results "
-           "exports report bench cli").split()
+           "fitting exports report bench cli").split()
 
 
 class Error(Exception):
