@@ -23,7 +23,7 @@ bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
     });
 }
 
-/// Rotors one behind the other have the same columns; they are stored once.
+/// Equal columns, such as those of rotors one behind the other, are stored once.
 Json flight_json(const NumberTable& flight) {
     if (flight.rows() == 0) {
         return {};
@@ -59,7 +59,7 @@ Json tree_json(const NumberTable& tree) {
     return {{"nodes", tree.rows()}, {"data", packed.text()}};
 }
 
-/// What repeats the run from within its folder: to the byte, unless several goals in turn shared a time limit.
+/// The command that repeats the run in its folder: to the byte, unless several goals in turn shared a time limit.
 std::string command_of(const Problem& problem, const Json& solution) {
     const Json::json_pointer aero("/execution/aero"), iterations("/planning/iterations");
     if (solution.contains(aero) && solution[aero] == false) {
@@ -89,7 +89,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
                     {"solution", solution},
                     {"effective_yaml", run.problem_text},
                     {"description", problem.description},
-                    {"scene", scene_json(problem, Scene(problem.obstacles))},
+                    {"scene", scene_json(problem, model.effect(0).scene())},
                     {"robot", robot_json(problem.robot)},
                     {"start",
                      {{"x_m", problem.start.x_m},
