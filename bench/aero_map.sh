@@ -4,9 +4,8 @@ set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
 ./dev build --target bench_aero_map >&2
-commit=$(bench/source_commit.sh)
 mkdir -p bench/results
-build/bench/bench_aero_map bench/aero_map/girder_deck.yaml problems/*.yaml --commit "$commit" "$@" \
+build/bench/bench_aero_map bench/aero_map/girder_deck.yaml problems/*.yaml "$@" \
     >bench/results/aero_map.md.new
 mv bench/results/aero_map.md.new bench/results/aero_map.md
 bench/bars.sh --write

@@ -31,10 +31,10 @@ struct PlannerSetup {
     bool operator==(const PlannerSetup&) const = default;
 };
 
-/// Everything that is going to run, and what the figures depend on.
+/// Everything that a campaign runs, and what the figures depend on.
 struct CampaignPlan {
-    /// What a file of results is begun with and may only be continued with: limits, hashes of problems, program,
-    /// machine.
+    /// A file of results can only be continued with the settings it was begun with: limits, hashes of problems,
+    /// program, machine.
     std::vector<std::pair<std::string, std::string>> settings;
     std::vector<Experiment> experiments;
     std::vector<PlannerSetup> planners;
@@ -47,7 +47,7 @@ struct CampaignPlan {
     [[nodiscard]] std::size_t run_count() const { return experiments.size() * planners.size() * seeds.size(); }
 };
 
-/// What a run came to.
+/// The result of a run.
 enum class RunStatus : std::uint8_t {
     none,         ///< no plan within the limits
     approximate,  ///< a plan that does not reach the goal
@@ -80,17 +80,17 @@ struct Run {
     double wall_s = 0;                       ///< from the parsed problem to the answer, flight included
     std::optional<double> first_solution_s;  ///< from the parsed problem to the first accepted plan
     std::optional<double> cost;              ///< the planner's own figure
-    /// Without a plan: how near to the goal region the search came [m].
+    /// Without a plan: the nearest approach to the goal region [m].
     std::optional<double> nearest_approach_m;
     std::uint64_t iterations = 0;
     std::uint64_t edges_simulated = 0;
     std::uint64_t states_checked = 0;
     double simulated_s = 0;
-    std::uint64_t discarded = 0;            ///< aware plans whose direct flight failed, so that they were not reported
+    std::uint64_t discarded = 0;            ///< aware plans whose direct flight failed and that were not reported
     std::vector<Improvement> improvements;  ///< their times are from the parsed problem on, too
-    std::map<std::string, std::uint64_t> refusals;
-    std::optional<FlightFigures> flight;  ///< of a solved run
-    std::string error;                    ///< why it is impossible or failed
+    std::map<std::string, std::uint64_t> rejections;  ///< edges by cause
+    std::optional<FlightFigures> flight;              ///< of a solved run
+    std::string error;                                ///< why it is impossible or failed
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;
@@ -98,13 +98,13 @@ struct Run {
     [[nodiscard]] bool holds() const { return status == RunStatus::solved && flight && flight->outcome == Outcome::ok; }
 };
 
-/// A campaign as far as it has come.
+/// The results of a campaign so far.
 struct CampaignResults {
     CampaignPlan plan;
     std::vector<Run> runs;
 };
 
-/// "1-200 300": seeds that follow each other as one range.
+/// "1-200 300": consecutive seeds as one range.
 [[nodiscard]] std::string seeds_text(const std::vector<std::uint32_t>& seeds);
 
 }  // namespace downwash::bench

@@ -16,7 +16,7 @@ Share share_in(const Row& row, const Test& test) {
     return share_of(static_cast<std::size_t>(std::count(hits.begin(), hits.end(), 1.0)), hits.size());
 }
 
-/// Why a run has no flight that held; empty when it has.
+/// Why no flight of a run hovered at the goal; empty when one did.
 std::string cause_of(const Run& run) {
     if (run.holds()) {
         return "";
@@ -27,7 +27,7 @@ std::string cause_of(const Run& run) {
     return std::string(name_of(run.status));
 }
 
-/// The cause and, where there is one, what the program said.
+/// The cause and the error message, if there is one.
 std::string full_cause_of(const Run& run) {
     const std::string cause = cause_of(run);
     return run.error.empty() ? cause : cause + ": " + run.error;
@@ -45,14 +45,14 @@ std::vector<std::pair<std::string, std::size_t>> failures_by_cause(const Row& ro
     return ordered;
 }
 
-double least_clearance_m(const Row& row) {
-    double least = std::numeric_limits<double>::quiet_NaN();
+double min_clearance_m(const Row& row) {
+    double clearance_m = std::numeric_limits<double>::quiet_NaN();
     for (const Run* run : row) {
         if (run != nullptr && run->flight) {
-            least = std::fmin(least, run->flight->min_clearance_m);
+            clearance_m = std::fmin(clearance_m, run->flight->min_clearance_m);
         }
     }
-    return least;
+    return clearance_m;
 }
 
 std::vector<CostAt> cost_over_time(const CampaignPlan& plan, const Row& row) {
@@ -65,7 +65,7 @@ std::vector<CostAt> cost_over_time(const CampaignPlan& plan, const Row& row) {
     return costs;
 }
 
-/// From the first improvement to the end of the searches, sixteen moments a decade.
+/// From the first improvement to the end of the searches, sixteen moments per decade.
 std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
     double first_s = infinite, end_s = plan.time_limit_s.value_or(0);
     for (const Run* run : row) {
@@ -78,10 +78,10 @@ std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
     if (plan.stop_at_first_solution || first_s == infinite) {
         return costs;
     }
-    constexpr double moments_a_decade = 16, least_s = 1e-5;
-    const double begin = std::ceil(moments_a_decade * std::log10(std::max(first_s, least_s)));
-    for (double moment = begin; std::pow(10, moment / moments_a_decade) < end_s; ++moment) {
-        costs.push_back(costs_at(row, std::pow(10, moment / moments_a_decade)));
+    constexpr double moments_per_decade = 16, min_s = 1e-5;
+    const double begin = std::ceil(moments_per_decade * std::log10(std::max(first_s, min_s)));
+    for (double moment = begin; std::pow(10, moment / moments_per_decade) < end_s; ++moment) {
+        costs.push_back(costs_at(row, std::pow(10, moment / moments_per_decade)));
     }
     costs.push_back(costs_at(row, end_s));
     return costs;
@@ -125,7 +125,7 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
     cell.verified_s = spread_of(figures_of(row, verified_s));
     cell.answer_s = spread_of(figures_of(row, [](const Run& run) { return run.wall_s; }));
     cell.flown_cost = spread_of(figures_of(row, flown_cost));
-    cell.least_clearance_m = least_clearance_m(row);
+    cell.min_clearance_m = min_clearance_m(row);
     for (const Run* run : row) {
         cell.discarded += run != nullptr ? run->discarded : 0;
     }
@@ -218,8 +218,7 @@ Share solved_with(const CampaignReport& report, const std::vector<std::size_t>& 
     return cell->solved;
 }
 
-/// The least of the margins from which on every cell of that margin and above, of the given experiments, saw no flight
-/// fail.
+/// The minimum margin from which on no flight failed, for one experiment or all.
 std::optional<double> safe_margin(const CampaignReport& report, const std::vector<std::size_t>& planners,
                                   std::optional<std::size_t> experiment) {
     std::map<double, bool> is_safe;  // by margin
@@ -230,11 +229,11 @@ std::optional<double> safe_margin(const CampaignReport& report, const std::vecto
             safe->second = safe->second && cell.failed_flights.hits == 0 && cell.missing == 0;
         }
     }
-    std::optional<double> least;
+    std::optional<double> found;
     for (auto margin = is_safe.rbegin(); margin != is_safe.rend() && margin->second; ++margin) {
-        least = margin->first;
+        found = margin->first;
     }
-    return least;
+    return found;
 }
 
 void find_margins(CampaignReport& report) {
@@ -272,8 +271,8 @@ void find_margins(CampaignReport& report) {
 
 }  // namespace
 
-bool CampaignReport::keeps_its_bars() const {
-    return std::all_of(bars.begin(), bars.end(), [](const BarResult& bar) { return bar.is_kept; });
+bool CampaignReport::meets_its_targets() const {
+    return std::all_of(targets.begin(), targets.end(), [](const TargetResult& target) { return target.is_met; });
 }
 
 CampaignReport report_of(const CampaignResults& results) {
@@ -298,7 +297,7 @@ CampaignReport report_of(const CampaignResults& results) {
     compare_planners(rows, report);
     list_failures(rows, report);
     find_margins(report);
-    judge_bars(rows, report);
+    check_targets(rows, report);
     return report;
 }
 

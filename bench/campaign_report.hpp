@@ -9,13 +9,13 @@
 
 namespace downwash::bench {
 
-/// Quantiles over all attempted seeds, those without a value counting as infinite. NaN without seeds.
+/// Quantiles over all attempted seeds; a seed without a value counts as infinite. NaN without seeds.
 struct Spread {
-    double least = 0, low_quartile = 0, median = 0, high_quartile = 0, most = 0;  ///< `most`: the 95 % quantile
+    double min = 0, low_quartile = 0, median = 0, high_quartile = 0, quantile_95 = 0;
 };
 
-/// The cost of the best plan so far at a moment of the search: of its flight with direct aerodynamics where the planner
-/// flew it (mp-arm-ada), else the planner's own figure.
+/// The cost of the best plan so far at a moment of the search: the executed cost where the planner executes its plans
+/// (mp-arm-ada), otherwise the planned cost.
 struct CostAt {
     double time_s = 0;
     Spread cost;
@@ -27,7 +27,7 @@ struct SolvedAt {
     Share solved;
 };
 
-/// What one seed came to.
+/// The result of one seed.
 struct SeedFigures {
     std::uint32_t seed = 0;
     std::string cause;            ///< why there is no flight that held; empty when there is
@@ -39,16 +39,16 @@ struct SeedFigures {
 /// One planner on one experiment, over every seed that was attempted.
 struct CellFigures {
     std::size_t experiment = 0, planner = 0;  ///< in the campaign's plan
-    std::size_t missing = 0;                  ///< seeds that are still to be run
+    std::size_t missing = 0;                  ///< seeds without a run
     Share solved;
     Share failed_flights;  ///< solved, and the plan's flight with direct aerodynamics was not `ok`
     Share held;            ///< solved, and it was
     std::vector<std::pair<std::string, std::size_t>> failures_by_cause;  ///< outcomes and statuses, most frequent first
     Spread first_solution_s;
-    Spread verified_s;             ///< to the first plan that may be reported: that of mp-arm-ada was flown directly
-    Spread answer_s;               ///< wall time of the whole run
-    Spread flown_cost;             ///< of the flights that held
-    double least_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
+    Spread verified_s;           ///< to the first plan that may be reported: that of mp-arm-ada was flown directly
+    Spread answer_s;             ///< wall time of the whole run
+    Spread flown_cost;           ///< of the flights that held
+    double min_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
     std::uint64_t discarded = 0;
     std::vector<CostAt> cost_over_time;      ///< at cost_moments_s; empty where searches stop at the first solution
     std::vector<CostAt> cost_curve;          ///< the same at moments close enough to draw
@@ -79,17 +79,17 @@ struct FailureGroup {
     std::vector<double> nearest_approach_m;
 };
 
-/// The least margin from which on no flight of an experiment failed. It may be safe only because nothing was flown.
+/// The minimum margin from which on no flight of an experiment failed. It may be safe only because no plan was found.
 struct SafeMargin {
     double margin_m = 0;
     Share solved;  ///< with it
 };
 
-/// How a variant and algorithm fare under margins that grow.
+/// The results of a variant and algorithm for increasing margins.
 struct MarginFinding {
     Variant variant = Variant::mp_arm;
     std::string algorithm;
-    /// The least margin from which on no flight failed, whatever the problem; empty when there is none.
+    /// The minimum margin from which on no flight failed on any problem; empty when there is none.
     std::optional<double> safe_margin_m;
     /// Solved shares at that margin by experiment; empty without one.
     std::vector<Share> solved_when_safe;
@@ -97,15 +97,15 @@ struct MarginFinding {
     std::vector<std::optional<SafeMargin>> alone;
 };
 
-/// A bar that the campaign sets, on one experiment and planner.
-struct BarResult {
+/// A target that the campaign sets, for one experiment and planner.
+struct TargetResult {
     std::size_t experiment = 0, planner = 0;
-    std::string bar;    ///< "solved at least 0.98"
-    std::string found;  ///< "197/200"
-    bool is_kept = false;
+    std::string target;  ///< "solved at least 0.98"
+    std::string found;   ///< "197/200"
+    bool is_met = false;
 };
 
-/// What a campaign came to, in figures.
+/// The results of a campaign, in figures.
 struct CampaignReport {
     CampaignPlan plan;
     std::size_t done = 0;
@@ -114,10 +114,10 @@ struct CampaignReport {
     std::vector<PlannerComparison> comparisons;
     std::vector<MarginFinding> margins;  ///< empty unless the campaign sweeps margins
     std::vector<FailureGroup> failures;
-    std::vector<BarResult> bars;
+    std::vector<TargetResult> targets;
 
-    /// Whether every bar is kept; false too while runs are missing and there is a bar.
-    [[nodiscard]] bool keeps_its_bars() const;
+    /// Whether every target is met; false too while runs are missing and there is a target.
+    [[nodiscard]] bool meets_its_targets() const;
 };
 
 /// Moments at which costs are compared [s].

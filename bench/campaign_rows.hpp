@@ -9,10 +9,10 @@ namespace downwash::bench {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The runs of one planner on one experiment by place of their seeds; nullptr where a seed is still to be run.
+/// The runs of one planner on one experiment in the order of their seeds; nullptr where a run is missing.
 using Row = std::vector<const Run*>;
 
-/// Figures of a run, infinite where it has none.
+/// Figures of a run; infinite without one.
 [[nodiscard]] double first_solution_s(const Run& run);
 [[nodiscard]] double verified_s(const Run& run);
 [[nodiscard]] double flown_cost(const Run& run);
@@ -31,11 +31,11 @@ std::vector<double> figures_of(const Row& row, const Figure& figure) {
 
 [[nodiscard]] Spread spread_of(const std::vector<double>& values);
 
-/// What the best plans so far cost at a moment of the searches.
+/// The costs of the best plans so far at a moment of the searches.
 [[nodiscard]] CostAt costs_at(const Row& row, double time_s);
 
-/// Holds the cells of a report to the bars of its plan, and notes what it finds in the report.
+/// Checks the cells of a report against the targets of its plan, and stores the results in the report.
 /// @param rows of all cells, in their order
-void judge_bars(const std::vector<Row>& rows, CampaignReport& report);
+void check_targets(const std::vector<Row>& rows, CampaignReport& report);
 
 }  // namespace downwash::bench

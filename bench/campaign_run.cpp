@@ -25,21 +25,22 @@ std::string listed(const Values& values, const Text& text) {
     return list;
 }
 
-std::string bar_text(const CampaignExpectation& bar) {
-    std::string text(downwash::name_of(bar.variant));
-    text += bar.algorithm ? " " + *bar.algorithm : "";
+std::string target_text(const CampaignExpectation& target) {
+    std::string text(downwash::name_of(target.variant));
+    text += target.algorithm ? " " + *target.algorithm : "";
     const auto add = [&](const char* name, const std::optional<double>& value) {
         text += value ? std::string(" ") + name + " " + to_text(*value) : "";
     };
-    add("solved_ratio", bar.solved_ratio);
-    add("failed_flights", bar.failed_flights ? std::optional(static_cast<double>(*bar.failed_flights)) : std::nullopt);
-    add("first_solution_median_s", bar.first_solution_median_s);
-    add("first_solution_95_s", bar.first_solution_95_s);
-    add("verified_median_s", bar.verified_median_s);
-    add("cost_after_s", bar.cost_after_s);
-    add("cost_to_best", bar.cost_to_best);
-    text += bar.cheaper_than ? " cheaper_than " + *bar.cheaper_than : "";
-    add("cheaper_than_after_s", bar.cheaper_than_after_s);
+    add("solved_ratio", target.solved_ratio);
+    add("failed_flights",
+        target.failed_flights ? std::optional(static_cast<double>(*target.failed_flights)) : std::nullopt);
+    add("first_solution_median_s", target.first_solution_median_s);
+    add("first_solution_95_s", target.first_solution_95_s);
+    add("verified_median_s", target.verified_median_s);
+    add("cost_after_s", target.cost_after_s);
+    add("cost_to_best", target.cost_to_best);
+    text += target.cheaper_than ? " cheaper_than " + *target.cheaper_than : "";
+    add("cheaper_than_after_s", target.cheaper_than_after_s);
     return text;
 }
 
@@ -76,12 +77,12 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         settings.emplace_back("problem " + problem.name, problem_sha256(problem));
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
-        settings.emplace_back("expectation " + std::to_string(i + 1), bar_text(c.expect[i]));
+        settings.emplace_back("expectation " + std::to_string(i + 1), target_text(c.expect[i]));
     }
     return settings;
 }
 
-/// What a problem is planned for in a campaign: objectives that the campaign sets, or its own.
+/// The objectives for which a campaign plans a problem: those of the campaign, or the problem's own.
 std::vector<CostFunction> objectives_of(const Campaign& campaign, const Problem& problem) {
     if (!campaign.objectives) {
         return {problem.planner.objective};
@@ -108,13 +109,13 @@ std::string error_of_combination(Problem problem, const PlannerSetup& planner) {
     return "";
 }
 
-/// One run that is still to be done.
+/// A run that is missing.
 struct Task {
     std::size_t experiment, planner;
     std::uint32_t seed;
 };
 
-/// Seeds outermost, so that a campaign that was interrupted has as many of everything.
+/// Seeds outermost, so that an interrupted campaign has about as many runs of every planner.
 std::vector<Task> missing_runs(const CampaignPlan& plan, const CampaignStore& store) {
     std::vector<Task> tasks;
     for (const std::uint32_t seed : plan.seeds) {
@@ -143,7 +144,7 @@ void fill(Run& run, const Solution& solution) {
     for (Improvement& improvement : run.improvements) {
         improvement.wall_s += record.setup_wall_s;
     }
-    run.refusals = record.rejected;
+    run.rejections = record.rejected;
     if (const auto discarded = record.rejected.find("direct_flight"); discarded != record.rejected.end()) {
         run.discarded = discarded->second;
     }
@@ -157,7 +158,28 @@ void fill(Run& run, const Solution& solution) {
                                flight.length_m, flight.min_clearance_m,  flight.goal_error_m};
 }
 
-/// Whether a problem's map is read, not built.
+/// One run: the search and the flight of its plan. An error is in the result, never thrown.
+/// @param how the map to use, the stop token, and whether to stop at the first solution
+Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how) {
+    apply(planner, problem);
+    problem.planner.seed = seed;
+    Run run;
+    run.seed = seed;
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        fill(run, solve(problem, how));
+    } catch (const InputError& error) {
+        run.status = RunStatus::impossible;
+        run.error = error.what();
+    } catch (const std::exception& error) {
+        run.status = RunStatus::error;
+        run.error = error.what();
+    }
+    run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return run;
+}
+
+/// Whether the cache holds the map of a problem.
 bool is_in_cache(const Problem& problem, const std::filesystem::path& cache) {
     bool is_built = cache.empty();
     if (!is_built) {
@@ -207,25 +229,6 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     plan.time_limit_s = time_limit_of(c);
     plan.stop_at_first_solution = c.stop_at_first_solution;
     return plan;
-}
-
-Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how) {
-    apply(planner, problem);
-    problem.planner.seed = seed;
-    Run run;
-    run.seed = seed;
-    const auto begin = std::chrono::steady_clock::now();
-    try {
-        fill(run, solve(problem, how));
-    } catch (const InputError& error) {
-        run.status = RunStatus::impossible;
-        run.error = error.what();
-    } catch (const std::exception& error) {
-        run.status = RunStatus::error;
-        run.error = error.what();
-    }
-    run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return run;
 }
 
 CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions& options) {

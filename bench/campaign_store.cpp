@@ -4,78 +4,44 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <fmt/core.h>
+
+#include <cerrno>
+#include <map>
+#include <optional>
 #include <system_error>
 
 namespace downwash::bench {
 namespace {
 
-/// Says what differs from the settings that the file was begun with.
-void require_equal_settings(const Database& database, const CampaignPlan& plan, const std::filesystem::path& file) {
+/// Checks that results were begun with the settings of a plan. @throws CampaignError that lists every difference
+void require_equal_settings(const CampaignPlan& begun, const CampaignPlan& now, const std::filesystem::path& file) {
     std::string differences;
-    const auto differ = [&](const std::string& name, const std::string& begun, const std::string& now) {
-        differences += (differences.empty() ? "" : "\n") + file.string() + " was begun with " + name + " " + begun +
-                       ", not " + now;
-    };
-    std::vector<std::pair<std::string, std::string>> begun;
-    for (Statement ask = database.prepare("SELECT name, value FROM campaign ORDER BY place"); ask.step();) {
-        begun.emplace_back(ask.text(0), ask.text(1));
-    }
-    for (const auto& now : plan.settings) {
-        const auto then =
-            std::find_if(begun.begin(), begun.end(), [&](const auto& other) { return other.first == now.first; });
-        if (then == begun.end()) {
-            differ(now.first, "none", now.second);
-        } else if (then->second != now.second) {
-            differ(now.first, then->second, now.second);
+    const auto compare = [&](const std::string& name, const std::string& then, const std::string& value) {
+        if (then != value) {
+            differences += fmt::format("{} was begun with {} {}, not {}\n", file.string(), name,
+                                       then.empty() ? "none" : then, value.empty() ? "without" : value);
         }
+    };
+    for (const auto& [name, value] : now.settings) {
+        compare(name, setting(begun, name), value);
     }
-    for (const auto& [name, value] : begun) {
-        if (setting(plan, name).empty()) {
-            differ(name, value, "without");
+    for (const auto& [name, value] : begun.settings) {
+        if (setting(now, name).empty()) {
+            compare(name, value, "");
         }
     }
     if (!differences.empty()) {
-        throw CampaignError(
-            differences +
-            "\nruns of different settings are not mixed: choose another folder with --out, or move this "
-            "one away");
+        throw CampaignError(differences +
+                            "runs of different settings are not mixed: choose another folder with --out, or move this "
+                            "one away");
     }
 }
 
-Run run_of(const Statement& row) {
-    Run run;
-    run.experiment = row.integer(1) - 1;
-    run.planner = row.integer(2) - 1;
-    run.seed = static_cast<std::uint32_t>(row.integer(3));
-    run.wall_s = row.number(4);
-    if (row.integer(5) >= run_status_count) {
-        throw DatabaseError(std::string(results_file) + ": a run has an unknown status: another program wrote into it");
-    }
-    run.status = static_cast<RunStatus>(row.integer(5));
-    run.first_solution_s = row.optional_number(6);
-    run.cost = row.optional_number(7);
-    run.iterations = row.integer(8);
-    run.edges_simulated = row.integer(9);
-    run.states_checked = row.integer(10);
-    run.simulated_s = row.number(11);
-    run.discarded = row.integer(12);
-    run.error = row.is_null(13) ? "" : row.text(13);
-    if (!row.is_null(14)) {
-        run.flight = FlightFigures{named(row.text(14), {Outcome::ok, Outcome::collision, Outcome::unstable,
-                                                        Outcome::left_flyable_area, Outcome::goal_missed}),
-                                   row.number(15),
-                                   row.number(16),
-                                   row.number(17),
-                                   row.number(18),
-                                   row.number(19),
-                                   row.number(20)};
-    }
-    run.nearest_approach_m = row.optional_number(21);
-    return run;
-}
+/// The columns of runs, flights and faults that read_results() reads, in the order of its function.
+constexpr const char* run_columns =
+    "id, experimentid, plannerid, seed, time, status, time_to_first_solution, best_cost, iterations, edges_simulated, "
+    "states_checked, simulated_time, discarded_plans, message, solution_difference";
 
 }  // namespace
 
@@ -98,7 +64,7 @@ CampaignStore::FolderLock::~FolderLock() {
 }
 
 CampaignStore::CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes)
-    : lock_(folder), database_(folder / results_file, Database::Access::create) {
+    : lock_(folder), database_(folder / results_file, true) {
     if (is_new(database_)) {
         Transaction all(database_);
         write_plan(database_, plan);
@@ -108,118 +74,118 @@ CampaignStore::CampaignStore(const std::filesystem::path& folder, const Campaign
     const std::filesystem::path file = folder / results_file;
     require_layout(database_, file);
     if (!resumes) {
-        throw CampaignError(file.string() + " holds runs already; --resume goes on with them");
+        throw CampaignError(file.string() + " holds runs already; --resume continues with them");
     }
-    require_equal_settings(database_, plan, file);
-    for (Statement ask = database_.prepare("SELECT experimentid, plannerid, seed FROM runs"); ask.step();) {
-        done_.emplace(ask.integer(0) - 1, ask.integer(1) - 1, static_cast<std::uint32_t>(ask.integer(2)));
-    }
+    require_equal_settings(read_plan(database_), plan, file);
+    database_.for_each<std::uint64_t, std::uint64_t, std::uint64_t>(
+        "SELECT experimentid, plannerid, seed FROM runs", [this](auto experiment, auto planner, auto seed) {
+            done_.emplace(experiment - 1, planner - 1, static_cast<std::uint32_t>(seed));
+        });
 }
 
 CampaignStore::~CampaignStore() = default;
 
 void CampaignStore::add(const Run& run) {
+    const auto number = [](bool value) { return std::uint64_t{value ? 1U : 0U}; };
     Transaction all(database_);
-    database_
-        .prepare(
-            "INSERT INTO runs (experimentid, plannerid, seed, time, status, solved, approximate_solution, "
-            "solution_difference, correct_solution, time_to_first_solution, best_cost, iterations, edges_simulated, "
-            "states_checked, "
-            "simulated_time, discarded_plans) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(std::uint64_t{run.experiment + 1})
-        .bind(std::uint64_t{run.planner + 1})
-        .bind(std::uint64_t{run.seed})
-        .bind(run.wall_s)
-        .bind(static_cast<std::uint64_t>(run.status))
-        .bind(std::uint64_t{run.status == RunStatus::solved ? 1U : 0U})
-        .bind(std::uint64_t{run.status == RunStatus::approximate ? 1U : 0U})
-        .bind(run.nearest_approach_m)
-        .bind(std::uint64_t{run.holds() ? 1U : 0U})
-        .bind(run.first_solution_s)
-        .bind(run.cost)
-        .bind(run.iterations)
-        .bind(run.edges_simulated)
-        .bind(run.states_checked)
-        .bind(run.simulated_s)
-        .bind(run.discarded)
-        .run();
+    database_.insert(
+        "runs (experimentid, plannerid, seed, time, status, solved, approximate_solution, solution_difference, "
+        "correct_solution, time_to_first_solution, best_cost, iterations, edges_simulated, states_checked, "
+        "simulated_time, discarded_plans)",
+        std::uint64_t{run.experiment + 1}, std::uint64_t{run.planner + 1}, std::uint64_t{run.seed}, run.wall_s,
+        static_cast<std::uint64_t>(run.status), number(run.status == RunStatus::solved),
+        number(run.status == RunStatus::approximate), run.nearest_approach_m, number(run.holds()), run.first_solution_s,
+        run.cost, run.iterations, run.edges_simulated, run.states_checked, run.simulated_s, run.discarded);
     const std::uint64_t key = database_.last_key();
     for (const Improvement& improvement : run.improvements) {
-        // Two within one tick of the clock: the later one is cheaper.
-        database_.prepare("INSERT OR REPLACE INTO progress VALUES (?, ?, ?, ?, ?)")
-            .bind(key)
-            .bind(improvement.wall_s)
-            .bind(improvement.iteration)
-            .bind(improvement.cost)
-            .bind(improvement.flown_cost)
-            .run();
+        // Of two within one tick of the clock the later one is cheaper.
+        database_.run("INSERT OR REPLACE INTO progress VALUES (?, ?, ?, ?, ?)", key, improvement.wall_s,
+                      improvement.iteration, improvement.cost, improvement.flown_cost);
     }
-    for (const auto& [cause, edges] : run.refusals) {
+    for (const auto& [cause, edges] : run.rejections) {
         if (edges > 0) {
-            database_.prepare("INSERT INTO refusals VALUES (?, ?, ?)").bind(key).bind(cause).bind(edges).run();
+            database_.insert("refusals", key, cause, edges);
         }
     }
     if (run.flight) {
         const FlightFigures& flight = *run.flight;
-        database_.prepare("INSERT INTO flights VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-            .bind(key)
-            .bind(downwash::name_of(flight.outcome))
-            .bind(flight.cost)
-            .bind(flight.energy_j)
-            .bind(flight.duration_s)
-            .bind(flight.length_m)
-            .bind(flight.min_clearance_m)
-            .bind(flight.goal_error_m)
-            .run();
+        database_.insert("flights", key, downwash::name_of(flight.outcome), flight.cost, flight.energy_j,
+                         flight.duration_s, flight.length_m, flight.min_clearance_m, flight.goal_error_m);
     }
     if (!run.error.empty()) {
-        database_.prepare("INSERT INTO faults VALUES (?, ?)").bind(key).bind(run.error).run();
+        database_.insert("faults", key, run.error);
     }
-    database_.prepare("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?")
-        .bind(run.wall_s)
-        .bind(std::uint64_t{run.experiment + 1})
-        .run();
+    database_.run("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?", run.wall_s,
+                  std::uint64_t{run.experiment + 1});
     all.commit();
     done_.emplace(run.experiment, run.planner, run.seed);
 }
 
 CampaignResults read_results(const std::filesystem::path& folder) {
+    using Count = std::uint64_t;
+    using Text = std::string;
+    using OptionalNumber = std::optional<double>;
     const std::filesystem::path file = folder / results_file;
     if (!std::filesystem::exists(file)) {
         throw CampaignError(file.string() +
-                            " does not exist: expected the folder of a campaign that `downwash bench run` "
-                            "made");
+                            " does not exist: expected the folder of a campaign that `downwash bench run` made");
     }
-    const Database database(file, Database::Access::read);
+    const Database database(file);
     require_layout(database, file);
     CampaignResults results{read_plan(database), {}};
-    std::map<std::uint64_t, std::size_t> place_of;
-    for (Statement row = database.prepare(
-             "SELECT id, experimentid, plannerid, seed, time, status, time_to_first_solution, best_cost, iterations, "
-             "edges_simulated, states_checked, simulated_time, discarded_plans, message, outcome, cost, energy_j, "
-             "duration_s, length_m, min_clearance_m, goal_error_m, solution_difference FROM runs LEFT JOIN flights ON "
-             "runs.id = flights.runid LEFT JOIN faults ON runs.id = faults.runid ORDER BY id");
-         row.step();) {
-        place_of[row.integer(0)] = results.runs.size();
-        results.runs.push_back(run_of(row));
-        if (results.runs.back().experiment >= results.plan.experiments.size() ||
-            results.runs.back().planner >= results.plan.planners.size()) {
-            throw DatabaseError(file.string() + ": a run belongs to nothing: another program wrote into this file");
-        }
-    }
-    for (Statement row = database.prepare(
-             "SELECT runid, time, iterations, best_cost, flown_cost FROM progress ORDER BY runid, time");
-         row.step();) {
-        if (const auto found = place_of.find(row.integer(0)); found != place_of.end()) {
-            results.runs[found->second].improvements.push_back(
-                {row.number(1), row.integer(2), row.number(3), row.optional_number(4)});
-        }
-    }
-    for (Statement row = database.prepare("SELECT runid, cause, edges FROM refusals"); row.step();) {
-        if (const auto found = place_of.find(row.integer(0)); found != place_of.end()) {
-            results.runs[found->second].refusals[row.text(1)] = row.integer(2);
-        }
-    }
+    std::map<Count, std::size_t> place_of;
+    database.for_each<Count, Count, Count, Count, double, Count, OptionalNumber, OptionalNumber, Count, Count, Count,
+                      double, Count, std::optional<Text>, OptionalNumber>(
+        "SELECT " + std::string(run_columns) + " FROM runs LEFT JOIN faults ON runs.id = faults.runid ORDER BY id",
+        [&](Count key, Count experiment, Count planner, Count seed, double wall_s, Count status,
+            const OptionalNumber& first_solution_s, const OptionalNumber& cost, Count iterations, Count edges,
+            Count states, double simulated_s, Count discarded, const std::optional<Text>& error,
+            const OptionalNumber& nearest_approach_m) {
+            if (status >= run_status_count || experiment < 1 || experiment > results.plan.experiments.size() ||
+                planner < 1 || planner > results.plan.planners.size()) {
+                throw DatabaseError(
+                    file.string() +
+                    ": a run has no status, experiment or planner: another program wrote into this file");
+            }
+            place_of[key] = results.runs.size();
+            results.runs.push_back({experiment - 1,
+                                    planner - 1,
+                                    static_cast<std::uint32_t>(seed),
+                                    static_cast<RunStatus>(status),
+                                    wall_s,
+                                    first_solution_s,
+                                    cost,
+                                    nearest_approach_m,
+                                    iterations,
+                                    edges,
+                                    states,
+                                    simulated_s,
+                                    discarded,
+                                    {},
+                                    {},
+                                    {},
+                                    error.value_or("")});
+        });
+    /// Calls take(run, column...) for every row of a table that belongs to a run.
+    const auto of_runs = [&]<class... Columns>(const char* sql, const auto& take) {
+        database.for_each<Count, Columns...>(sql, [&](Count key, const Columns&... columns) {
+            if (const auto found = place_of.find(key); found != place_of.end()) {
+                take(results.runs[found->second], columns...);
+            }
+        });
+    };
+    of_runs.operator()<Text, double, double, double, double, double, double>(
+        "SELECT runid, outcome, cost, energy_j, duration_s, length_m, min_clearance_m, goal_error_m FROM flights",
+        [](Run& run, const Text& outcome, const auto&... figures) {
+            run.flight = {named(outcome, {Outcome::ok, Outcome::collision, Outcome::unstable,
+                                          Outcome::left_flyable_area, Outcome::goal_missed}),
+                          figures...};
+        });
+    of_runs.operator()<double, Count, double, OptionalNumber>(
+        "SELECT runid, time, iterations, best_cost, flown_cost FROM progress ORDER BY runid, time",
+        [](Run& run, const auto&... columns) { run.improvements.push_back({columns...}); });
+    of_runs.operator()<Text, Count>("SELECT runid, cause, edges FROM refusals",
+                                    [](Run& run, const Text& cause, Count edges) { run.rejections[cause] = edges; });
     return results;
 }
 

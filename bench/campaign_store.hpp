@@ -11,18 +11,18 @@
 namespace downwash::bench {
 
 /// The results of a campaign on disk: one SQLite file with the tables of OMPL's Planner Arena (experiments,
-/// plannerConfigs, enums, runs, progress) and our own. A run that was added is there whatever happens next.
+/// plannerConfigs, enums, runs, progress) and our own. A run that was added stays, whatever happens next.
 class CampaignStore {
  public:
-    /// Begins the results of a campaign in a folder, or goes on with those that are there.
-    /// @param resumes allows to go on; without it results that are there already are refused
+    /// Begins the results of a campaign in a folder, or continues those that are there.
+    /// @param resumes whether existing results may be continued; they are an error otherwise
     /// @throws CampaignError when they were begun with other settings, or another program is running the campaign
     CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes);
     ~CampaignStore();
     CampaignStore(const CampaignStore&) = delete;
     CampaignStore& operator=(const CampaignStore&) = delete;
 
-    /// Whether that run is there already.
+    /// Whether the results contain that run.
     [[nodiscard]] bool has(std::size_t experiment, std::size_t planner, std::uint32_t seed) const {
         return done_.contains({experiment, planner, seed});
     }
@@ -32,7 +32,7 @@ class CampaignStore {
     void add(const Run& run);
 
  private:
-    /// Holds a folder for this process.
+    /// Locks a folder for this process.
     class FolderLock {
      public:
         explicit FolderLock(const std::filesystem::path& folder);

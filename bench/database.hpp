@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -18,70 +20,93 @@ struct DatabaseError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A prepared statement of SQL. Parameters and columns are counted from 0.
-class Statement {
- public:
-    /// Sets the next parameter; the order is that of the question marks.
-    Statement& bind(double value);
-    Statement& bind(std::uint64_t value);
-    Statement& bind(std::string_view value);
-    Statement& bind(std::nullptr_t);
-    template <class Value>
-    Statement& bind(const std::optional<Value>& value) {
-        return value ? bind(*value) : bind(nullptr);
-    }
-
-    /// The next row of the answer, or false at its end. @throws DatabaseError
-    bool step();
-    /// Runs the statement to its end and makes it ready for other parameters.
-    void run();
-
-    [[nodiscard]] bool is_null(int column) const;
-    /// @throws DatabaseError where another type stands, which only other programs can have written
-    [[nodiscard]] double number(int column) const;
-    [[nodiscard]] std::uint64_t integer(int column) const;
-    [[nodiscard]] std::string text(int column) const;
-    [[nodiscard]] std::optional<double> optional_number(int column) const;
-    [[nodiscard]] std::optional<std::uint64_t> optional_integer(int column) const;
-    [[nodiscard]] std::optional<std::string> optional_text(int column) const;
-
- private:
-    friend class Database;
-    struct Finalize {
-        void operator()(sqlite3_stmt* statement) const;
-    };
-    Statement(sqlite3* database, std::string file, std::string_view sql);
-    void check(int result) const;
-
-    sqlite3* database_;
-    std::string file_;
-    std::unique_ptr<sqlite3_stmt, Finalize> statement_;
-    int next_parameter_ = 1;
-};
-
-/// One SQLite file. Every statement is committed at once unless a Transaction lives.
+/// One SQLite file. Every statement is committed at once, unless a Transaction lives. Values are double,
+/// std::uint64_t, text and optional ones of these, which are NULL when empty.
 class Database {
  public:
-    enum class Access { read, write, create };
+    /// Opens a file. @throws DatabaseError when it does not exist, unless it is to be created, or is no database
+    explicit Database(const std::filesystem::path& file, bool creates = false);
 
-    /// @throws DatabaseError when there is none, or it is no database
-    Database(const std::filesystem::path& file, Access access);
+    /// Runs one statement; the values are those of its question marks.
+    template <class... Values>
+    void run(std::string_view sql, const Values&... values) const {
+        const Statement statement = prepare(sql);
+        int parameter = 0;
+        (bind(statement, ++parameter, values), ...);
+        while (step(statement)) {
+        }
+    }
 
-    [[nodiscard]] Statement prepare(std::string_view sql) const { return {database_.get(), file_, sql}; }
-    /// Runs one or more statements without parameters. @throws DatabaseError
+    /// Inserts a row. @param into a table, and in parentheses its columns unless all are given
+    template <class... Values>
+    void insert(const std::string& into, const Values&... values) const {
+        std::string marks;
+        ((static_cast<void>(values), marks += marks.empty() ? "?" : ", ?"), ...);
+        run("INSERT INTO " + into + " VALUES (" + marks + ")", values...);
+    }
+
+    /// Calls take(column...) for every row of an answer.
+    /// @throws DatabaseError where a column is not of its type, which only another program can have written
+    template <class... Columns, class Take>
+    void for_each(std::string_view sql, const Take& take) const {
+        const Statement row = prepare(sql);
+        while (step(row)) {
+            std::tuple<Columns...> values;
+            int column = 0;
+            std::apply([&](auto&... value) { (read(row, column++, value), ...); }, values);
+            std::apply(take, std::move(values));
+        }
+    }
+
+    /// The first column of the first row of an answer; 0 without a row.
+    [[nodiscard]] std::uint64_t number(std::string_view sql) const;
+
+    /// Runs several statements without values.
     void execute(const std::string& sql) const;
+
     /// Key of the row that was inserted last.
     [[nodiscard]] std::uint64_t last_key() const;
 
  private:
     struct Close {
         void operator()(sqlite3* database) const;
+        void operator()(sqlite3_stmt* statement) const;
     };
+    using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+
+    [[nodiscard]] Statement prepare(std::string_view sql) const;
+    [[nodiscard]] bool step(const Statement& statement) const;
+    void bind(const Statement& statement, int parameter, double value) const;
+    void bind(const Statement& statement, int parameter, std::uint64_t value) const;
+    void bind(const Statement& statement, int parameter, std::string_view value) const;
+    template <class Value>
+    void bind(const Statement& statement, int parameter, const std::optional<Value>& value) const {
+        if (value) {  // NULL otherwise, as without a value
+            bind(statement, parameter, *value);
+        }
+    }
+
+    [[nodiscard]] bool is_null(const Statement& row, int column) const;
+    void read(const Statement& row, int column, double& value) const;
+    void read(const Statement& row, int column, std::uint64_t& value) const;
+    void read(const Statement& row, int column, std::string& value) const;
+    template <class Value>
+    void read(const Statement& row, int column, std::optional<Value>& value) const {
+        if (!is_null(row, column)) {
+            read(row, column, value.emplace());
+        }
+    }
+
+    void check(int result) const;
+    [[noreturn]] void fail() const;
+    /// Throws unless a column has the type of that name.
+    void require(bool is_right, const char* name) const;
+
     std::string file_;
     std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// All that is written while it lives, or none of it.
+/// All that is written during its lifetime, or none of it.
 class Transaction {
  public:
     explicit Transaction(const Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }

@@ -17,27 +17,33 @@ Json share_json(const Share& share) {
 }
 
 Json spread_json(const Spread& spread) {
-    return {{"0", number(spread.least)},
+    return {{"0", number(spread.min)},
             {"25", number(spread.low_quartile)},
             {"50", number(spread.median)},
             {"75", number(spread.high_quartile)},
-            {"95", number(spread.most)}};
+            {"95", number(spread.quantile_95)}};
+}
+
+/// The JSON of every element.
+template <class Element, class Write>
+Json list_json(const std::vector<Element>& elements, const Write& write) {
+    Json list = Json::array();
+    for (const Element& element : elements) {
+        list.push_back(write(element));
+    }
+    return list;
 }
 
 Json costs_json(const std::vector<CostAt>& costs) {
-    Json list = Json::array();
-    for (const CostAt& at : costs) {
-        list.push_back({{"time_s", at.time_s}, {"cost", spread_json(at.cost)}});
-    }
-    return list;
+    return list_json(costs, [](const CostAt& at) -> Json {
+        return {{"time_s", at.time_s}, {"cost", spread_json(at.cost)}};
+    });
 }
 
 Json steps_json(const std::vector<SolvedAt>& steps) {
-    Json list = Json::array();
-    for (const SolvedAt& at : steps) {
-        list.push_back({{"time_s", at.time_s}, {"solved", share_json(at.solved)}});
-    }
-    return list;
+    return list_json(steps, [](const SolvedAt& at) -> Json {
+        return {{"time_s", at.time_s}, {"solved", share_json(at.solved)}};
+    });
 }
 
 /// By column.
@@ -82,7 +88,7 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
             {"verified_s", spread_json(cell.verified_s)},
             {"whole_run_s", spread_json(cell.answer_s)},
             {"flown_cost", spread_json(cell.flown_cost)},
-            {"least_clearance_m", number(cell.least_clearance_m)},
+            {"least_clearance_m", number(cell.min_clearance_m)},
             {"discarded", cell.discarded},
             {"cost_over_time", costs_json(cell.cost_over_time)},
             {"cost_curve", costs_json(cell.cost_curve)},
@@ -142,35 +148,25 @@ std::string json_of(const CampaignReport& report) {
     document["time_limit_s"] = optional_json(plan.time_limit_s);
     document["stop_at_first_solution"] = plan.stop_at_first_solution;
     document["left_out"] = plan.left_out;
-    for (const char* list : {"totals", "cells", "comparisons", "margins", "failures", "bars"}) {
-        document[list] = Json::array();
-    }
-    for (const PlannerTotals& totals : report.totals) {
-        document["totals"].push_back(totals_json(plan, totals));
-    }
-    for (const CellFigures& cell : report.cells) {
-        document["cells"].push_back(cell_json(plan, cell));
-    }
-    for (const PlannerComparison& comparison : report.comparisons) {
-        document["comparisons"].push_back(comparison_json(plan, comparison));
-    }
-    for (const MarginFinding& finding : report.margins) {
-        document["margins"].push_back(margin_json(plan, finding));
-    }
-    for (const FailureGroup& failure : report.failures) {
-        document["failures"].push_back({{"experiment", plan.experiments[failure.experiment].name()},
-                                        {"planner", plan.planners[failure.planner].name()},
-                                        {"cause", failure.cause},
-                                        {"seeds", failure.seeds},
-                                        {"nearest_approach_m", failure.nearest_approach_m}});
-    }
-    for (const BarResult& bar : report.bars) {
-        document["bars"].push_back({{"experiment", plan.experiments[bar.experiment].name()},
-                                    {"planner", plan.planners[bar.planner].name()},
-                                    {"bar", bar.bar},
-                                    {"found", bar.found},
-                                    {"kept", bar.is_kept}});
-    }
+    document["totals"] = list_json(report.totals, [&](const auto& totals) { return totals_json(plan, totals); });
+    document["cells"] = list_json(report.cells, [&](const auto& cell) { return cell_json(plan, cell); });
+    document["comparisons"] =
+        list_json(report.comparisons, [&](const auto& comparison) { return comparison_json(plan, comparison); });
+    document["margins"] = list_json(report.margins, [&](const auto& finding) { return margin_json(plan, finding); });
+    document["failures"] = list_json(report.failures, [&](const FailureGroup& failure) -> Json {
+        return {{"experiment", plan.experiments[failure.experiment].name()},
+                {"planner", plan.planners[failure.planner].name()},
+                {"cause", failure.cause},
+                {"seeds", failure.seeds},
+                {"nearest_approach_m", failure.nearest_approach_m}};
+    });
+    document["bars"] = list_json(report.targets, [&](const TargetResult& target) -> Json {
+        return {{"experiment", plan.experiments[target.experiment].name()},
+                {"planner", plan.planners[target.planner].name()},
+                {"bar", target.target},
+                {"found", target.found},
+                {"kept", target.is_met}};
+    });
     return document.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -9,36 +9,21 @@
 namespace downwash::bench {
 namespace {
 
-/// As LaTeX sets it letter by letter.
+/// Text with every character that LaTeX would interpret escaped.
 std::string in_latex(std::string_view text) {
     std::string escaped;
     for (const char letter : text) {
-        switch (letter) {
-            case '\\':
-                escaped += "\\textbackslash{}";
-                break;
-            case '~':
-                escaped += "\\textasciitilde{}";
-                break;
-            case '^':
-                escaped += "\\textasciicircum{}";
-                break;
-            case '{':
-            case '}':
-            case '$':
-            case '&':
-            case '#':
-            case '_':
-            case '%':
-                escaped += '\\';
-                escaped += letter;
-                break;
-            case '\n':
-            case '\r':
-                escaped += ' ';
-                break;
-            default:
-                escaped += letter;
+        if (letter == '\\') {
+            escaped += "\\textbackslash{}";
+        } else if (letter == '~') {
+            escaped += "\\textasciitilde{}";
+        } else if (letter == '^') {
+            escaped += "\\textasciicircum{}";
+        } else if (letter == '\n' || letter == '\r') {
+            escaped += ' ';
+        } else {
+            escaped += std::string_view("{}$&#_%").find(letter) != std::string_view::npos ? "\\" : "";
+            escaped += letter;
         }
     }
     return escaped;
@@ -83,8 +68,8 @@ std::string csv_share(const Share& share) {
 }
 
 std::string csv_spread(const Spread& spread) {
-    return fmt::format("{},{},{},{},{}", csv_number(spread.least), csv_number(spread.low_quartile),
-                       csv_number(spread.median), csv_number(spread.high_quartile), csv_number(spread.most));
+    return fmt::format("{},{},{},{},{}", csv_number(spread.min), csv_number(spread.low_quartile),
+                       csv_number(spread.median), csv_number(spread.high_quartile), csv_number(spread.quantile_95));
 }
 
 }  // namespace
@@ -95,7 +80,7 @@ std::string latex_of(const CampaignReport& report) {
         "% Campaign {}, Downwash {} at commit {}, {} of {} runs; needs \\usepackage{{booktabs}}.\n"
         "% Shares with 95 % Wilson intervals; medians with quartiles over all attempted seeds.\n"
         "\\begin{{tabular}}{{llrrrr}}\n\\toprule\n"
-        "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Flown cost \\\\\n",
+        "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Executed cost \\\\\n",
         in_latex(setting(plan, "campaign")), in_latex(setting(plan, "version")), in_latex(setting(plan, "commit")),
         report.done, plan.run_count());
     std::size_t experiment = plan.experiments.size();
@@ -131,7 +116,7 @@ std::string csv_of(const CampaignReport& report) {
                             in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
                             planner.margin_m ? csv_number(*planner.margin_m) : "", cell.solved.attempts, cell.missing,
                             csv_share(cell.solved), csv_share(cell.failed_flights), csv_share(cell.held),
-                            cell.discarded, csv_number(cell.least_clearance_m), csv_spread(cell.first_solution_s),
+                            cell.discarded, csv_number(cell.min_clearance_m), csv_spread(cell.first_solution_s),
                             csv_spread(cell.verified_s), csv_spread(cell.answer_s), csv_spread(cell.flown_cost));
     }
     return text;

@@ -5,12 +5,12 @@
 namespace downwash::bench {
 namespace {
 
-/// "Down" in ASCII: says to file(1) and to us whose SQLite file this is.
+/// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
 constexpr std::uint64_t layout_version = 3;
 
-// The first five tables are those that OMPL's ompl_benchmark_statistics.py makes, with the columns that it lets a log
-// add to experiments, runs and progress. Planner Arena reads them as they are.
+// OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
+// experiments, runs and progress. Planner Arena reads them.
 constexpr const char* layout = R"(
 CREATE TABLE experiments (
   id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512),
@@ -53,6 +53,11 @@ CREATE TABLE expectations (
   cheaper_than TEXT, cheaper_than_after_s REAL);
 )";
 
+/// In the order of CampaignExpectation.
+constexpr const char* expectation_columns =
+    "variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, first_solution_95_s, "
+    "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s";
+
 Variant variant_of(const std::string& name) {
     return named(name, {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada});
 }
@@ -65,85 +70,35 @@ std::string all_settings(const CampaignPlan& plan) {
     return text;
 }
 
-void write_enums(const Database& database) {
-    for (std::uint64_t i = 0; i < run_status_count; ++i) {
-        database.prepare("INSERT INTO enums VALUES ('status', ?, ?)")
-            .bind(i)
-            .bind(name_of(static_cast<RunStatus>(i)))
-            .run();
-    }
-}
-
 void write_what_runs(const Database& database, const CampaignPlan& plan) {
+    for (std::uint64_t i = 0; i < run_status_count; ++i) {
+        database.insert("enums", "status", i, name_of(static_cast<RunStatus>(i)));
+    }
     for (const Experiment& experiment : plan.experiments) {
-        database
-            .prepare(
-                "INSERT INTO experiments (name, totaltime, timelimit, runcount, version, hostname, cpuinfo, date, "
-                "seed, setup, problem, objective) VALUES (?, 0, ?, ?, ?, ?, ?, datetime('now'), ?, ?, ?, ?)")
-            .bind(experiment.name())
-            .bind(plan.time_limit_s)
-            .bind(std::uint64_t{plan.seeds.size()})
-            .bind("Downwash " + std::string(version()))
-            .bind(setting(plan, "host"))
-            .bind(setting(plan, "processor"))
-            .bind(std::to_string(plan.seeds.at(0)))
-            .bind(all_settings(plan))
-            .bind(experiment.problem)
-            .bind(experiment.objective)
-            .run();
+        database.run(
+            "INSERT INTO experiments (name, totaltime, timelimit, runcount, version, hostname, cpuinfo, date, seed, "
+            "setup, problem, objective) VALUES (?, 0, ?, ?, ?, ?, ?, datetime('now'), ?, ?, ?, ?)",
+            experiment.name(), plan.time_limit_s, std::uint64_t{plan.seeds.size()},
+            "Downwash " + std::string(version()), setting(plan, "host"), setting(plan, "processor"),
+            std::to_string(plan.seeds.at(0)), all_settings(plan), experiment.problem, experiment.objective);
     }
     for (const PlannerSetup& planner : plan.planners) {
-        database
-            .prepare(
-                "INSERT INTO plannerConfigs (name, settings, variant, algorithm, margin_m) VALUES (?, '', ?, ?, ?)")
-            .bind(planner.name())
-            .bind(downwash::name_of(planner.variant))
-            .bind(planner.algorithm)
-            .bind(planner.margin_m)
-            .run();
+        database.insert("plannerConfigs (name, settings, variant, algorithm, margin_m)", planner.name(), "",
+                        downwash::name_of(planner.variant), planner.algorithm, planner.margin_m);
     }
-}
-
-void write_expectations(const Database& database, const CampaignPlan& plan) {
-    for (const CampaignExpectation& bar : plan.expectations) {
-        database
-            .prepare(
-                "INSERT INTO expectations (variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, "
-                "first_solution_95_s, verified_median_s, cost_after_s, cost_to_best, cheaper_than, "
-                "cheaper_than_after_s) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-            .bind(downwash::name_of(bar.variant))
-            .bind(bar.algorithm)
-            .bind(bar.solved_ratio)
-            .bind(bar.failed_flights)
-            .bind(bar.first_solution_median_s)
-            .bind(bar.first_solution_95_s)
-            .bind(bar.verified_median_s)
-            .bind(bar.cost_after_s)
-            .bind(bar.cost_to_best)
-            .bind(bar.cheaper_than)
-            .bind(bar.cheaper_than_after_s)
-            .run();
-    }
-}
-
-std::uint64_t pragma(const Database& database, const std::string& name) {
-    Statement ask = database.prepare("PRAGMA " + name);
-    return ask.step() ? ask.integer(0) : 0;
 }
 
 }  // namespace
 
-/// Whether nothing was written yet: SQLite makes an empty file, and a kill may leave one.
 bool is_new(const Database& database) {
-    Statement ask = database.prepare("SELECT count(*) FROM sqlite_master");
-    return ask.step() && ask.integer(0) == 0;
+    return database.number("SELECT count(*) FROM sqlite_master") == 0;
 }
 
 void require_layout(const Database& database, const std::filesystem::path& file) {
-    if (pragma(database, "application_id") != application_id || pragma(database, "user_version") != layout_version) {
+    if (database.number("PRAGMA application_id") != application_id ||
+        database.number("PRAGMA user_version") != layout_version) {
         throw CampaignError(file.string() +
-                            " holds no results of a campaign that this version can read; choose another "
-                            "folder");
+                            " holds no results of a campaign that this version can read; choose another folder");
     }
 }
 
@@ -151,57 +106,58 @@ void write_plan(const Database& database, const CampaignPlan& plan) {
     database.execute("PRAGMA application_id = " + std::to_string(application_id));
     database.execute("PRAGMA user_version = " + std::to_string(layout_version));
     database.execute(layout);
-    write_enums(database);
     write_what_runs(database, plan);
-    write_expectations(database, plan);
+    for (const CampaignExpectation& target : plan.expectations) {
+        database.insert("expectations (" + std::string(expectation_columns) + ")", downwash::name_of(target.variant),
+                        target.algorithm, target.solved_ratio, target.failed_flights, target.first_solution_median_s,
+                        target.first_solution_95_s, target.verified_median_s, target.cost_after_s, target.cost_to_best,
+                        target.cheaper_than, target.cheaper_than_after_s);
+    }
     for (const auto& [name, value] : plan.settings) {
-        database.prepare("INSERT INTO campaign (name, value) VALUES (?, ?)").bind(name).bind(value).run();
+        database.insert("campaign (name, value)", name, value);
     }
     for (const std::uint32_t seed : plan.seeds) {
-        database.prepare("INSERT INTO campaign_seeds (seed) VALUES (?)").bind(std::uint64_t{seed}).run();
+        database.insert("campaign_seeds (seed)", std::uint64_t{seed});
     }
     for (const std::string& what : plan.left_out) {
-        database.prepare("INSERT INTO left_out (what) VALUES (?)").bind(what).run();
+        database.insert("left_out (what)", what);
     }
-    database.prepare("INSERT INTO campaign_limits VALUES (?, ?)")
-        .bind(plan.time_limit_s)
-        .bind(std::uint64_t{plan.stop_at_first_solution ? 1U : 0U})
-        .run();
+    database.insert("campaign_limits", plan.time_limit_s, std::uint64_t{plan.stop_at_first_solution ? 1U : 0U});
 }
 
 CampaignPlan read_plan(const Database& database) {
+    using Text = std::string;
+    using OptionalNumber = std::optional<double>;
     CampaignPlan plan;
-    for (Statement ask = database.prepare("SELECT name, value FROM campaign ORDER BY place"); ask.step();) {
-        plan.settings.emplace_back(ask.text(0), ask.text(1));
-    }
-    for (Statement ask = database.prepare("SELECT problem, objective FROM experiments ORDER BY id"); ask.step();) {
-        plan.experiments.push_back({ask.text(0), ask.text(1)});
-    }
-    for (Statement ask = database.prepare("SELECT variant, algorithm, margin_m FROM plannerConfigs ORDER BY id");
-         ask.step();) {
-        plan.planners.push_back({variant_of(ask.text(0)), ask.text(1), ask.optional_number(2)});
-    }
-    for (Statement ask = database.prepare("SELECT seed FROM campaign_seeds ORDER BY place"); ask.step();) {
-        plan.seeds.push_back(static_cast<std::uint32_t>(ask.integer(0)));
-    }
-    for (Statement ask = database.prepare(
-             "SELECT variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, first_solution_95_s, "
-             "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s FROM expectations "
-             "ORDER BY place");
-         ask.step();) {
-        plan.expectations.push_back({variant_of(ask.text(0)), ask.optional_text(1), ask.optional_number(2),
-                                     ask.optional_integer(3), ask.optional_number(4), ask.optional_number(5),
-                                     ask.optional_number(6), ask.optional_number(7), ask.optional_number(8),
-                                     ask.optional_text(9), ask.optional_number(10)});
-    }
-    for (Statement ask = database.prepare("SELECT what FROM left_out ORDER BY place"); ask.step();) {
-        plan.left_out.push_back(ask.text(0));
-    }
-    Statement limits = database.prepare("SELECT time_limit_s, stop_at_first_solution FROM campaign_limits");
-    if (limits.step()) {
-        plan.time_limit_s = limits.optional_number(0);
-        plan.stop_at_first_solution = limits.integer(1) != 0;
-    }
+    database.for_each<Text, Text>(
+        "SELECT name, value FROM campaign ORDER BY place",
+        [&](const Text& name, const Text& value) { plan.settings.emplace_back(name, value); });
+    database.for_each<Text, Text>("SELECT problem, objective FROM experiments ORDER BY id",
+                                  [&](const Text& problem, const Text& objective) {
+                                      plan.experiments.push_back({problem, objective});
+                                  });
+    database.for_each<Text, Text, OptionalNumber>(
+        "SELECT variant, algorithm, margin_m FROM plannerConfigs ORDER BY id",
+        [&](const Text& variant, const Text& algorithm, const OptionalNumber& margin_m) {
+            plan.planners.push_back({variant_of(variant), algorithm, margin_m});
+        });
+    database.for_each<std::uint64_t>("SELECT seed FROM campaign_seeds ORDER BY place", [&](std::uint64_t seed) {
+        plan.seeds.push_back(static_cast<std::uint32_t>(seed));
+    });
+    database
+        .for_each<Text, std::optional<Text>, OptionalNumber, std::optional<std::uint64_t>, OptionalNumber,
+                  OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber, std::optional<Text>, OptionalNumber>(
+            "SELECT " + std::string(expectation_columns) + " FROM expectations ORDER BY place",
+            [&](const Text& variant, const auto&... rest) {
+                plan.expectations.push_back({variant_of(variant), rest...});
+            });
+    database.for_each<Text>("SELECT what FROM left_out ORDER BY place",
+                            [&](const Text& what) { plan.left_out.push_back(what); });
+    database.for_each<OptionalNumber, std::uint64_t>("SELECT time_limit_s, stop_at_first_solution FROM campaign_limits",
+                                                     [&](const OptionalNumber& time_limit_s, std::uint64_t stops) {
+                                                         plan.time_limit_s = time_limit_s;
+                                                         plan.stop_at_first_solution = stops != 0;
+                                                     });
     return plan;
 }
 

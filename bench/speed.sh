@@ -24,6 +24,13 @@ mkdir -p bench/results
 } |
     awk -F, -v commit="$commit" -v processor="$processor" '
         function rate(name) { return name in items ? items[name] * 1e-6 : 0 }
+        # The rate of the slowest of a group.
+        function slowest(group, i, found) {
+            for (i = 1; i <= n; ++i) {
+                if (index(names[i], group) == 1 && (found == 0 || items[names[i]] < found)) { found = items[names[i]] }
+            }
+            return found + 0
+        }
         function ratio(a, b) { return b > 0 ? a / b : 0 }
         function bound(text, value, least, unit) {
             if (value > 0) {
@@ -60,6 +67,7 @@ mkdir -p bench/results
             bound("two threads over one, edges of a search of ten seconds, at least 1.8", ratio(rate("search/two_threads"), rate("search/one_thread")), 1.8, " times")
             bound("two threads over one, edges of the first few seconds, at least 1.8", ratio(rate("search/first_seconds_two_threads"), rate("search/first_seconds_one_thread")), 1.8, " times")
             bound("two threads over one, 512 edges at a time, at least 1.8", ratio(rate("batch/aerodynamics_aware_two_threads"), rate(ada)), 1.8, " times")
+            bound("searches limited to 0.1 s, the slowest algorithm, at least 1 per second", slowest("limited_search/"), 1, " per second")
             if (rate("search/two_at_once") > 0) { printf "\nTwo searches at once, of one thread each, fly %.2f times the edges of one: what two of these processors give.\n", ratio(rate("search/two_at_once"), rate("search/one_thread")) }
             printf "Batched ticks with the map run at %.2f of the speed of those without.\n", ratio(rate(ada), rate(best("dynamics_aware")))
         }' >bench/results/speed.md.new

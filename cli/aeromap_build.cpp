@@ -1,23 +1,19 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "downwash/aeromap/grid_sampling.hpp"
-#include "downwash/base/files.hpp"
-#include "downwash/cli/commands.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
-#include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/cli/vehicle_table.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
@@ -31,8 +27,11 @@ struct BuildArguments {
     std::optional<int> rotor;  ///< from 1 on
     std::vector<double> lateral_m;
     std::vector<double> pitch_deg;  ///< of the whole vehicle; empty: factors of rotors
-    int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+    int threads = default_threads();
     bool is_quiet = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
 double step_of(const BuildArguments& arguments, const Problem& problem) {
@@ -46,7 +45,7 @@ double step_of(const BuildArguments& arguments, const Problem& problem) {
 /// One layer for each lateral offset of a rotor, or that of the one rotor.
 std::vector<MapLayer> chosen_layers(const BuildArguments& arguments, const FlightModel& model) {
     if (arguments.rotor) {
-        return {model.layer(rotor_option(arguments.rotor, model))};
+        return {model.layer(rotor_option(arguments.rotor, model.tick().plant.rotor_count))};
     }
     std::vector<MapLayer> layers;
     for (int rotor = 0; rotor < model.tick().plant.rotor_count; ++rotor) {
@@ -63,7 +62,7 @@ std::vector<MapLayer> chosen_layers(const BuildArguments& arguments, const Fligh
 
 FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, const FlightModel& model,
                    const GridSampling& sampling) {
-    const MapLayer& first = model.layer(rotor_option(arguments.rotor, model));
+    const MapLayer& first = model.layer(rotor_option(arguments.rotor, model.tick().plant.rotor_count));
     Provenance provenance = provenance_of(*first.effect);
     provenance.insert(provenance.begin() + 1, {{"problem", problem.name}, {"problem_sha256", problem_sha256(problem)}});
     if (model.tick().plant.has_fountain) {
@@ -79,7 +78,7 @@ FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, cons
     return sample_volume(*first.effect, arguments.lateral_m[0], arguments.lateral_m[1], sampling, provenance);
 }
 
-/// Before anything is evaluated.
+/// Checks the output before anything is computed. @throws UsageError
 void require_sound_output(const BuildArguments& arguments) {
     if (arguments.pitch_deg.empty()) {
         require_grid_writable(arguments.output);
@@ -92,11 +91,7 @@ void require_sound_output(const BuildArguments& arguments) {
         throw UsageError("--output " + arguments.output +
                          ": the whole vehicle (--pitch-deg) is written as CSV, expected a name that ends in .csv");
     }
-    try {
-        require_writable(arguments.output);
-    } catch (const FileError& error) {
-        throw UsageError("--output " + arguments.output + " " + error.what());
-    }
+    require_writable_result(arguments.output, "--output");
 }
 
 ExitCode build_vehicle(const BuildArguments& arguments, const Problem& problem, const FlightModel& model) {
@@ -104,79 +99,70 @@ ExitCode build_vehicle(const BuildArguments& arguments, const Problem& problem, 
     const std::string table =
         vehicle_table(problem, model, arguments.pitch_deg, step_of(arguments, problem), arguments.threads,
                       [&display](double share) { display.show("evaluating the vehicle", share); });
-    try {
-        write_file(arguments.output, table);
-    } catch (const FileError& error) {
-        throw UsageError("--output " + arguments.output + " " + error.what());
-    }
+    write_result(arguments.output, table, "--output");
     display.say(
         fmt::format("{}: the whole vehicle at {} pitch angle(s)", arguments.output, arguments.pitch_deg.size()));
     return ExitCode::done;
 }
 
-ExitCode build(const BuildArguments& arguments) {
-    if (arguments.threads < 1 || arguments.threads > 256) {
-        throw UsageError(fmt::format("--threads {}: expected a number from 1 to 256", arguments.threads));
+ExitCode BuildArguments::run() const {
+    require_sound_output(*this);
+    const Problem read = read_problem(problem);
+    if (!read.aero.enabled) {
+        throw UsageError(problem + ": aero is none, so there is no map to build");
     }
-    require_sound_output(arguments);
-    const Problem problem = read_problem(arguments.problem);
-    if (!problem.aero.enabled) {
-        throw UsageError(arguments.problem + ": aero is none, so there is no map to build");
+    const auto model = make_flight_model(read);
+    if (!pitch_deg.empty()) {
+        return build_vehicle(*this, read, *model);
     }
-    const auto model = make_flight_model(problem);
-    if (!arguments.pitch_deg.empty()) {
-        return build_vehicle(arguments, problem, *model);
-    }
-    ProgressDisplay display(arguments.is_quiet);
-    GridSampling sampling{problem.plane, rotor_extent(problem.robot.rotors, problem.bounds),
-                          step_of(arguments, problem), arguments.threads,
+    ProgressDisplay display(is_quiet);
+    GridSampling sampling{read.plane, rotor_extent(read.robot.rotors, read.bounds), step_of(*this, read), threads,
                           [&display](double share) { display.show("building the map", share); }};
-    const FactorGrid grid = sampled(arguments, problem, *model, sampling);
-    write_factor_grid(arguments.output, grid);
+    const FactorGrid grid = sampled(*this, read, *model, sampling);
+    write_factor_grid(output, grid);
     if (model->tick().plant.has_fountain) {
-        display.say("the fountain that pushes the body is not contained: the grid holds the factors of rotors");
+        display.say("the grid holds the factors of rotors; it does not contain the fountain that pushes the body");
     }
-    display.say(fmt::format("{}: {} x {} x {} nodes, {} layer(s)", arguments.output, grid.x().count, grid.y().count,
+    display.say(fmt::format("{}: {} x {} x {} nodes, {} layer(s)", output, grid.x().count, grid.y().count,
                             grid.z().count, grid.layers()));
     return ExitCode::done;
+}
+
+void BuildArguments::add_to(CLI::App& command) {
+    add_problem(command, problem);
+    command.add_option("-o,--output", output, "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
+        ->type_name("FILE")
+        ->required();
+    command.add_option("--step", step_m, "maximum distance between nodes [m]; default aero.grid_m")->type_name("M");
+    CLI::Option* one_rotor =
+        command
+            .add_option("--rotor", rotor,
+                        "only the plane of this rotor, counted from 1; default: one layer for every lateral offset")
+            ->type_name("N");
+    CLI::Option* lateral =
+        command
+            .add_option("--lateral", lateral_m,
+                        "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
+            ->type_name("LOW HIGH")
+            ->expected(2);
+    command
+        .add_option(
+            "--pitch-deg", pitch_deg,
+            "the whole vehicle at these pitch angles instead of rotors, as .csv: force factor, pitch torque and "
+            "its factor over the place of the centre of mass; positive nose down")
+        ->type_name("P...")
+        ->excludes(one_rotor)
+        ->excludes(lateral);
+    add_threads(command, threads);
+    add_quiet(command, is_quiet);
 }
 
 }  // namespace
 
 void add_aeromap_build(CLI::App& aeromap, Action& action) {
-    const auto arguments = std::make_shared<BuildArguments>();
-    CLI::App* build_command = aeromap.add_subcommand("build",
-                                                     "Evaluate a problem's surface effects, on rotors or the whole "
-                                                     "vehicle, on a regular grid and write it as a file");
-    build_command->add_option("PROBLEM", arguments->problem, "problem file")->required();
-    build_command
-        ->add_option("-o,--output", arguments->output, "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
-        ->type_name("FILE")
-        ->required();
-    build_command->add_option("--step", arguments->step_m, "most distance between nodes [m]; default aero.grid_m")
-        ->type_name("M");
-    CLI::Option* rotor =
-        build_command
-            ->add_option("--rotor", arguments->rotor,
-                         "only the plane of this rotor, 1 the first; default: one layer for every lateral offset")
-            ->type_name("N");
-    CLI::Option* lateral =
-        build_command
-            ->add_option("--lateral", arguments->lateral_m,
-                         "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
-            ->type_name("LOW HIGH")
-            ->expected(2);
-    build_command
-        ->add_option("--pitch-deg", arguments->pitch_deg,
-                     "the whole vehicle at these pitch angles instead of rotors: force factor, pitch torque and its "
-                     "factor over where its centre of mass may be, as .csv; positive nose down")
-        ->type_name("P...")
-        ->excludes(rotor)
-        ->excludes(lateral);
-    build_command->add_option("--threads", arguments->threads, "threads; the result does not depend on it")
-        ->type_name("N");
-    build_command->add_flag("--quiet", arguments->is_quiet, "say nothing but errors");
-    build_command->callback([arguments, &action] { action = [arguments] { return build(*arguments); }; });
+    add_command<BuildArguments>(aeromap, action, "build",
+                                "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a regular "
+                                "grid and write it as a file");
 }
 
 }  // namespace downwash::cli

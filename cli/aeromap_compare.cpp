@@ -1,15 +1,13 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "downwash/base/text.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/measured_data.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/fitting/effect_comparison.hpp"
 
@@ -20,15 +18,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr double max_factor = 2;
 constexpr char explanation[] =
-    "Errors are K minus thrust ratio, K clamped to [1, 2] as in flight: above zero a model overstates the effect,\n"
-    "below zero it understates it. Under a ceiling overstating is careful: a plan expects more pull than there is,\n"
-    "and only the energy that the pull saves is promised too high. Over the ground overstating is optimistic: lift,\n"
-    "stiffness and savings are promised that are not there. Understating is the other way round.\n";
+    "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2] as in flight. A positive\n"
+    "error overstates the effect, a negative one understates it. Under a ceiling, overstating is careful: the plan\n"
+    "expects more suction than there is, and only overrates the energy that suction saves. Over the ground,\n"
+    "overstating is optimistic: the plan counts on lift, stiffness and savings that do not exist. Understating has\n"
+    "the opposite consequences.\n";
 
 struct CompareArguments {
     MeasuredData data;
-    bool as_json = false;
-    bool as_markdown = false;
+    bool as_json = false, as_markdown = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
 Json parameters_json(const ModelScore& score) {
@@ -102,17 +103,20 @@ std::string error_text(const ErrorBand& band) {
 }
 
 void print_text(const DataSetComparison& set) {
-    fmt::print("\n{}\n{:<18} {:<42} {:>6}", title_of(set), "model", "parameters", "RMSE");
-    for (const ErrorBand& band : set.scores.front().bands) {
-        fmt::print(" {:>9}", band_name(band));
-    }
-    for (const ModelScore& score : set.scores) {
-        fmt::print("\n{:<18} {:<42} {:>6.4f}", info(score.effect.model).name, parameters_text(score), score.rmse);
+    const auto print_row = [](std::string_view model, const std::string& parameters, const std::string& rmse,
+                              const ModelScore& score, const auto& text_of) {
+        fmt::print("{:<18} {:<42} {:>6}", model, parameters, rmse);
         for (const ErrorBand& band : score.bands) {
-            fmt::print(" {:>9}", error_text(band));
+            fmt::print(" {:>9}", text_of(band));
         }
+        fmt::print("\n");
+    };
+    fmt::print("\n{}\n", title_of(set));
+    print_row("model", "parameters", "RMSE", set.scores.front(), band_name);
+    for (const ModelScore& score : set.scores) {
+        print_row(info(score.effect.model).name, parameters_text(score), fmt::format("{:.4f}", score.rmse), score,
+                  error_text);
     }
-    fmt::print("\n");
 }
 
 void print_markdown(const DataSetComparison& set) {
@@ -133,34 +137,34 @@ void print_markdown(const DataSetComparison& set) {
     fmt::print("\n");
 }
 
-ExitCode run(const CompareArguments& arguments) {
-    if (arguments.as_json && arguments.as_markdown) {
+ExitCode CompareArguments::run() const {
+    if (as_json && as_markdown) {
         throw UsageError("--json and --markdown: expected at most one of them");
     }
-    const Measurements measurements = arguments.data.read();
-    const std::vector<DataSetComparison> comparisons =
-        compare_effects(measurements, arguments.data.neighbours(), max_factor);
-    if (arguments.as_json) {
-        fmt::print("{}\n", json_text(comparison_json(comparisons)));
+    const std::vector<DataSetComparison> comparisons = compare_effects(data.read(), data.neighbours(), max_factor);
+    if (as_json) {
+        print_json(comparison_json(comparisons));
         return ExitCode::done;
     }
     fmt::print("{}", explanation);
     for (const DataSetComparison& set : comparisons) {
-        arguments.as_markdown ? print_markdown(set) : print_text(set);
+        as_markdown ? print_markdown(set) : print_text(set);
     }
     return ExitCode::done;
+}
+
+void CompareArguments::add_to(CLI::App& command) {
+    data.add_options(command);
+    add_json(command, as_json);
+    command.add_flag("--markdown", as_markdown, "print tables in Markdown");
 }
 
 }  // namespace
 
 void add_aeromap_compare(CLI::App& aeromap, Action& action) {
-    const auto arguments = std::make_shared<CompareArguments>();
-    CLI::App* compare = aeromap.add_subcommand(
-        "compare", "How near every model comes to measurements, as its source has it and refitted");
-    arguments->data.add_options(*compare);
-    compare->add_flag("--json", arguments->as_json, "print JSON");
-    compare->add_flag("--markdown", arguments->as_markdown, "print tables in Markdown");
-    compare->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<CompareArguments>(
+        aeromap, action, "compare",
+        "Compare all models with measurements, each with the parameters of its source and refitted");
 }
 
 }  // namespace downwash::cli

@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
-#include "downwash/cli/standard_error.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/fitting/effect_fit.hpp"
 #include "downwash/report/curve_figure.hpp"
@@ -32,26 +25,12 @@ struct FitArguments {
     MeasuredData data;
     std::string model;
     std::vector<std::string> fixed;
-    bool is_weighted = false;
-    bool as_json = false;
+    bool is_weighted = false, as_json = false;
     std::string plot;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
-
-/// "NAME=VALUE" as a parameter and its number.
-std::pair<std::string, double> fixed_parameter(const std::string& text) {
-    const std::size_t equals = std::min(text.find('='), text.size());
-    const char* end = text.data() + text.size();
-    double value = 0;
-    const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
-    if (equals == text.size() || error != std::errc() || rest != end) {
-        throw UsageError("--fix '" + excerpt(text) + "': expected NAME=NUMBER");
-    }
-    return {text.substr(0, equals), value};
-}
-
-Json json_of(const std::optional<double>& value) {
-    return value ? Json(*value) : Json();
-}
 
 Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vector<Measurement>& points) {
     auto values = Json::object();
@@ -97,13 +76,13 @@ Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vec
             {"residuals", std::move(residuals)}};
 }
 
-/// What is noteworthy of a parameter, behind its value.
+/// A remark to print after the value of a parameter.
 std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
     if (parameter.is_fixed) {
         return "  fixed";
     }
     if (parameter.is_at_bound) {
-        return "  at the end of its range: the data want it outside";
+        return "  at the end of its range: the data ask for a value outside";
     }
     for (const std::string_view name : fit.undetermined) {
         if (name == parameter.name) {
@@ -115,7 +94,7 @@ std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
                                     : "  no standard error: as many parameters as measurements";
 }
 
-/// The side of a problem's `aero` with the fitted model, ready to be pasted.
+/// The lines of a problem file for the fitted model, ready to be pasted.
 std::string yaml_of(const EffectModelInfo& model, const EffectFit& fit, const std::string& surface) {
     std::string text = "aero:\n  " + surface + ": {model: " + std::string(model.name);
     for (const FittedParameter& parameter : fit.parameters) {
@@ -157,7 +136,7 @@ void print_fit(const FitArguments& arguments, const EffectModelInfo& model, cons
     }
 }
 
-/// Measurements with the fitted curve and that of the model's source, and what is left of them below.
+/// Measurements with the fitted curve and the curve of the model's source; the residuals below.
 std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const EffectFit& fit,
                                       const std::vector<Measurement>& points, const RotorNeighbours& neighbours) {
     CurveFigure curves;
@@ -214,76 +193,59 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
     return {std::move(curves), std::move(rest)};
 }
 
-PictureFormat format_of(const std::string& file) {
-    const auto format = picture_format_of(file);
-    if (!format) {
-        throw UsageError("--plot '" + excerpt(file) + "': expected a file name that ends in .svg, .png or .pdf");
-    }
-    return *format;
-}
-
-void write_plot(const std::string& file, std::span<const CurveFigure> figures) {
+ExitCode FitArguments::run() const {
+    const EffectModelInfo& known = model_named(model);
     PictureSettings settings;
-    settings.format = format_of(file);
-    try {
-        write_file(file, draw(figures, settings));
-    } catch (const FileError& error) {
-        throw UsageError("--plot " + file + ": " + error.what());
-    }
-}
-
-ExitCode run(const FitArguments& arguments) {
-    const EffectModelInfo& model = model_named(arguments.model);
-    if (!arguments.plot.empty()) {
-        static_cast<void>(format_of(arguments.plot));
+    if (!plot.empty()) {
+        settings.format = picture_format("--plot", plot);
     }
     FitOptions options;
-    options.neighbours = arguments.data.neighbours();
-    const bool is_multirotor =
-        model.model == EffectModel::multirotor_images || model.model == EffectModel::multirotor_body;
-    if (is_multirotor && !arguments.data.rotor_spacing) {
-        throw UsageError("--model " + std::string(model.name) +
-                         " needs the other rotors: expected --rotor-spacing S, the distance of neighbouring axes of a "
-                         "square quadrotor in radii");
+    options.neighbours = data.neighbours();
+    if (is_multirotor(known.model) && !data.rotor_spacing) {
+        throw UsageError(fmt::format(
+            "--model {} needs the other rotors: expected --rotor-spacing S, the distance of neighbouring axes of a "
+            "square quadrotor in radii",
+            known.name));
     }
-    options.is_weighted = arguments.is_weighted;
-    for (const std::string& text : arguments.fixed) {
-        options.fixed.push_back(fixed_parameter(text));
+    options.is_weighted = is_weighted;
+    for (const std::string& text : fixed) {
+        options.fixed.push_back(named_number("--fix", text));
     }
-    const Measurements measurements = arguments.data.read();
-    if (arguments.data.surface.empty() && measurements.entries("surface").size() > 1) {
-        fmt::print(stderr, "downwash: {} holds several surfaces, and all are fitted together; --surface chooses one\n",
-                   arguments.data.file);
+    const Measurements measurements = data.read();
+    if (data.surface.empty() && measurements.entries("surface").size() > 1) {
+        print_error(fmt::format(
+            "downwash: {} holds several surfaces, and all are fitted together; --surface selects one\n", data.file));
     }
-    const EffectFit fit = fit_effect(model.model, measurements.points, options);
-    if (!arguments.plot.empty()) {
-        write_plot(arguments.plot, figures_of(model, fit, measurements.points, options.neighbours));
+    const EffectFit fit = fit_effect(known.model, measurements.points, options);
+    if (!plot.empty()) {
+        write_result(plot, draw(figures_of(known, fit, measurements.points, options.neighbours), settings), "--plot");
     }
-    if (arguments.as_json) {
-        fmt::print("{}\n", json_text(fit_json(model, fit, measurements.points)));
+    if (as_json) {
+        print_json(fit_json(known, fit, measurements.points));
     } else {
-        print_fit(arguments, model, fit);
+        print_fit(*this, known, fit);
     }
     return ExitCode::done;
+}
+
+void FitArguments::add_to(CLI::App& command) {
+    data.add_options(command);
+    CLI::Option* option = command.add_option("--model", model, "name of a model as in a problem file");
+    offer_models(*option->type_name("NAME")->required());
+    command.add_option("--fix", fixed, "keep a parameter at a value; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->take_all();
+    command.add_flag("--weighted", is_weighted, "weight each residual by 1 / sigma, a column of DATA");
+    command.add_option("--plot", plot, "draw measurements, curve and residuals to a .svg, .png or .pdf file")
+        ->type_name("FILE");
+    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_fit(CLI::App& aeromap, Action& action) {
-    const auto arguments = std::make_shared<FitArguments>();
-    CLI::App* fit = aeromap.add_subcommand("fit", "Fit a model's parameters to measurements by least squares");
-    arguments->data.add_options(*fit);
-    CLI::Option* model = fit->add_option("--model", arguments->model, "name of a model as in a problem file");
-    offer_models(*model->type_name("NAME")->required());
-    fit->add_option("--fix", arguments->fixed, "keep a parameter at a value; may be given several times")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->take_all();
-    fit->add_flag("--weighted", arguments->is_weighted, "count each residual by 1 / sigma, a column of DATA");
-    fit->add_option("--plot", arguments->plot, "draw measurements, curve and residuals to a .svg, .png or .pdf file")
-        ->type_name("FILE");
-    fit->add_flag("--json", arguments->as_json, "print JSON");
-    fit->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<FitArguments>(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares");
 }
 
 }  // namespace downwash::cli

@@ -2,16 +2,15 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
@@ -26,9 +25,12 @@ struct HoldArguments {
     double arm_deg = 0;
     std::vector<std::array<double, 2>> at;
     bool as_json = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
-/// What is known of one point; everything but the place and the verdict may be missing.
+/// The answer for one point; everything but the place and the verdict may be missing.
 struct HoldAnswer {
     double x_m, z_m;
     HoverAnalysis analysis;
@@ -102,28 +104,23 @@ void print_table(const std::vector<HoldAnswer>& answers) {
     }
 }
 
-ExitCode run(const HoldArguments& arguments) {
-    constexpr double most_degrees = 3600;
-    if (!(std::abs(arguments.arm_deg) <= most_degrees)) {
-        throw UsageError(
-            fmt::format("--arm-deg {}: expected an angle of at most {} degrees", arguments.arm_deg, most_degrees));
+ExitCode HoldArguments::run() const {
+    constexpr double max_degrees = 3600;
+    if (!(std::abs(arm_deg) <= max_degrees)) {
+        throw UsageError(fmt::format("--arm-deg {}: expected an angle of at most {} degrees", arm_deg, max_degrees));
     }
-    for (const auto& point : arguments.at) {
-        for (const double coordinate_m : point) {
-            if (!(std::abs(coordinate_m) <= 1e6)) {
-                throw UsageError(fmt::format("--at {}: expected finite coordinates in m, at most 1e6", coordinate_m));
-            }
-        }
+    for (const auto& [x_m, z_m] : at) {
+        require_coordinate(x_m, "--at");
+        require_coordinate(z_m, "--at");
     }
-    const Problem problem = read_problem(arguments.problem);
-    const auto model = make_flight_model(problem);
-    const double arm_rad = arguments.arm_deg / degrees_per_radian;
+    const auto model = make_flight_model(read_problem(problem));
+    const double arm_rad = arm_deg / degrees_per_radian;
     std::vector<HoldAnswer> answers;
-    for (const auto& [x_m, z_m] : arguments.at) {
+    for (const auto& [x_m, z_m] : at) {
         answers.push_back({x_m, z_m, analyse_hover(*model, x_m, z_m, arm_rad),
                            vehicle_effect(*model, PlanarPose{x_m, z_m, 0, arm_rad})});
     }
-    if (!arguments.as_json) {
+    if (!as_json) {
         print_table(answers);
         return ExitCode::done;
     }
@@ -131,29 +128,24 @@ ExitCode run(const HoldArguments& arguments) {
     for (const HoldAnswer& answer : answers) {
         points.push_back(json_of(answer, model->tick().plant.rotor_count));
     }
-    fmt::print("{}\n", json_text(Json{{"arm_deg", arguments.arm_deg}, {"points", std::move(points)}}));
+    print_json({{"arm_deg", arm_deg}, {"points", std::move(points)}});
     return ExitCode::done;
+}
+
+void HoldArguments::add_to(CLI::App& command) {
+    add_problem(command, problem);
+    command.add_option("--arm-deg", arm_deg, "arm angle relative to the multirotor [deg]")->required()->type_name("A");
+    add_points(command, at, "centre of mass in plane coordinates [m], within the bounds or not; may be repeated")
+        ->required();
+    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_hold(CLI::App& aeromap, Action& action) {
-    const auto arguments = std::make_shared<HoldArguments>();
-    CLI::App* hold = aeromap.add_subcommand(
-        "hold", "Whether the vehicle can hover at a point: rotor limits, saturation, stability of its closed loop");
-    hold->add_option("PROBLEM", arguments->problem, "problem file")->required();
-    hold->add_option("--arm-deg", arguments->arm_deg, "arm angle relative to the multirotor [deg]")
-        ->required()
-        ->type_name("A");
-    hold->add_option("--at", arguments->at,
-                     "centre of mass in plane coordinates [m]; may be given several times, in the bounds or not")
-        ->required()
-        ->type_name("X Z")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    hold->add_flag("--json", arguments->as_json, "print JSON");
-    hold->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<HoldArguments>(
+        aeromap, action, "hold",
+        "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop");
 }
 
 }  // namespace downwash::cli

@@ -1,16 +1,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "downwash/base/angles.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 
 namespace downwash::cli {
@@ -22,13 +20,13 @@ Json axis_json(const GridAxis& axis) {
     return {{"low_m", axis.low_m}, {"high_m", axis.high_m}, {"step_m", axis.step_m()}, {"nodes", axis.count}};
 }
 
-/// Where a rotor may fly; the nodes of a grid that does not say are all taken.
+/// Nodes at which a rotor may fly; all nodes of a grid that does not say.
 std::size_t flyable_nodes(const FactorGrid& grid) {
     const std::vector<double>* flyable = grid.field("flyable");
     return flyable ? static_cast<std::size_t>(std::count(flyable->begin(), flyable->end(), 1)) : grid.nodes();
 }
 
-/// Least and greatest value of a field where a rotor may fly; empty when it may nowhere.
+/// Minimum and maximum of a field where a rotor may fly; empty if it may not fly anywhere.
 std::optional<std::pair<double, double>> flyable_range(const FactorGrid& grid, const GridField& field) {
     const std::vector<double>* flyable = grid.field("flyable");
     std::optional<std::pair<double, double>> range;
@@ -107,28 +105,25 @@ void print_text(const std::string& file, const FactorGrid& grid) {
     }
 }
 
+struct InfoArguments {
+    std::string file;
+    bool as_json = false;
+
+    void add_to(CLI::App& command) {
+        command.add_option("FILE", file, ".vti or CSV file of factors")->required();
+        add_json(command, as_json);
+    }
+    [[nodiscard]] ExitCode run() const {
+        const FactorGrid grid = read_factor_grid(file);
+        as_json ? print_json(json_of(file, grid)) : print_text(file, grid);
+        return ExitCode::done;
+    }
+};
+
 }  // namespace
 
 void add_aeromap_info(CLI::App& aeromap, Action& action) {
-    struct InfoArguments {
-        std::string file;
-        bool as_json = false;
-    };
-    const auto arguments = std::make_shared<InfoArguments>();
-    CLI::App* info_command = aeromap.add_subcommand("info", "What a file of a grid holds, and what made it");
-    info_command->add_option("FILE", arguments->file, ".vti or CSV file of factors")->required();
-    info_command->add_flag("--json", arguments->as_json, "print JSON");
-    info_command->callback([arguments, &action] {
-        action = [arguments] {
-            const FactorGrid grid = read_factor_grid(arguments->file);
-            if (arguments->as_json) {
-                fmt::print("{}\n", json_text(json_of(arguments->file, grid)));
-            } else {
-                print_text(arguments->file, grid);
-            }
-            return ExitCode::done;
-        };
-    });
+    add_command<InfoArguments>(aeromap, action, "info", "Show what a grid file holds and how it was made");
 }
 
 }  // namespace downwash::cli

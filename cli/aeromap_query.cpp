@@ -2,28 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "downwash/base/text.hpp"
-#include "downwash/cli/cache_folder.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/model_option.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
-#include "downwash/cli/rotor_option.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
@@ -38,11 +33,13 @@ struct QueryArguments {
     std::optional<int> rotor;
     ModelChoice model;
     std::vector<double> z_over_r;
-    bool no_cache = false;
-    bool as_json = false;
+    bool no_cache = false, as_json = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
-/// What surfaces do to a rotor at one point; factors are empty where it is not flyable.
+/// The effect of surfaces on a rotor at one point; the factors are empty where it is not flyable.
 struct PointEffect {
     std::array<double, 3> at_m;
     bool is_flyable = false;
@@ -56,7 +53,7 @@ class Effects {
     Effects(const QueryArguments& arguments, const Problem& problem, std::filesystem::path cache)
         : problem_(problem),
           model_(make_flight_model(problem)),
-          rotor_(rotor_option(arguments.rotor, *model_)),
+          rotor_(rotor_option(arguments.rotor, model_->tick().plant.rotor_count)),
           cache_(std::move(cache)) {}
 
     PointEffect at(const std::array<double, 3>& point_m) {
@@ -91,11 +88,10 @@ class Effects {
 
     const AeroMap& map() {
         if (!map_) {
-            const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
             ProgressDisplay display(false);
             map_ = model_->make_map(
-                problem_.bounds, threads, [&display](double share) { display.show("building the map", share); },
-                cache_);
+                problem_.bounds, default_threads(),
+                [&display](double share) { display.show("building the map", share); }, cache_);
         }
         return *map_;
     }
@@ -106,10 +102,6 @@ class Effects {
     std::filesystem::path cache_;
     std::shared_ptr<const AeroMap> map_;
 };
-
-Json json_of(const std::optional<double>& value) {
-    return value ? Json(*value) : Json();
-}
 
 std::string text_of(const std::optional<double>& value) {
     return value ? fmt::format("{:.6f}", *value) : "-";
@@ -136,48 +128,49 @@ void print_points(const std::vector<PointEffect>& effects, bool as_json) {
         }
     }
     if (as_json) {
-        fmt::print("{}\n", json_text(Json{{"points", std::move(points)}}));
+        print_json({{"points", std::move(points)}});
     }
 }
 
 void require_place(const std::array<double, 3>& point_m, const std::string& where) {
     for (const double coordinate_m : point_m) {
-        if (!(std::abs(coordinate_m) <= 1e6)) {
-            throw UsageError(fmt::format("{} {}: expected finite coordinates in m, at most 1e6", where, coordinate_m));
-        }
+        require_coordinate(coordinate_m, where);
     }
 }
 
-/// Lines of three numbers, apart by blanks or commas; empty lines, comments behind # and a line x_m,y_m,z_m are passed
-/// over.
+/// The three numbers of a line; empty when it holds something else.
+std::optional<std::array<double, 3>> point_in(const std::string& line) {
+    std::array<double, 3> point_m{};
+    std::istringstream words(line);
+    std::string word;
+    for (double& coordinate_m : point_m) {
+        const auto number = words >> word ? parse_number<double>(word) : std::nullopt;
+        if (!number) {
+            return std::nullopt;
+        }
+        coordinate_m = *number;
+    }
+    return words >> word ? std::nullopt : std::optional(point_m);
+}
+
+/// Reads lines of three numbers, separated by blanks or commas. Skips empty lines, comments after # and a line
+/// x_m,y_m,z_m.
 std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::string& name) {
     std::vector<std::array<double, 3>> points;
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
         line.erase(std::min(line.find('#'), line.size()));
-        std::replace_if(
-            line.begin(), line.end(), [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
-        const auto first = line.find_first_not_of(' ');
-        if (first == std::string::npos || line.compare(first, 3, "x_m") == 0) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        if (const std::string_view content = trimmed(line); content.empty() || content.starts_with("x_m")) {
             continue;
         }
-        std::array<double, 3> point_m{};
-        const char* at = line.data() + first;
-        const char* end = line.data() + line.size();
-        for (double& coordinate_m : point_m) {
-            const auto [rest, error] = std::from_chars(at, end, coordinate_m);
-            at = std::find_if(rest, end, [](char c) { return c != ' '; });
-            if (error != std::errc() || (rest != end && *rest != ' ')) {
-                throw UsageError(
-                    fmt::format("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(line)));
-            }
-        }
-        if (at != end) {
+        const auto point_m = point_in(line);
+        if (!point_m) {
             throw UsageError(
-                fmt::format("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(line)));
+                fmt::format("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(trimmed(line))));
         }
-        require_place(point_m, fmt::format("{}:{}:", name, number));
-        points.push_back(point_m);
+        require_place(*point_m, fmt::format("{}:{}:", name, number));
+        points.push_back(*point_m);
     }
     return points;
 }
@@ -187,23 +180,28 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& arguments) {
     for (const auto& point_m : points) {
         require_place(point_m, "--at");
     }
+    if (arguments.points.empty()) {
+        return points;
+    }
+    const auto reject = [&arguments](const char* why) {
+        throw UsageError("--points " + arguments.points + ": " + why);
+    };
     std::vector<std::array<double, 3>> further;
     if (arguments.points == "-") {
         further = read_points(std::cin, "standard input");
-    } else if (!arguments.points.empty()) {
+    } else {
         std::error_code none;
         if (std::filesystem::is_directory(arguments.points, none)) {
-            throw UsageError("--points " + arguments.points + ": is a directory, expected a file");
+            reject("is a directory, expected a file");
         }
         std::ifstream file(arguments.points);  // or a pipe
         if (!file) {
-            throw UsageError("--points " + arguments.points + ": cannot be read");
+            reject("cannot be read");
         }
         further = read_points(file, arguments.points);
     }
-    if (further.empty() && !arguments.points.empty()) {
-        throw UsageError("--points " + arguments.points +
-                         ": holds no point, expected lines of three numbers, x_m y_m z_m");
+    if (further.empty()) {
+        reject("holds no point, expected lines of three numbers, x_m y_m z_m");
     }
     points.insert(points.end(), further.begin(), further.end());
     return points;
@@ -211,7 +209,7 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& arguments) {
 
 void query_problem(const QueryArguments& arguments) {
     const Problem problem = read_problem(arguments.problem);
-    Effects effects(arguments, problem, arguments.no_cache ? std::filesystem::path() : cache_folder());
+    Effects effects(arguments, problem, cache_folder(arguments.no_cache));
     std::vector<PointEffect> points;
     for (const auto& point_m : all_points(arguments)) {
         points.push_back(effects.at(point_m));
@@ -230,7 +228,7 @@ void query_model(const QueryArguments& arguments) {
         points.push_back({{"z_over_r", z_over_r}, {"factor", curve(z_over_r)}});
     }
     if (arguments.as_json) {
-        fmt::print("{}\n", json_text(Json{{"model", model.name}, {"points", std::move(points)}}));
+        print_json({{"model", model.name}, {"points", std::move(points)}});
         return;
     }
     fmt::print("{}: {}\nK = {}\nholds: {}\n{:>10}  {:>10}\n", model.name, model.source, model.formula, model.validity,
@@ -240,50 +238,48 @@ void query_model(const QueryArguments& arguments) {
     }
 }
 
-ExitCode run(const QueryArguments& arguments) {
-    const bool has_model = !arguments.model.name.empty();
-    const bool has_points = !arguments.at.empty() || !arguments.points.empty();
-    if (arguments.problem.empty() != has_model) {
-        throw UsageError("aeromap query wants either PROBLEM with --at X Y Z, or --model NAME with --z-over-r V");
+ExitCode QueryArguments::run() const {
+    const bool has_model = !model.name.empty();
+    const bool has_points = !at.empty() || !points.empty();
+    if (problem.empty() != has_model) {
+        throw UsageError("aeromap query needs either PROBLEM with --at X Y Z, or --model NAME with --z-over-r V");
     }
-    if (has_model && (arguments.z_over_r.empty() || has_points || arguments.rotor)) {
-        throw UsageError("--model wants --z-over-r V... and no --at, --points or --rotor");
+    if (has_model && (z_over_r.empty() || has_points || rotor)) {
+        throw UsageError("--model needs --z-over-r V... and excludes --at, --points and --rotor");
     }
-    if (!has_model && (!has_points || !arguments.z_over_r.empty() || is_given(arguments.model))) {
-        throw UsageError("PROBLEM wants --at X Y Z or --points FILE, and nothing that belongs to --model");
+    if (!has_model && (!has_points || !z_over_r.empty() || is_given(model))) {
+        throw UsageError("PROBLEM needs --at X Y Z or --points FILE and excludes the options of --model");
     }
-    has_model ? query_model(arguments) : query_problem(arguments);
+    has_model ? query_model(*this) : query_problem(*this);
     return ExitCode::done;
+}
+
+void QueryArguments::add_to(CLI::App& command) {
+    command.add_option("PROBLEM", problem, "problem file");
+    add_points(command, at,
+               "rotor hub in the world frame [m]; may be repeated. `factor` comes from the problem's map if the point "
+               "lies on one of its planes");
+    command.add_option("--points", points, "file with more points, one per line; - reads them from standard input")
+        ->type_name("FILE");
+    command
+        .add_option("--rotor", rotor,
+                    "the rotor whose neighbours the multirotor models consider, counted from 1; default 1")
+        ->type_name("N");
+    CLI::Option* option = command.add_option("--model", model.name, "name of a model as in a problem file");
+    offer_models(*option->type_name("NAME"));
+    command.add_option("--z-over-r", z_over_r, "distances in rotor radii")->type_name("V...");
+    add_model_options(command, model);
+    add_no_cache(command, no_cache);
+    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_query(CLI::App& aeromap, Action& action) {
-    const auto arguments = std::make_shared<QueryArguments>();
-    CLI::App* query = aeromap.add_subcommand(
-        "query", "Factors on a rotor's thrust: PROBLEM with --at, or --model with --z-over-r for a wide flat surface");
-    query->add_option("PROBLEM", arguments->problem, "problem file");
-    query
-        ->add_option("--at", arguments->at,
-                     "rotor hub in the world frame [m]; may be given several times. `factor` comes from the problem's "
-                     "map where the point lies on one of its planes")
-        ->type_name("X Y Z")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    query
-        ->add_option("--points", arguments->points,
-                     "file of many such points, a line each; - reads them from standard input")
-        ->type_name("FILE");
-    query->add_option("--rotor", arguments->rotor, "whose neighbours count for the multirotor models; default 1")
-        ->type_name("N");
-    CLI::Option* model = query->add_option("--model", arguments->model.name, "name of a model as in a problem file");
-    offer_models(*model->type_name("NAME"));
-    query->add_option("--z-over-r", arguments->z_over_r, "distances in rotor radii")->type_name("V...");
-    add_model_options(*query, arguments->model);
-    query->add_flag("--no-cache", arguments->no_cache, "neither read nor write the cache of aero maps");
-    query->add_flag("--json", arguments->as_json, "print JSON");
-    query->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<QueryArguments>(
+        aeromap, action, "query",
+        "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a "
+        "wide flat surface");
 }
 
 }  // namespace downwash::cli

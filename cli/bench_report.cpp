@@ -4,8 +4,8 @@
 
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_store.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/report/campaign_page.hpp"
 
@@ -16,6 +16,9 @@ struct BenchReportArguments {
     std::string folder;
     bool as_json = false, as_html = false, as_latex = false, as_csv = false;
     std::optional<std::string> out;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
 std::string text_of(const bench::CampaignReport& report, const BenchReportArguments& as) {
@@ -28,41 +31,38 @@ std::string text_of(const bench::CampaignReport& report, const BenchReportArgume
                          : bench::markdown_of(report);
 }
 
-ExitCode run(const BenchReportArguments& arguments) {
-    if (arguments.as_html) {
+ExitCode BenchReportArguments::run() const {
+    if (as_html) {
         require_pages();
     }
-    const bench::CampaignReport report = bench::report_of(bench::read_results(arguments.folder));
-    const std::string text = text_of(report, arguments);
-    if (arguments.out) {
-        write_result(*arguments.out, text);
+    const bench::CampaignReport report = bench::report_of(bench::read_results(folder));
+    const std::string text = text_of(report, *this);
+    if (out) {
+        write_result(*out, text);
     } else {
         fmt::print("{}", text);
     }
-    return report.keeps_its_bars() ? ExitCode::done : ExitCode::no_solution;
+    return report.meets_its_targets() ? ExitCode::done : ExitCode::no_solution;
+}
+
+void BenchReportArguments::add_to(CLI::App& command) {
+    command.add_option("DIR", folder, "folder that `bench run` wrote to")->required();
+    CLI::Option* json = command.add_flag("--json", as_json, "JSON: every figure, and those of every seed");
+    CLI::Option* html = command.add_flag("--html", as_html, "one HTML page with pictures, as `bench run` writes it");
+    CLI::Option* latex = command.add_flag("--latex", as_latex, "a table for papers, for the LaTeX package booktabs");
+    CLI::Option* csv = command.add_flag("--csv", as_csv, "CSV: one row per problem and planner");
+    html->excludes(json);
+    latex->excludes(json)->excludes(html);
+    csv->excludes(json)->excludes(html)->excludes(latex);
+    command.add_option("-o,--out", out, "file to write to; default: standard output")->type_name("FILE");
 }
 
 }  // namespace
 
 void add_bench_report(CLI::App& bench, Action& action) {
-    const auto arguments = std::make_shared<BenchReportArguments>();
-    CLI::App* command = bench.add_subcommand(
-        "report", "Say what a campaign came to, as Markdown; exit code 1 when it misses a bar that its file sets");
-    command->add_option("DIR", arguments->folder, "folder that `bench run` wrote to")->required();
-    CLI::Option* json = command->add_flag("--json", arguments->as_json, "JSON: every figure, and those of every seed");
-    CLI::Option* html =
-        command->add_flag("--html", arguments->as_html, "one HTML page with pictures, as `bench run` writes it")
-            ->excludes(json);
-    CLI::Option* latex =
-        command->add_flag("--latex", arguments->as_latex, "the table of a paper, for the LaTeX package booktabs")
-            ->excludes(json)
-            ->excludes(html);
-    command->add_flag("--csv", arguments->as_csv, "CSV: a row for every problem and planner")
-        ->excludes(json)
-        ->excludes(html)
-        ->excludes(latex);
-    command->add_option("-o,--out", arguments->out, "file to write to; left out: standard output")->type_name("FILE");
-    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<BenchReportArguments>(
+        bench, action, "report",
+        "Report the results of a campaign as Markdown; exit code 1 if it misses a target that its file sets");
 }
 
 }  // namespace downwash::cli

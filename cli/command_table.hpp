@@ -1,6 +1,6 @@
 #pragma once
 
-// The table that reads the command line, as manual pages and completions walk through it.
+// The commands and options that CLI11 reads, for manual pages and completions.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace downwash::cli {
 
-/// The commands right below one, in their order.
+/// The commands directly below one, in their order.
 [[nodiscard]] inline std::vector<const CLI::App*> commands_of(const CLI::App& command) {
     return command.get_subcommands([](const CLI::App* below) { return !below->get_name().empty(); });
 }

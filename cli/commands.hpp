@@ -10,20 +10,17 @@ namespace downwash::cli {
 /// What a parsed command line asks for.
 using Action = std::function<ExitCode()>;
 
-/// Each adds its command to the program; a command that is given stores what it does in `action`.
+// Each adds its command to the program, to `aeromap` or to `bench`; a command that is given stores what it does in
+// `action`.
 void add_check(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
-void add_aeromap(CLI::App& program, Action& action);
-void add_bench(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_init(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);
 void add_manual(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
-
-/// The same for the commands of `aeromap`.
 void add_aeromap_query(CLI::App& aeromap, Action& action);
 void add_aeromap_build(CLI::App& aeromap, Action& action);
 void add_aeromap_info(CLI::App& aeromap, Action& action);
@@ -31,8 +28,6 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action);
 void add_aeromap_compare(CLI::App& aeromap, Action& action);
 void add_aeromap_hold(CLI::App& aeromap, Action& action);
 void add_aeromap_plot(CLI::App& aeromap, Action& action);
-
-/// And for those of `bench`.
 void add_bench_run(CLI::App& bench, Action& action);
 void add_bench_report(CLI::App& bench, Action& action);
 

@@ -5,7 +5,10 @@
 
 #include <vector>
 
+#include "downwash/base/embedded_file.hpp"
 #include "downwash/cli/command_table.hpp"
+
+DOWNWASH_EMBED_FILE(downwash_completion, DOWNWASH_COMPLETION);
 
 namespace downwash::cli {
 namespace {
@@ -15,7 +18,7 @@ std::string joined(const Words& words) {
     return fmt::format("{}", fmt::join(words, " "));
 }
 
-/// CLI11 has no place for words that are offered; they are the name of an option's only check.
+/// CLI11 does not store words to offer; offer_words() makes them the name of an option's only check.
 std::string offered_words(const CLI::Option& option) {
     try {
         // Only the getter is not const. NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
@@ -43,9 +46,8 @@ std::string words_after(const CLI::App& command) {
         words.push_back(below->get_name());
     }
     for (const CLI::Option* option : options_of(command, true)) {
-        const std::string offered = offered_words(*option);
-        if (!offered.empty()) {
-            words.push_back(offered);
+        if (std::string offered = offered_words(*option); !offered.empty()) {
+            words.push_back(std::move(offered));
         }
     }
     for (const CLI::Option* option : options_of(command, false)) {
@@ -122,43 +124,20 @@ void require_one_of(CLI::Option& option, std::span<const std::string_view> words
 }
 
 std::string completion_script(const CLI::App& program, const std::string& shell) {
-    const std::string head = shell == "zsh" ? "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" : "";
-    // Found on zsh's path of functions, all this is the body of the first call.
-    const std::string tail =
-        shell == "zsh" ? "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n" : "";
-    return head +
-           "# Completes the commands and options of downwash, what options take, and names of files.\n_downwash() {\n"
-           "    local given=downwash word next option= current=\"${COMP_WORDS[COMP_CWORD]}\"\n"
-           "    for word in \"${COMP_WORDS[@]:1:$((COMP_CWORD - 1))}\"; do\n"
-           "        case \"$given $word\" in\n            " +
-           names_of_commands(program) +
-           ") given=\"$given $word\" ;;\n"
-           "        esac\n        [[ $word != -* ]] || option=\"$word\"\n    done\n"
-           "    # Of --option=value bash makes three words, zsh one.\n"
-           "    local before=\"${COMP_WORDS[COMP_CWORD - 1]}\" glued=\n"
-           "    COMPREPLY=()\n"
-           "    if [[ $current == '=' ]]; then\n        current=\n        [[ $before == -* ]] || return 0\n"
-           "    elif [[ $before == '=' ]]; then\n        before=\"${COMP_WORDS[COMP_CWORD - 2]}\"\n"
-           "        [[ $before == -* ]] || return 0\n"
-           "    elif [[ $current == --*=* ]]; then\n"
-           "        before=\"${current%%=*}\" glued=\"${current%%=*}=\" current=\"${current#*=}\"\n"
-           "    fi\n"
-           "    case \"$given $before\" in\n" +
-           cases_of_options(program) + "        *) case \"$given $option\" in\n" + cases_of_more_values(program) +
-           "            *) case \"$given\" in\n" + cases_of_commands(program) +
-           "            esac ;;\n        esac ;;\n    esac\n"
-           "    for word in $next; do\n        [[ $word != \"$current\"* ]] || COMPREPLY+=(\"$glued$word\")\n    done\n"
-           "    [[ ${#COMPREPLY[@]} -eq 0 && $current != -* ]] || return 0\n"
-           "    if [[ -z $glued ]]; then\n"
-           "        COMPREPLY=($(compgen -f -- \"$current\"))\n"
-           "    else # zsh's compgen has no prefix\n"
-           "        for word in \"$current\"*; do\n"
-           "            [[ ! -e $word ]] || COMPREPLY+=(\"$glued$word\")\n"
-           "        done\n"
-           "    fi\n"
-           "}\n"
-           "complete -o filenames -F _downwash downwash\n" +
-           tail;
+    std::string script(DOWNWASH_EMBEDDED_FILE(downwash_completion));
+    const auto fill = [&script](std::string_view gap, const std::string& text) {
+        script.replace(script.find(gap), gap.size(), text);
+    };
+    fill("@commands@", names_of_commands(program));
+    fill("@values@", cases_of_options(program));
+    fill("@more_values@", cases_of_more_values(program));
+    fill("@words@", cases_of_commands(program));
+    if (shell != "zsh") {
+        return script;
+    }
+    // If zsh finds the script on its path of functions, all of it is the body of the first call.
+    return "#compdef downwash\nautoload -U +X bashcompinit && bashcompinit\n" + script +
+           "[[ ${funcstack[1]} != _downwash ]] || _bash_complete -o filenames -F _downwash\n";
 }
 
 }  // namespace downwash::cli

@@ -7,10 +7,10 @@
 
 namespace downwash::cli {
 
-/// Makes shells offer words after an option. Whoever reads the option still checks it.
+/// Makes shells offer words after an option. The value is not checked.
 void offer_words(CLI::Option& option, std::span<const std::string_view> words);
 
-/// Makes an option take only these words, which stand for its type and are offered.
+/// Restricts an option to these words; they are offered and shown as its type.
 void require_one_of(CLI::Option& option, std::span<const std::string_view> words);
 
 /// A script that completes the program's command line in a shell: "bash" or "zsh".

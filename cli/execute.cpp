@@ -7,8 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "downwash/cli/cache_folder.hpp"
-#include "downwash/cli/commands.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/results.hpp"
@@ -28,8 +27,10 @@ struct ExecuteArguments {
     std::string plan;
     std::string aero = "on";
     std::optional<std::string> out;
-    bool no_cache = false;
-    bool as_json = false;
+    bool no_cache = false, as_json = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
@@ -67,44 +68,44 @@ void fly(const Problem& problem, bool aero, Solution& solution) {
     solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-ExitCode run(const ExecuteArguments& arguments) {
+ExitCode ExecuteArguments::run() const {
     const Interruption interruption;
-    Problem problem = read_problem(arguments.problem);
-    Solution solution = read_solution(arguments.plan, problem);
-    problem = as_planned(std::move(problem), solution);
-    const OutputFolder folder(folder_for(arguments, problem));
-    fly(problem, arguments.aero == "on", solution);
-    const std::string json = write_results(folder, problem, arguments.problem, solution);
-    write_page(folder, nullptr, arguments.no_cache ? fs::path() : cache_folder());
-    fmt::print("{}",
-               arguments.as_json ? json : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
+    Problem read = read_problem(problem);
+    Solution solution = read_solution(plan, read);
+    read = as_planned(std::move(read), solution);
+    const OutputFolder folder(folder_for(*this, read));
+    fly(read, aero == "on", solution);
+    const RunRecord record = write_results(folder, read, problem, solution);
+    write_page(folder, record, nullptr, cache_folder(no_cache));
+    fmt::print("{}", as_json ? record.solution_text
+                             : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
         return interruption.code();
     }
     return solution.execution->outcome == Outcome::ok ? ExitCode::done : ExitCode::flight_failed;
 }
 
+void ExecuteArguments::add_to(CLI::App& command) {
+    add_problem(command, problem);
+    command.add_option("--plan", plan, "solution.json that holds the plan")->type_name("FILE")->required();
+    CLI::Option* option =
+        command.add_option("--aero", aero, "on: surface effects evaluated directly (default); off: free air");
+    require_one_of(*option, std::array<std::string_view, 2>{"on", "off"});
+    command
+        .add_option("--out", out,
+                    "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the "
+                    "plan itself is in that folder")
+        ->type_name("DIR");
+    add_no_cache(command, no_cache);
+    add_json(command, as_json, "print solution.json on standard output instead of a summary");
+}
+
 }  // namespace
 
 void add_execute(CLI::App& program, Action& action) {
-    const auto arguments = std::make_shared<ExecuteArguments>();
-    CLI::App* command = program.add_subcommand(
-        "execute", "Fly a plan again in closed loop; writes what solve writes, with the record of the search copied");
-    command->add_option("PROBLEM", arguments->problem, "problem file")->required();
-    command->add_option("--plan", arguments->plan, "solution.json that holds the plan")->type_name("FILE")->required();
-    CLI::Option* aero = command->add_option("--aero", arguments->aero,
-                                            "on: surface effects evaluated directly (default); off: free air");
-    require_one_of(*aero, std::array<std::string_view, 2>{"on", "off"});
-    command
-        ->add_option(
-            "--out", arguments->out,
-            "folder of the results; default downwash-out/NAME-VARIANT-SEED/, with -executed behind it when the "
-            "plan itself lies there")
-        ->type_name("DIR");
-    command->add_flag("--no-cache", arguments->no_cache,
-                      "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
-    command->add_flag("--json", arguments->as_json, "print solution.json on standard output instead of a summary");
-    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<ExecuteArguments>(
+        program, action, "execute",
+        "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied");
 }
 
 }  // namespace downwash::cli

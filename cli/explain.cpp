@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "downwash/base/text.hpp"
-#include "downwash/cli/commands.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/key_reference.hpp"
@@ -18,6 +18,9 @@ namespace {
 struct ExplainArguments {
     std::string key;
     std::string kind = "problem";
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
 
 bool ends_with_key(std::string_view path, std::string_view key) {
@@ -31,7 +34,7 @@ bool ends_with_stem(std::string_view path, std::string_view key) {
                          key);
 }
 
-/// The key as the table has it: without the indices of list elements.
+/// The key as in the table: without the indices of list elements.
 std::string without_indices(const std::string& key) {
     std::string text;
     bool is_inside = false;
@@ -70,44 +73,40 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     return text + (below.empty() ? "" : "  keys:\n" + below);
 }
 
-ExitCode run(const ExplainArguments& arguments) {
-    const std::vector<KeyReference>& all = key_reference(*file_kind_named(arguments.kind));
-    const std::string wanted = without_indices(arguments.key);
+ExitCode ExplainArguments::run() const {
+    const std::vector<KeyReference>& all = key_reference(*file_kind_named(kind));
+    const std::string wanted = without_indices(key);
     std::string text;
     for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
-        for (const KeyReference& key : all) {
-            if (is_meant(key.info.path, wanted)) {
-                text += (text.empty() ? "" : "\n") + explanation_of(key, all);
+        for (const KeyReference& known : all) {
+            if (is_meant(known.info.path, wanted)) {
+                text += (text.empty() ? "" : "\n") + explanation_of(known, all);
             }
         }
         if (!text.empty()) {
-            break;
+            fmt::print("{}", text);
+            return ExitCode::done;
         }
     }
-    if (text.empty()) {
-        std::vector<std::string_view> names;
-        for (const KeyReference& key : all) {
-            names.push_back(key.info.path);
-            names.push_back(last_name(key.info.path));
-        }
-        throw UsageError(fmt::format("a {} file has no key '{}'{}", arguments.kind, excerpt(arguments.key),
-                                     did_you_mean(wanted, names)));
+    std::vector<std::string_view> names;
+    for (const KeyReference& known : all) {
+        names.push_back(known.info.path);
+        names.push_back(last_name(known.info.path));
     }
-    fmt::print("{}", text);
-    return ExitCode::done;
+    throw UsageError(fmt::format("a {} file has no key '{}'{}", kind, excerpt(key), did_you_mean(wanted, names)));
+}
+
+void ExplainArguments::add_to(CLI::App& command) {
+    command.add_option("KEY", key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")->required();
+    CLI::Option* option = command.add_option("--of", kind, "kind of file; default problem, with its robot");
+    require_one_of(*option, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
 }
 
 }  // namespace
 
 void add_explain(CLI::App& program, Action& action) {
-    const auto arguments = std::make_shared<ExplainArguments>();
-    CLI::App* command = program.add_subcommand(
-        "explain", "Say what a key of a file means, what is expected there and what it is when left out");
-    command->add_option("KEY", arguments->key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")
-        ->required();
-    CLI::Option* kind = command->add_option("--of", arguments->kind, "kind of file; default problem, with its robot");
-    require_one_of(*kind, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
-    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<ExplainArguments>(program, action, "explain",
+                                  "Explain a key of a file: its meaning, the expected value and the default");
 }
 
 }  // namespace downwash::cli

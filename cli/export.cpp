@@ -2,14 +2,12 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/cli/commands.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/exports/export_format.hpp"
 
@@ -26,26 +24,10 @@ struct ExportArguments {
     std::vector<double> origin;
     std::optional<double> bearing_deg;
     bool anyway = false;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] ExitCode run() const;
 };
-
-std::vector<std::string_view> format_names() {
-    std::vector<std::string_view> names;
-    for (const ExportFormat& format : export_formats()) {
-        names.push_back(format.name);
-    }
-    return names;
-}
-
-const ExportFormat& format_named(const std::string& name) {
-    for (const ExportFormat& format : export_formats()) {
-        if (format.name == name) {
-            return format;
-        }
-    }
-    const std::vector<std::string_view> names = format_names();
-    throw UsageError(fmt::format("there is no format '{}': expected {}{}", excerpt(name), joined_names(names),
-                                 did_you_mean(name, names)));
-}
 
 ExportSettings settings_of(const ExportArguments& arguments) {
     ExportSettings settings;
@@ -57,22 +39,18 @@ ExportSettings settings_of(const ExportArguments& arguments) {
     return settings;
 }
 
-void refuse_idle_options(const ExportArguments& arguments, const ExportFormat& format) {
-    const auto refuse = [&format](const char* option, const char* why) {
-        throw UsageError(fmt::format("{}: the format {} {}", option, format.name, why));
+void reject_useless_options(const ExportArguments& arguments, const ExportFormat& format) {
+    const auto reject_if = [&format](bool is_useless, const char* option, const char* why) {
+        if (is_useless) {
+            throw UsageError(fmt::format("{}: the format {} {}", option, format.name, why));
+        }
     };
-    if (arguments.rate_hz && !format.has_rate) {
-        refuse("--rate", "has no set-points");
-    }
-    if (!arguments.origin.empty() && !format.has_origin) {
-        refuse("--origin", "stays in the frame of the problem");
-    }
-    if (arguments.bearing_deg && arguments.origin.empty()) {
-        refuse("--bearing", "needs --origin with it");
-    }
+    reject_if(arguments.rate_hz && !format.has_rate, "--rate", "has no set-points");
+    reject_if(!arguments.origin.empty() && !format.has_origin, "--origin", "stays in the frame of the problem");
+    reject_if(arguments.bearing_deg && arguments.origin.empty(), "--bearing", "needs --origin with it");
 }
 
-/// What others are to fly has to have flown well here.
+/// A plan for others to fly must have flown well here.
 void require_good_flight(const RunRecord& run) {
     if (run.plan && (run.status != "solved" || run.outcome != "ok")) {
         throw UsageError(fmt::format(
@@ -81,16 +59,15 @@ void require_good_flight(const RunRecord& run) {
     }
 }
 
-ExitCode run(const ExportArguments& arguments) {
-    const ExportFormat& format = format_named(arguments.format);
-    refuse_idle_options(arguments, format);
-    const fs::path file =
-        arguments.out ? fs::path(*arguments.out) : fs::path(arguments.folder) / std::string(format.file_name);
-    const RunRecord record = read_run(arguments.folder);
-    if (format.is_to_be_flown && !arguments.anyway) {
+ExitCode ExportArguments::run() const {
+    const ExportFormat& chosen = entry_named(export_formats(), format, "there is no format");
+    reject_useless_options(*this, chosen);
+    const fs::path file = out ? fs::path(*out) : fs::path(folder) / std::string(chosen.file_name);
+    const RunRecord record = read_run(folder);
+    if (chosen.is_to_be_flown && !anyway) {
         require_good_flight(record);
     }
-    write_result(file, exported(record, format, settings_of(arguments)));
+    write_result(file, exported(record, chosen, settings_of(*this)));
     fmt::print("{}\n", file.string());
     return ExitCode::done;
 }
@@ -103,32 +80,29 @@ std::string formats_help() {
     return text;
 }
 
-}  // namespace
-
-void add_export(CLI::App& program, Action& action) {
-    const auto arguments = std::make_shared<ExportArguments>();
-    CLI::App* command = program.add_subcommand("export", "Write a run as a file that other programs read");
-    command->add_option("DIR", arguments->folder, "folder that `solve` or `execute` wrote to")->required();
-    CLI::Option* format =
-        command->add_option("--format", arguments->format, formats_help())->type_name("F")->required();
-    offer_words(*format, format_names());
-    command->add_option("-o,--out", arguments->out, "the file; default its usual name, in that folder")
-        ->type_name("FILE");
-    command->add_option("--rate", arguments->rate_hz, "set-points per second; default: the controller's rate")
-        ->type_name("HZ");
+void ExportArguments::add_to(CLI::App& command) {
+    command.add_option("DIR", folder, "folder that `solve` or `execute` wrote to")->required();
+    CLI::Option* option = command.add_option("--format", format, formats_help())->type_name("F")->required();
+    offer_words(*option, names_of(export_formats()));
+    command.add_option("-o,--out", out, "the file; default its usual name, in that folder")->type_name("FILE");
+    command.add_option("--rate", rate_hz, "set-points per second; default: the controller's rate")->type_name("HZ");
     command
-        ->add_option(
-            "--origin", arguments->origin,
-            "where the world frame lies, for qgc: latitude and longitude in degrees (WGS 84), and altitude of z = 0 "
-            "in m above mean sea level")
+        .add_option("--origin", origin,
+                    "origin of the world frame, for qgc: latitude and longitude in degrees (WGS 84), and altitude of "
+                    "z = 0 in m above mean sea level")
         ->type_name("LATITUDE LONGITUDE ALTITUDE")
         ->expected(3);
     command
-        ->add_option("--bearing", arguments->bearing_deg,
-                     "compass direction of the world's x axis, clockwise from north; default 0")
+        .add_option("--bearing", bearing_deg,
+                    "compass direction of the world's x axis, clockwise from north; default 0")
         ->type_name("DEG");
-    command->add_flag("--anyway", arguments->anyway, "write a plan for others to fly though its own flight failed");
-    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    command.add_flag("--anyway", anyway, "write a plan for others to fly even if its own flight failed");
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Action& action) {
+    add_command<ExportArguments>(program, action, "export", "Write a run as a file that other programs read");
 }
 
 }  // namespace downwash::cli

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "downwash/base/embedded_file.hpp"
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 DOWNWASH_EMBED_FILE(downwash_first_problem, DOWNWASH_FIRST_PROBLEM);
@@ -22,9 +22,14 @@ namespace fs = std::filesystem;
 
 struct InitArguments {
     std::string file = "my_problem.yaml";
+
+    void add_to(CLI::App& command) {
+        command.add_option("FILE", file, "name of the problem file; default my_problem.yaml");
+    }
+    [[nodiscard]] ExitCode run() const;
 };
 
-/// The text with what stands for a word in it replaced everywhere.
+/// The text with every occurrence of a word replaced.
 std::string replaced(std::string text, std::string_view word, std::string_view by) {
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
         text.replace(at, word.size(), by);
@@ -32,7 +37,7 @@ std::string replaced(std::string text, std::string_view word, std::string_view b
     return text;
 }
 
-/// The first problem for a file of that name, which names the problem too where it may.
+/// The first problem for a file of that name. The problem gets the name of the file if that is a valid name.
 std::string first_problem_for(const fs::path& file) {
     const auto in_place_of = [](std::string_view field, const std::string& word) {
         return fmt::format("{:<{}}", word, field.size());
@@ -52,16 +57,16 @@ std::string first_problem_for(const fs::path& file) {
     return text;
 }
 
-/// Never replaces what somebody wrote.
+/// Writes a new file; never replaces one. @throws UsageError
 void write_new(const fs::path& file, std::string_view content) {
     if (fs::exists(fs::symlink_status(file))) {
-        throw UsageError(file.string() + " is there already; choose another name");
+        throw UsageError(file.string() + " exists already; choose another name");
     }
     write_result(file, content);
 }
 
-ExitCode run(const InitArguments& arguments) {
-    const fs::path problem(arguments.file);
+ExitCode InitArguments::run() const {
+    const fs::path problem(file);
     const fs::path robot = problem.parent_path() / "ars_lrm.yaml";
     write_new(problem, first_problem_for(problem));
     if (!fs::exists(robot)) {
@@ -74,11 +79,9 @@ ExitCode run(const InitArguments& arguments) {
 }  // namespace
 
 void add_init(CLI::App& program, Action& action) {
-    const auto arguments = std::make_shared<InitArguments>();
-    CLI::App* command = program.add_subcommand(
-        "init", "Write a problem with comments to start from, and its robot beside it; replaces no file");
-    command->add_option("FILE", arguments->file, "the problem; default my_problem.yaml");
-    command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+    add_command<InitArguments>(
+        program, action, "init",
+        "Write a commented problem to start from, with its robot beside it; existing files are never replaced");
 }
 
 }  // namespace downwash::cli

@@ -8,8 +8,8 @@
 
 namespace downwash::cli {
 
-/// While it lives, the first SIGINT or SIGTERM requests a stop and a second one ends the program at once.
-/// To be made before any other thread is started: threads inherit that these signals are blocked.
+/// During its lifetime the first SIGINT or SIGTERM requests a stop and a second one ends the program at once.
+/// Create it before any other thread: threads inherit that these signals are blocked.
 class Interruption {
  public:
     Interruption();
@@ -19,7 +19,7 @@ class Interruption {
 
     [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
-    /// What the signal that requested the stop asks to exit with; ExitCode::done without one.
+    /// The exit code for the signal that requested the stop; ExitCode::done without one.
     [[nodiscard]] ExitCode code() const;
 
  private:

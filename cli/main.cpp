@@ -13,31 +13,23 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
+#include "downwash/cli/command_table.hpp"
 #include "downwash/cli/commands.hpp"
-#include "downwash/cli/standard_error.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
 namespace {
 
-constexpr char about[] = "Motion planning for aerial manipulators that know their own downwash";
+constexpr char about[] =
+    "Motion planning for aerial manipulators that considers the aerodynamic effects of nearby surfaces";
 constexpr char exit_codes[] =
-    "Exit codes: 0 done; 1 no solution within the limits; 2 bad input or usage; 3 a plan exists and its flight "
+    "Exit codes: 0 done; 1 no solution within the limits; 2 bad input or usage; 3 a plan exists, but its flight "
     "failed;\n"
-    "130 after SIGINT, 143 after SIGTERM, with the best solution so far written; a second signal ends at once.";
+    "130 after SIGINT, 143 after SIGTERM: the best solution so far is written; a second signal ends at once.";
 
-/// Reads the command line. Help and version are printed and answered like errors of usage: by an exit code.
-std::optional<ExitCode> parse(CLI::App& program, int argc, char** argv) {
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::ParseError& end) {
-        return program.exit(end) == 0 ? ExitCode::done : ExitCode::bad_input;
-    }
-    return std::nullopt;
-}
-
-/// What is wrong with a command line, and where help is.
+/// The error in a command line, and the command that prints help.
 std::string usage_error(const CLI::App* program, const CLI::Error& error) {
     std::string command = program->get_name();
     for (auto given = program->get_subcommands(); !given.empty(); given = given.front()->get_subcommands()) {
@@ -48,26 +40,42 @@ std::string usage_error(const CLI::App* program, const CLI::Error& error) {
 
 /// CLI11 would only say that a command is missing.
 /// @param words what follows the command's name
-void refuse_unknown_command(const CLI::App& command, std::span<char* const> words) {
-    const std::vector<const CLI::App*> known = command.get_subcommands([](const CLI::App*) { return true; });
+void reject_unknown_command(const CLI::App& command, std::span<char* const> words) {
+    const std::vector<const CLI::App*> known = commands_of(command);
     if (words.empty() || known.empty() || std::string_view(words[0]).starts_with("-")) {
         return;
     }
     const std::string_view word = words[0];
     std::vector<std::string_view> names;
     for (const CLI::App* one : known) {
-        names.push_back(one->get_name());
-        if (names.back() == word) {
-            refuse_unknown_command(*one, words.subspan(1));
+        if (one->get_name() == word) {
+            reject_unknown_command(*one, words.subspan(1));
             return;
         }
+        names.push_back(one->get_name());
     }
-    throw UsageError(fmt::format("there is no command '{}{}': expected {}{}",
-                                 command.get_parent() != nullptr ? command.get_name() + " " : "", excerpt(word),
+    const std::string parent = command.get_parent() != nullptr ? command.get_name() + " " : "";
+    throw UsageError(fmt::format("there is no command '{}{}': expected {}{}", parent, excerpt(word),
                                  joined_names(names), did_you_mean(word, names)));
 }
 
-/// Results that did not reach standard output are no results.
+void add_aeromap(CLI::App& program, Action& action) {
+    CLI::App* aeromap = program.add_subcommand("aeromap", "Show how surfaces change the thrust of a rotor");
+    aeromap->require_subcommand(1);
+    for (const auto add : {add_aeromap_query, add_aeromap_build, add_aeromap_info, add_aeromap_plot, add_aeromap_fit,
+                           add_aeromap_compare, add_aeromap_hold}) {
+        add(*aeromap, action);
+    }
+}
+
+void add_bench(CLI::App& program, Action& action) {
+    CLI::App* bench = program.add_subcommand("bench", "Run campaigns: many searches, their success, times and costs");
+    bench->require_subcommand(1);
+    add_bench_run(*bench, action);
+    add_bench_report(*bench, action);
+}
+
+/// Results that do not reach standard output are an error.
 ExitCode checked_output(ExitCode code) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         throw UsageError("standard output cannot be written");
@@ -82,25 +90,20 @@ ExitCode run(int argc, char** argv) {
     program.footer(exit_codes);
     program.failure_message(usage_error);
     Action action;
-    add_init(program, action);
-    add_check(program, action);
-    add_explain(program, action);
-    add_solve(program, action);
-    add_execute(program, action);
-    add_aeromap(program, action);
-    add_bench(program, action);
-    add_report(program, action);
-    add_export(program, action);
-    add_planners(program, action);
-    add_manual(program, action);
-    refuse_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
-    if (const auto code = parse(program, argc, argv)) {
-        return *code;
+    for (const auto add : {add_init, add_check, add_explain, add_solve, add_execute, add_aeromap, add_bench, add_report,
+                           add_export, add_planners, add_manual}) {
+        add(program, action);
+    }
+    reject_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& end) {  // help and version too
+        return program.exit(end) == 0 ? ExitCode::done : ExitCode::bad_input;
     }
     return checked_output(action());
 }
 
-/// Says what is wrong, each line of it as this program's.
+/// Prints errors, each line with the name of the program.
 void print_errors(std::string_view errors) {
     while (!errors.empty()) {
         const std::size_t end = std::min(errors.find('\n'), errors.size());
@@ -114,7 +117,7 @@ void print_errors(std::string_view errors) {
 
 int main(int argc, char** argv) {
     using downwash::cli::ExitCode;
-    // A reader that goes away shows as a failed write, not as a sudden end.
+    // A closed pipe shows as a failed write instead of ending the program.
     std::signal(SIGPIPE, SIG_IGN);
     ExitCode code = ExitCode::bad_input;
     try {
@@ -127,8 +130,9 @@ int main(int argc, char** argv) {
         std::abort();
     } catch (const std::bad_alloc&) {
         downwash::cli::print_errors(
-            "memory ran out: ask for less, by a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer "
-            "obstacles or a search that ends sooner");
+            "out of memory: choose a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer obstacles "
+            "or a "
+            "shorter search");
     } catch (const std::exception& error) {
         downwash::cli::print_errors(error.what());
     }

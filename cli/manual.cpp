@@ -1,5 +1,3 @@
-#include "downwash/cli/manual.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,9 +9,9 @@
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/cli/command_table.hpp"
-#include "downwash/cli/commands.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
@@ -24,7 +22,7 @@ std::string with_dashes(std::string name) {
     return name;
 }
 
-/// Text as roff shows it: no letter of it is a command.
+/// Text as roff shows it, with every character that roff would interpret escaped.
 std::string in_roff(const std::string& text) {
     std::string roff;
     for (const char letter : text) {
@@ -50,22 +48,17 @@ std::string spelled(const CLI::Option& option) {
     return text;
 }
 
-std::string options_section(const CLI::App& command) {
-    std::string text;
-    for (const bool is_positional : {true, false}) {
-        for (const CLI::Option* option : options_of(command, is_positional)) {
-            text += fmt::format(".TP\n.B {}\n{}\n", in_roff(spelled(*option)), in_roff(option->get_description()));
-        }
-    }
-    return text.empty() ? "" : ".SH OPTIONS\n" + text;
+/// Positional arguments, then options.
+std::vector<const CLI::Option*> all_options_of(const CLI::App& command) {
+    std::vector<const CLI::Option*> all = options_of(command, true);
+    const std::vector<const CLI::Option*> named = options_of(command, false);
+    all.insert(all.end(), named.begin(), named.end());
+    return all;
 }
 
-std::string commands_section(const CLI::App& command) {
-    std::string text;
-    for (const CLI::App* below : commands_of(command)) {
-        text += fmt::format(".TP\n.B {}\n{}\n", in_roff(full_name(*below)), in_roff(below->get_description()));
-    }
-    return text.empty() ? "" : ".SH COMMANDS\n" + text;
+/// An entry of a list in a manual page.
+std::string entry(const std::string& name, const std::string& description) {
+    return fmt::format(".TP\n.B {}\n{}\n", in_roff(name), in_roff(description));
 }
 
 std::string synopsis(const CLI::App& command) {
@@ -88,7 +81,7 @@ std::string in_cell(const std::string& text) {
     return cell;
 }
 
-/// How a command is written: "downwash solve [OPTIONS] PROBLEM"
+/// "downwash solve [OPTIONS] PROBLEM"
 std::string usage_line(const CLI::App& command) {
     if (!commands_of(command).empty()) {
         return full_name(command) + " COMMAND";
@@ -103,103 +96,44 @@ std::string usage_line(const CLI::App& command) {
 
 std::string markdown_options(const CLI::App& command) {
     std::string rows;
-    for (const bool is_positional : {true, false}) {
-        for (const CLI::Option* option : options_of(command, is_positional)) {
-            if (option == command.get_help_ptr()) {
-                continue;
-            }
-            std::string name = spelled(*option);
-            name.erase(std::min(name.find(':'), name.size()));  // what follows is a check, and stands in the text
-            const std::string standard = option->get_default_str();
-            rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option->get_description()),
-                                standard.empty() ? "" : "; default " + in_cell(standard),
-                                option->get_required() && !is_positional ? " (required)" : "");
+    for (const CLI::Option* option : all_options_of(command)) {
+        if (option == command.get_help_ptr()) {
+            continue;
         }
+        std::string name = spelled(*option);
+        name.erase(std::min(name.find(':'), name.size()));  // a check follows, which the description says too
+        const std::string standard = option->get_default_str();
+        rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option->get_description()),
+                            standard.empty() ? "" : "; default " + in_cell(standard),
+                            option->get_required() && !option->get_positional() ? " (required)" : "");
     }
     return rows.empty() ? "" : "\n| | |\n| --- | --- |\n" + rows;
 }
 
-struct ManualArguments {
-    std::vector<std::string> command;
-    std::optional<std::string> all;
-    bool is_markdown = false;
-    std::string shell;
-};
-
-ExitCode print_man_page(const CLI::App& program, const std::vector<std::string>& names) {
-    const CLI::App* command = &program;
-    for (const std::string& name : names) {
-        const auto below = commands_of(*command);
-        const auto found =
-            std::find_if(below.begin(), below.end(), [&name](const CLI::App* one) { return one->get_name() == name; });
-        if (found == below.end()) {
-            throw UsageError(fmt::format("there is no command '{} {}'", full_name(*command), excerpt(name)));
-        }
-        command = *found;
-    }
-    fmt::print("{}", man_page(*command));
-    return ExitCode::done;
-}
-
-ExitCode write_man_pages(const CLI::App& program, const std::string& folder) {
-    const OutputFolder pages(folder);
-    for_each_command(program, [&pages](const CLI::App& command) {
-        pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
-    });
-    return ExitCode::done;
-}
-
-}  // namespace
-
-void add_manual(CLI::App& program, Action& action) {
-    const auto arguments = std::make_shared<ManualArguments>();
-    CLI::App* manual = program.add_subcommand(
-        "manual", "Print a manual page: downwash manual solve | man -l -; without a command that of the program");
-    CLI::Option* command = manual->add_option("COMMAND", arguments->command, "whose page, for example: aeromap plot");
-    CLI::Option* all = manual
-                           ->add_option("--all", arguments->all,
-                                        "write the pages of all commands to a folder instead: downwash-solve.1...")
-                           ->type_name("DIR")
-                           ->excludes(command);
-    manual->add_flag("--markdown", arguments->is_markdown, "all commands as one Markdown page instead")
-        ->excludes(command)
-        ->excludes(all);
-    manual->callback([arguments, &program, &action] {
-        action = [arguments, &program] {
-            if (arguments->is_markdown) {
-                fmt::print("{}", markdown_page(program));
-                return ExitCode::done;
-            }
-            return arguments->all ? write_man_pages(program, *arguments->all)
-                                  : print_man_page(program, arguments->command);
-        };
-    });
-    CLI::App* completion = program.add_subcommand(
-        "completion", "Print what completes command lines in a shell: source <(downwash completion bash)");
-    CLI::Option* shell = completion->add_option("SHELL", arguments->shell, "bash or zsh")->required();
-    require_one_of(*shell, std::array<std::string_view, 2>{"bash", "zsh"});
-    completion->callback([arguments, &program, &action] {
-        action = [arguments, &program] {
-            fmt::print("{}", completion_script(program, arguments->shell));
-            return ExitCode::done;
-        };
-    });
-}
-
+/// The page of a command for man(1), or of the whole program.
 std::string man_page(const CLI::App& command) {
-    const std::string name = full_name(command);
-    std::string title = with_dashes(name);
+    const std::string name = with_dashes(full_name(command));
+    std::string title = name;
     std::transform(title.begin(), title.end(), title.begin(),
                    [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
     std::string page = fmt::format(".TH {} 1 \"\" \"Downwash {}\" \"Downwash\"\n", title, version());
-    page += fmt::format(".SH NAME\n{} \\- {}\n", in_roff(with_dashes(name)), in_roff(command.get_description()));
-    page += ".SH SYNOPSIS\n" + synopsis(command) + options_section(command) + commands_section(command);
+    page += fmt::format(".SH NAME\n{} \\- {}\n", in_roff(name), in_roff(command.get_description()));
+    page += ".SH SYNOPSIS\n" + synopsis(command) + ".SH OPTIONS\n";
+    for (const CLI::Option* option : all_options_of(command)) {
+        page += entry(spelled(*option), option->get_description());
+    }
+    const auto below = commands_of(command);
+    page += below.empty() ? "" : ".SH COMMANDS\n";
+    for (const CLI::App* one : below) {
+        page += entry(full_name(*one), one->get_description());
+    }
     if (!command.get_footer().empty()) {
         page += ".SH EXIT STATUS\n" + in_roff(command.get_footer()) + "\n";
     }
     return page;
 }
 
+/// Every command below the program with its options, as one page.
 std::string markdown_page(const CLI::App& program) {
     std::string contents;
     std::string sections;
@@ -214,11 +148,84 @@ std::string markdown_page(const CLI::App& program) {
     });
     return fmt::format(
         "# Commands\n\n"
-        "Printed from the table that reads the command line (`cmake --build build --target docs`). `{0} COMMAND "
-        "--help` says the same\nof one command, `{0} manual COMMAND | man -l -` shows it as a manual page, `{0} "
-        "completion bash` completes it.\n\n"
+        "The program prints this page (`cmake --build build --target docs`). `{0} COMMAND --help` prints the help of "
+        "one\n"
+        "command, `{0} manual COMMAND | man -l -` shows it as a manual page, and `{0} completion bash` completes "
+        "command "
+        "lines.\n\n"
         "| command | |\n| --- | --- |\n{1}\n{2}\n{3}",
         program.get_name(), contents, program.get_footer(), sections);
+}
+
+const CLI::App& command_named(const CLI::App& program, const std::vector<std::string>& names) {
+    const CLI::App* command = &program;
+    for (const std::string& name : names) {
+        const auto below = commands_of(*command);
+        const auto found =
+            std::find_if(below.begin(), below.end(), [&name](const CLI::App* one) { return one->get_name() == name; });
+        if (found == below.end()) {
+            throw UsageError(fmt::format("there is no command '{} {}'", full_name(*command), excerpt(name)));
+        }
+        command = *found;
+    }
+    return *command;
+}
+
+struct ManualArguments {
+    const CLI::App* program = nullptr;
+    std::vector<std::string> names;
+    std::optional<std::string> all;
+    bool is_markdown = false;
+
+    void add_to(CLI::App& command) {
+        program = command.get_parent();
+        CLI::Option* one = command.add_option("COMMAND", names, "the command, for example: aeromap plot");
+        CLI::Option* pages =
+            command
+                .add_option("--all", all, "write the pages of all commands to a folder instead: downwash-solve.1...")
+                ->type_name("DIR")
+                ->excludes(one);
+        command.add_flag("--markdown", is_markdown, "print all commands as one Markdown page instead")
+            ->excludes(one)
+            ->excludes(pages);
+    }
+    [[nodiscard]] ExitCode run() const {
+        if (all) {
+            const OutputFolder pages(*all);
+            for_each_command(*program, [&pages](const CLI::App& command) {
+                pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
+            });
+        } else {
+            fmt::print("{}", is_markdown ? markdown_page(*program) : man_page(command_named(*program, names)));
+        }
+        return ExitCode::done;
+    }
+};
+
+struct CompletionArguments {
+    const CLI::App* program = nullptr;
+    std::string shell;
+
+    void add_to(CLI::App& command) {
+        program = command.get_parent();
+        CLI::Option* option = command.add_option("SHELL", shell, "bash or zsh")->required();
+        require_one_of(*option, std::array<std::string_view, 2>{"bash", "zsh"});
+    }
+    [[nodiscard]] ExitCode run() const {
+        fmt::print("{}", completion_script(*program, shell));
+        return ExitCode::done;
+    }
+};
+
+}  // namespace
+
+void add_manual(CLI::App& program, Action& action) {
+    add_command<ManualArguments>(
+        program, action, "manual",
+        "Print the manual page of a command (downwash manual solve | man -l -) or, without one, of the program");
+    add_command<CompletionArguments>(
+        program, action, "completion",
+        "Print a script that completes command lines in a shell: source <(downwash completion bash)");
 }
 
 }  // namespace downwash::cli

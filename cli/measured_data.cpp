@@ -14,58 +14,57 @@
 namespace downwash::cli {
 namespace {
 
-/// The points with that entry in a column; all when no entry is asked for.
-Measurements chosen(const Measurements& measurements, const std::string& file, const char* column,
-                    const std::string& entry) {
-    if (entry.empty()) {
-        return measurements;
-    }
-    Measurements found = measurements.with(column, entry);
-    if (found.points.empty()) {
-        const std::vector<std::string> entries = measurements.entries(column);
-        const std::vector<std::string_view> names(entries.begin(), entries.end());
-        throw UsageError(fmt::format("--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
-                                     names.empty()
-                                         ? fmt::format("there is no column {}", column)
-                                         : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names)));
-    }
-    return found;
+/// The points with an entry in a column; all without one.
+Measurements selected(const Measurements& measurements, const std::string& file, const char* column,
+                      const std::string& entry) {
+    require_entry(measurements, file, column, entry);
+    return entry.empty() ? measurements : measurements.with(column, entry);
 }
 
 }  // namespace
+
+void require_entry(const Measurements& measurements, const std::string& file, const char* column,
+                   const std::string& entry) {
+    const std::vector<std::string> entries = measurements.entries(column);
+    if (entry.empty() || std::find(entries.begin(), entries.end(), entry) != entries.end()) {
+        return;
+    }
+    const std::vector<std::string_view> names(entries.begin(), entries.end());
+    throw UsageError(fmt::format("--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
+                                 names.empty()
+                                     ? fmt::format("there is no column {}", column)
+                                     : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names)));
+}
 
 void MeasuredData::add_options(CLI::App& command) {
     command
         .add_option(
             "DATA", file,
-            "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio, perhaps surface, source "
+            "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source "
             "and sigma, then rows")
         ->required();
     CLI::Option* at = command.add_option(
         "--surface", surface,
-        "only rows with this surface, `ground` or `ceiling`; what all are made at when there is no such column");
+        "only rows with this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
     offer_words(*at->type_name("S"), measured_surfaces);
     command.add_option("--source", source, "only rows with this source")->type_name("NAME");
     command.add_option("--from", from, "only measurements at this z/R and beyond")->type_name("Z");
     command.add_option("--to", to, "only measurements up to this z/R")->type_name("Z");
     command
-        .add_option(
-            "--rotor-spacing", rotor_spacing,
-            "the measured vehicle is a square quadrotor whose adjacent axes are so many radii apart; multirotor models "
-            "need it")
+        .add_option("--rotor-spacing", rotor_spacing,
+                    "spacing of adjacent axes in radii, if the measured vehicle is a square quadrotor; multirotor "
+                    "models need it")
         ->type_name("D");
 }
 
 Measurements MeasuredData::read() const {
     Measurements measurements = read_measurements(file);
-    measurements = chosen(measurements, file, "source", source);
+    measurements = selected(measurements, file, "source", source);
     if (measurements.index("surface")) {
-        measurements = chosen(measurements, file, "surface", surface);
+        measurements = selected(measurements, file, "surface", surface);
     } else if (!surface.empty()) {
-        const std::vector<std::string_view> surfaces(measured_surfaces.begin(), measured_surfaces.end());
-        if (std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end()) {
-            throw UsageError("--surface '" + excerpt(surface) + "': expected ground or ceiling" +
-                             did_you_mean(surface, surfaces));
+        if (std::find(measured_surfaces.begin(), measured_surfaces.end(), surface) == measured_surfaces.end()) {
+            reject_unknown("--surface", surface, {measured_surfaces.begin(), measured_surfaces.end()});
         }
         measurements.columns.emplace_back("surface");
         for (Measurement& point : measurements.points) {
@@ -73,12 +72,9 @@ Measurements MeasuredData::read() const {
         }
     }
     std::vector<Measurement>& points = measurements.points;
-    points.erase(std::remove_if(points.begin(), points.end(),
-                                [this](const Measurement& point) {
-                                    return !(point.z_over_r >= from.value_or(point.z_over_r) &&
-                                             point.z_over_r <= to.value_or(point.z_over_r));
-                                }),
-                 points.end());
+    std::erase_if(points, [this](const Measurement& point) {
+        return !(point.z_over_r >= from.value_or(point.z_over_r) && point.z_over_r <= to.value_or(point.z_over_r));
+    });
     if (points.empty()) {
         throw UsageError("--from and --to leave no measurement of " + file);
     }
@@ -86,13 +82,13 @@ Measurements MeasuredData::read() const {
 }
 
 RotorNeighbours MeasuredData::neighbours() const {
-    constexpr double most_spacing = 100;
+    constexpr double max_spacing = 100;
     if (!rotor_spacing) {
         return {};
     }
-    if (!(*rotor_spacing > 0 && *rotor_spacing <= most_spacing)) {
+    if (!(*rotor_spacing > 0 && *rotor_spacing <= max_spacing)) {
         throw UsageError(
-            fmt::format("--rotor-spacing {}: expected radii, above 0 and at most {}", *rotor_spacing, most_spacing));
+            fmt::format("--rotor-spacing {}: expected radii, above 0 and at most {}", *rotor_spacing, max_spacing));
     }
     return square_quadrotor(*rotor_spacing);
 }

@@ -11,10 +11,15 @@
 
 namespace downwash::cli {
 
-/// What --surface takes.
+/// The values of --surface.
 inline constexpr std::array<std::string_view, 2> measured_surfaces{"ground", "ceiling"};
 
-/// Which measurements a command is about: a file, narrowed down by options, and the rotors they were made with.
+/// Checks that a selected entry occurs in a column. @throws UsageError when it does not
+/// @param column also the name of the option that selects   @param entry empty: none is selected
+void require_entry(const Measurements& measurements, const std::string& file, const char* column,
+                   const std::string& entry);
+
+/// The measurements that a command uses: a file, a selection of its rows, and the rotors they were made with.
 struct MeasuredData {
     std::string file, surface, source;
     std::optional<double> from, to;  ///< z/R

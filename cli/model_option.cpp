@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
@@ -17,14 +15,6 @@
 
 namespace downwash::cli {
 namespace {
-
-std::vector<std::string_view> model_names() {
-    std::vector<std::string_view> names;
-    for (const EffectModelInfo& known : effect_models()) {
-        names.push_back(known.name);
-    }
-    return names;
-}
 
 /// A number of the command line within its range.
 double checked(const char* option, const std::optional<double>& given, double otherwise, double low, double high) {
@@ -64,7 +54,7 @@ SurfaceEffect effect_of(const ModelChoice& choice) {
     }
     const bool is_table = effect.model == EffectModel::table;
     if (is_table == choice.table.empty()) {
-        throw UsageError(is_table ? "--model table wants --table FILE" : "--table FILE goes with --model table only");
+        throw UsageError(is_table ? "--model table needs --table FILE" : "--table FILE goes with --model table only");
     }
     if (is_table) {
         effect.table = read_effect_table(choice.table);
@@ -83,7 +73,7 @@ SurfaceEffect effect_of(const ModelChoice& choice) {
 }  // namespace
 
 void offer_models(CLI::Option& option) {
-    offer_words(option, model_names());
+    offer_words(option, names_of(effect_models()));
 }
 
 void add_model_options(CLI::App& command, ModelChoice& choice) {
@@ -93,7 +83,7 @@ void add_model_options(CLI::App& command, ModelChoice& choice) {
     command.add_option("--d-over-r", choice.d_over_r, "second distance of a table over two, in radii")->type_name("D");
     command
         .add_option("--rotor-spacing", choice.rotor_spacing,
-                    "spacing of adjacent rotors in radii, for the multirotor models (a square quadrotor); default 2.5")
+                    "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5")
         ->type_name("D");
     command.add_option("--max-factor", choice.max_factor, "cap of the model; default 2")->type_name("K");
 }
@@ -116,23 +106,16 @@ EffectCurve curve_option(const ModelChoice& choice) {
 }
 
 const EffectModelInfo& model_named(const std::string& name) {
-    if (const EffectModelInfo* model = find_effect_model(name)) {
-        return *model;
-    }
-    const std::vector<std::string_view> names = model_names();
-    throw UsageError("--model '" + excerpt(name) + "' is not known: expected one of " + joined_names(names) +
-                     did_you_mean(name, names));
+    return entry_named(effect_models(), name, "there is no --model");
 }
 
 std::pair<std::string, double> named_number(const std::string& option, const std::string& text) {
     const std::size_t equals = std::min(text.find('='), text.size());
-    const char* end = text.data() + text.size();
-    double value = 0;
-    const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
-    if (equals == text.size() || error != std::errc() || rest != end) {
+    const auto number = parse_number<double>(std::string_view(text).substr(std::min(equals + 1, text.size())));
+    if (equals == text.size() || !number) {
         throw UsageError(option + " '" + excerpt(text) + "': expected NAME=NUMBER");
     }
-    return {text.substr(0, equals), value};
+    return {text.substr(0, equals), *number};
 }
 
 }  // namespace downwash::cli

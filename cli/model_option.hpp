@@ -10,7 +10,7 @@
 
 namespace downwash::cli {
 
-/// A surface-effect model with what the command line changes of it.
+/// A surface-effect model with the changes that the command line makes to it.
 struct ModelChoice {
     std::string name;
     std::vector<std::string> set;         ///< "NAME=VALUE" for parameters
@@ -20,10 +20,10 @@ struct ModelChoice {
     std::optional<double> max_factor;
 };
 
-/// Spacing of adjacent rotors that the multirotor models take when none is said [radii].
+/// The default spacing of adjacent rotors for the multirotor models [radii].
 inline constexpr double usual_rotor_spacing = 2.5;
 
-/// Whether a model sees the vehicle's other rotors.
+/// Whether a model considers the vehicle's other rotors.
 [[nodiscard]] bool is_multirotor(EffectModel model);
 
 /// Makes shells offer the names of models.
@@ -35,13 +35,13 @@ void add_model_options(CLI::App& command, ModelChoice& choice);
 /// Whether any of them was used.
 [[nodiscard]] bool is_given(const ModelChoice& choice);
 
-/// The model's K as it would be used. @throws UsageError when a part of the choice makes no sense
+/// K of the model over z/R. @throws UsageError when parts of the choice contradict each other
 [[nodiscard]] EffectCurve curve_option(const ModelChoice& choice);
 
 /// The surface-effect model that --model names. @throws UsageError when there is none
 [[nodiscard]] const EffectModelInfo& model_named(const std::string& name);
 
-/// "NAME=VALUE" taken apart. @param option that it was given to  @throws UsageError when it is something else
+/// The parts of "NAME=VALUE". @param option that it was given to  @throws UsageError for any other text
 [[nodiscard]] std::pair<std::string, double> named_number(const std::string& option, const std::string& text);
 
 }  // namespace downwash::cli

@@ -38,16 +38,6 @@ std::string description(const OptionOfKey& option) {
     return fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key);
 }
 
-/// A error in the words of the command line, where its key was given there.
-std::string in_options(const KeyError& error, const std::map<std::string, std::string>& given) {
-    for (const OptionOfKey& option : options) {
-        if (error.key == option.key && given.contains(std::string(option.option))) {
-            return fmt::format("{} {}", option.option, error.message);
-        }
-    }
-    return fmt::format("{} {}", error.key, error.message);
-}
-
 }  // namespace
 
 void PlannerOptions::add_to(CLI::App& command) {
@@ -61,15 +51,10 @@ void PlannerOptions::add_to(CLI::App& command) {
 }
 
 void PlannerOptions::apply(Problem& problem) const {
-    std::string refused;
-    const auto refuse = [&](const std::vector<KeyError>& errors) {
-        for (const KeyError& error : errors) {
-            refused += (refused.empty() ? "" : "\ndownwash: ") + in_options(error, given_);
-        }
-    };
     if (given_.contains("--max-iterations") && !given_.contains("--time-limit")) {
         problem.planner.time_limit_s.reset();
     }
+    std::string messages;
     for (const OptionOfKey& option : options) {
         const auto text = given_.find(std::string(option.option));
         if (text == given_.end()) {
@@ -78,11 +63,13 @@ void PlannerOptions::apply(Problem& problem) const {
         try {
             set_parameter(problem, option.key, text->second);
         } catch (const InputError& error) {
-            refuse(error.errors());
+            for (const KeyError& of : error.errors()) {
+                messages += fmt::format("{}{} {}", messages.empty() ? "" : "\n", option.option, of.message);
+            }
         }
     }
-    if (!refused.empty()) {
-        throw UsageError(refused);
+    if (!messages.empty()) {
+        throw UsageError(messages);
     }
 }
 

@@ -8,14 +8,14 @@
 
 namespace downwash::cli {
 
-/// Options of the command line that stand for planner settings of the problem file, described by the same table.
+/// Options that override planner settings of the problem file. The table of parameters describes and checks both.
 class PlannerOptions {
  public:
     /// Adds the options to a command. @pre this object outlives the command's parsing
     void add_to(CLI::App& command);
 
-    /// Writes what was given over the file's settings.
-    /// @throws UsageError with every option that is no value for its key or out of range
+    /// Overrides the settings of the file with the options that were given.
+    /// @throws UsageError with every option whose value is invalid or out of range
     void apply(Problem& problem) const;
 
  private:

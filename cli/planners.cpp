@@ -1,11 +1,10 @@
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
-#include "downwash/cli/commands.hpp"
-#include "downwash/cli/json_text.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/planner/solve.hpp"
 
 namespace downwash::cli {
@@ -32,7 +31,7 @@ void for_each_parameter(const AlgorithmInfo& algorithm, const Visit& visit) {
     }
 }
 
-void print_json() {
+void print_planners_as_json() {
     auto list = nlohmann::ordered_json::array();
     for (const AlgorithmInfo& algorithm : algorithms()) {
         auto parameters = nlohmann::ordered_json::array();
@@ -50,7 +49,7 @@ void print_json() {
                         {"description", algorithm.description},
                         {"parameters", std::move(parameters)}});
     }
-    fmt::print("{}\n", json_text(nlohmann::ordered_json{{"planners", std::move(list)}}));
+    print_json({{"planners", std::move(list)}});
 }
 
 void print_table() {
@@ -66,18 +65,20 @@ void print_table() {
     }
 }
 
+struct PlannersArguments {
+    bool as_json = false;
+
+    void add_to(CLI::App& command) { add_json(command, as_json, "print them as JSON"); }
+    [[nodiscard]] ExitCode run() const {
+        as_json ? print_planners_as_json() : print_table();
+        return ExitCode::done;
+    }
+};
+
 }  // namespace
 
 void add_planners(CLI::App& program, Action& action) {
-    const auto as_json = std::make_shared<bool>(false);
-    CLI::App* command = program.add_subcommand("planners", "List the search algorithms");
-    command->add_flag("--json", *as_json, "print them as JSON");
-    command->callback([as_json, &action] {
-        action = [as_json] {
-            *as_json ? print_json() : print_table();
-            return ExitCode::done;
-        };
-    });
+    add_command<PlannersArguments>(program, action, "planners", "List the search algorithms");
 }
 
 }  // namespace downwash::cli

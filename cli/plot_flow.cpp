@@ -13,7 +13,7 @@
 namespace downwash::cli {
 namespace {
 
-/// Points around a source, from which its flow can be followed.
+/// Points around a source, at which streamlines begin.
 std::vector<PlanePoint> points_around(double z) {
     constexpr int count = 24;
     constexpr double radius = 0.05;
@@ -34,7 +34,7 @@ FieldFigure potential_flow_figure(const PlotRequest& request) {
     constexpr double lowest = 0.1, highest = 10, beyond = 1.25, reach = 1;
     if (request.z_over_r.size() != 1 || !(request.z_over_r[0] >= lowest && request.z_over_r[0] <= highest)) {
         throw UsageError(
-            fmt::format("--flow wants --z-over-r H, the height of the rotor in radii, from {} to {}", lowest, highest));
+            fmt::format("--flow needs --z-over-r H, the height of the rotor in radii, from {} to {}", lowest, highest));
     }
     const double height = request.z_over_r[0];
     const PlanarVelocity velocity = [height](double x, double z) -> std::array<double, 2> {

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string_view>
 #include <utility>
 
-#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -19,14 +18,14 @@ namespace {
 
 AxisRange shown_range(const PlotRequest& request) {
     constexpr AxisRange usual{0, 4};
-    constexpr double farthest = 1000;
+    constexpr double max_distance = 1000;
     if (request.z_over_r.empty()) {
         return usual;
     }
     const auto& given = request.z_over_r;
-    if (given.size() != 2 || !(given[0] >= 0 && given[0] < given[1] && given[1] <= farthest)) {
+    if (given.size() != 2 || !(given[0] >= 0 && given[0] < given[1] && given[1] <= max_distance)) {
         throw UsageError(fmt::format("--z-over-r {}{}: expected LOW HIGH in radii, 0 <= LOW < HIGH <= {}", given[0],
-                                     given.size() > 1 ? fmt::format(" {}", given[1]) : "", farthest));
+                                     given.size() > 1 ? fmt::format(" {}", given[1]) : "", max_distance));
     }
     return {given[0], given[1]};
 }
@@ -53,8 +52,8 @@ Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRa
     return curve;
 }
 
-/// The points of one source and surface: one for each distance, their mean where there are several. The bars are the
-/// standard deviations among those, or what the file says of a single one.
+/// The points of one source and surface: one per distance, the mean of repeated ones. The error bars are their standard
+/// deviations, or the sigma of a single point.
 MeasuredPoints points_of(std::string name, const Measurements& measurements, const AxisRange& range) {
     std::map<double, std::vector<const Measurement*>> at;
     for (const Measurement& point : measurements.points) {
@@ -87,27 +86,21 @@ MeasuredPoints points_of(std::string name, const Measurements& measurements, con
     return shown;
 }
 
-/// The entries of a column, or a single empty one that stands for all rows when there is no such column.
-std::vector<std::string> groups(const Measurements& measurements, const char* column, const std::string& wanted) {
-    if (!wanted.empty()) {
-        const std::vector<std::string> entries = measurements.entries(column);
-        if (std::find(entries.begin(), entries.end(), wanted) == entries.end()) {
-            const std::vector<std::string_view> names(entries.begin(), entries.end());
-            throw UsageError(
-                fmt::format("--{} '{}' leaves no measurement: {}", column, excerpt(wanted),
-                            names.empty() ? fmt::format("there is no column {}", column)
-                                          : "expected " + excerpt(joined_names(names)) + did_you_mean(wanted, names)));
-        }
-        return {wanted};
+/// The entry that is selected, or all entries of a column; a single empty one stands for all rows without a column.
+std::vector<std::string> groups(const Measurements& measurements, const std::string& file, const char* column,
+                                const std::string& selected) {
+    require_entry(measurements, file, column, selected);
+    if (!selected.empty()) {
+        return {selected};
     }
     return measurements.index(column) ? measurements.entries(column) : std::vector<std::string>{""};
 }
 
 void add_measurements(CurveFigure& figure, const PlotRequest& request, const AxisRange& range) {
     const Measurements all = read_measurements(request.data);
-    for (const std::string& source : groups(all, "source", request.source)) {
+    for (const std::string& source : groups(all, request.data, "source", request.source)) {
         const Measurements of_source = source.empty() ? all : all.with("source", source);
-        for (const std::string& surface : groups(all, "surface", request.surface)) {
+        for (const std::string& surface : groups(all, request.data, "surface", request.surface)) {
             const Measurements group = surface.empty() ? of_source : of_source.with("surface", surface);
             std::string name = source.empty() ? "measured" : source;
             name += surface.empty() ? "" : ", " + surface;

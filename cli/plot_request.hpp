@@ -24,34 +24,25 @@ struct PlotRequest {
     std::vector<double> z_over_r;
     std::optional<double> max_factor, rotor_spacing;
     bool is_flow = false;
-    std::vector<std::string> given_options;
     std::string output;
-    int width_px = 1200;
+    std::optional<int> width_px;
     bool is_quiet = false;
 };
 
-/// What a picture is about; options go with some of these.
-enum PictureSubject : unsigned {
-    one_rotor = 1,       ///< of a problem
-    whole_vehicle = 2,   ///< of a problem
-    where_to_hover = 4,  ///< of a problem
-    curves = 8,
-    flow = 16,
-};
+/// A picture of a problem. @throws UsageError when the request does not fit the problem
+using MakeField = FieldFigure(const PlotRequest& request, const Problem& problem, const Bounds& extent);
 
-/// One kind of picture of a problem, by the name that --what gives it.
-struct FieldKind {
-    const char* name;
-    const char* description;
-    PictureSubject subject;
-    FieldFigure (*make)(const PlotRequest& request, const Problem& problem, const Bounds& extent);
-};
+/// The thrust ratio K of a rotor: "factor", or of one side only: "ground" and "ceiling".
+MakeField factor_figure;
+/// The thrust of the whole vehicle at a pitch, over the place of its centre of mass.
+MakeField force_figure;
+/// The parasitic pitch torque on the vehicle [Nm]; the subtitle gives the divisor of its factor.
+MakeField torque_figure;
+/// Where the vehicle can hover with its arm at an angle, with the boundary of stability.
+MakeField hold_figure;
 
-/// What it means in pictures of a problem that nothing is known at a place.
+/// What it means in pictures of a problem that a field is not defined at a place.
 [[nodiscard]] std::string undefined_name(const Problem& problem);
-
-/// The factor on the thrust of a rotor, or one of its sides: "factor", "ground" and "ceiling". @throws UsageError
-[[nodiscard]] FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent);
 
 /// K of models over z/R, with measurements. @throws UsageError
 [[nodiscard]] CurveFigure model_figure(const PlotRequest& request);

@@ -1,13 +1,14 @@
 #include "downwash/cli/progress.hpp"
-#include "downwash/cli/standard_error.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <string_view>
+
+#include "downwash/cli/output.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -22,17 +23,15 @@ bool is_live_terminal() {
 
 std::string text_of(const Progress& progress) {
     const std::string best = progress.best_cost ? fmt::format("best cost {:.6g}", *progress.best_cost) : "no plan yet";
-    return fmt::format("{:.1f} s, {} iterations, {} nodes, {} refused, {}", progress.wall_s, progress.iterations,
+    return fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s, progress.iterations,
                        progress.nodes, progress.rejected, best);
 }
 
-spdlog::logger& logger() {
-    static const auto log = [] {
-        auto made = std::make_shared<spdlog::logger>("downwash", std::make_shared<spdlog::sinks::stderr_sink_st>());
-        made->set_pattern("[%H:%M:%S] %v");
-        return made;
-    }();
-    return *log;
+/// A line with the time of day before it.
+void log(const std::string& text) {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    print_error(fmt::format("[{:%H:%M:%S}] {}\n", *localtime_r(&now, &local), text));
 }
 
 }  // namespace
@@ -48,7 +47,7 @@ void ProgressDisplay::say(const std::string& text) {
         return;
     }
     clear_line();
-    logger().info(text);
+    log(text);
 }
 
 void ProgressDisplay::show(const Progress& progress) {
@@ -58,14 +57,14 @@ void ProgressDisplay::show(const Progress& progress) {
     if (is_live_) {
         show_live(text_of(progress));
     } else if (Clock::now() >= next_log_) {
-        logger().info(text_of(progress));
+        log(text_of(progress));
         next_log_ = Clock::now() + search_period;
     }
 }
 
 void ProgressDisplay::show(const std::string& task, double share) {
     constexpr int width = 30;
-    constexpr double least_step = 0.1;
+    constexpr double min_step = 0.1;
     if (is_quiet_) {
         return;
     }
@@ -76,8 +75,8 @@ void ProgressDisplay::show(const std::string& task, double share) {
     if (is_live_) {
         const int done = static_cast<int>(share * width);
         show_live(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));
-    } else if (share >= logged_share_ + least_step && Clock::now() >= next_task_log_) {
-        logger().info("{}: {:.0f} %", task, 100 * share);
+    } else if (share >= logged_share_ + min_step && Clock::now() >= next_task_log_) {
+        log(fmt::format("{}: {:.0f} %", task, 100 * share));
         logged_share_ = share;
         next_task_log_ = Clock::now() + task_period;
     }

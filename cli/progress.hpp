@@ -7,9 +7,9 @@
 
 namespace downwash::cli {
 
-/// Tells on standard error how a search or another long task goes: on a terminal in one line that is written anew,
-/// elsewhere in log lines: of a search at most one a second, of a task one when another tenth of it is done, at most
-/// every five seconds and none before.
+/// Shows on standard error how a search or another long task proceeds. A terminal gets one line that is rewritten;
+/// other outputs get log lines: of a search at most one per second, of a task one per tenth that is done, at most one
+/// every five seconds.
 class ProgressDisplay {
  public:
     explicit ProgressDisplay(bool is_quiet);
@@ -17,12 +17,12 @@ class ProgressDisplay {
     ProgressDisplay(const ProgressDisplay&) = delete;
     ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-    /// Says something once.
+    /// Logs a line.
     void say(const std::string& text);
 
-    /// How far a search is.
+    /// Shows the state of a search.
     void show(const Progress& progress);
-    /// How much of a task is done, 0 to 1.
+    /// Shows the share of a task that is done, 0 to 1.
     void show(const std::string& task, double share);
 
  private:

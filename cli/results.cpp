@@ -55,7 +55,7 @@ std::string_view unit_of(const CostFunction& cost) {
     return " s/m";
 }
 
-std::string refusals(const SearchRecord& record) {
+std::string rejections(const SearchRecord& record) {
     std::string text;
     for (const auto& [cause, count] : record.rejected) {
         if (count > 0) {
@@ -75,7 +75,7 @@ void add_flight(Table& table, const Solution& solution, const Execution& flight)
     table.add("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                     flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
     table.add("cost",
-              fmt::format("{:.6g}{} planned, {:.6g}{} flown", solution.cost, unit, solution.execution_cost, unit));
+              fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
     table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
     table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
     table.add("goal error", millimetres(flight.goal_error_m));
@@ -84,7 +84,7 @@ void add_flight(Table& table, const Solution& solution, const Execution& flight)
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
         table.add("goals", fmt::format("{} of {} met", met, flight.goals.size()));
     }
-    table.add("least clearance",
+    table.add("min. clearance",
               std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
 }
 
@@ -95,22 +95,24 @@ std::filesystem::path default_folder(const Problem& problem) {
            fmt::format("{}-{}-{}", problem.name, name_of(problem.planner.variant), problem.planner.seed);
 }
 
-std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
-                          const Solution& solution) {
-    const std::string effective = effective_yaml(problem, folder.path());
-    std::string json = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
-    folder.write("effective.yaml", effective);
-    folder.write("trajectory.csv", trajectory_csv(solution.execution.value_or(no_flight(problem.robot))));
+RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+                        const Solution& solution) {
+    const Execution flight = solution.execution.value_or(no_flight(problem.robot));
+    RunRecord record = run_record(problem, solution, flight);
+    record.problem_text = effective_yaml(problem, folder.path());
+    record.solution_text = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
+    folder.write("effective.yaml", record.problem_text);
+    folder.write("trajectory.csv", trajectory_csv(flight));
     folder.write("tree.csv", tree_csv(solution.tree));
-    folder.write("solution.json", json);
-    return json;
+    folder.write("solution.json", record.solution_text);
+    return record;
 }
 
 std::string verdict_on_flight(const Execution& flight) {
     const std::string name = flight.aero ? "The flight with direct aerodynamics " : "The flight in free air ";
     switch (flight.outcome) {
         case Outcome::ok:
-            return name + "reaches the goal and holds there.";
+            return name + "reaches the goal and hovers there.";
         case Outcome::collision:
             return name + "ends in a collision.";
         case Outcome::unstable:
@@ -149,25 +151,26 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
     table.add("first solution",
               record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     table.add("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
-    table.add("refused", refusals(record));
+    table.add("rejected", rejections(record));
     if (record.nearest_approach_m) {
         table.add("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
     }
     if (record.obstruction) {
         const Obstruction& o = *record.obstruction;
         table.add("stopped by",
-                  fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m before the goal region", o.cause,
+                  fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
         if (o.cause == "direct_flight") {
-            table.add("",
-                      "every plan was discarded: flown directly, the last one failed or came nearer than the margin");
+            table.add("", "The planner discarded every plan: executed with direct aerodynamics,");
+            table.add("", "the last one failed or came nearer to an obstacle than the margin.");
         } else if (o.goal_distance_m <= 0) {
-            table.add("", "it was there by then; whether a hover is stable there tells downwash aeromap hold");
+            table.add("", "The vehicle reached the goal region but could not hover there.");
+            table.add("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }
     }
     table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
     if (std::error_code ignored; std::filesystem::exists(folder / "report.html", ignored)) {
-        table.add("to look at", (folder / "report.html").string());
+        table.add("page", (folder / "report.html").string());
     }
     return verdict + "\n\n" + table.text();
 }

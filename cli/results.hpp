@@ -4,9 +4,10 @@
 #include <string>
 
 #include "downwash/cli/exit_code.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::cli {
@@ -16,17 +17,17 @@ namespace downwash::cli {
 
 /// Writes effective.yaml, trajectory.csv, tree.csv and, last, solution.json.
 /// @param problem_file as the user gave it
-/// @return the text of solution.json
-std::string write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
-                          const Solution& solution);
+/// @return the same run, as read_run() would read it from the folder
+RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+                        const Solution& solution);
 
-/// What a search came to, in one sentence.
+/// The result of a search, in one sentence.
 [[nodiscard]] std::string verdict_on_search(const Solution& solution);
 
 /// How a flight ended, in one sentence.
 [[nodiscard]] std::string verdict_on_flight(const Execution& flight);
 
-/// What a person wants to know of a solution: the verdict, then a table.
+/// A solution for people: the verdict, then a table.
 [[nodiscard]] std::string summary_of(const std::string& verdict, const Solution& solution,
                                      const std::filesystem::path& folder);
 

@@ -2,29 +2,31 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/progress.hpp"
-#include "downwash/cli/standard_error.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
+namespace {
 
-ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
-                   const std::filesystem::path& cache, bool is_quiet) {
-    ShownRun run{read_run(folder), nullptr, std::move(map)};
+constexpr char page_name[] = "report.html";
+
+}  // namespace
+
+ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
+                   bool is_quiet) {
+    ShownRun run{std::move(record), nullptr, std::move(map)};
     const Problem& problem = run.record.problem;
     run.model = make_flight_model(problem);
     if (run.map == nullptr && problem.aero.enabled) {
-        const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
         ProgressDisplay display(is_quiet);
         run.map = run.model->make_map(
-            problem.bounds, threads, [&display](double share) { display.show("aero map", share); }, cache);
+            problem.bounds, default_threads(), [&display](double share) { display.show("aero map", share); }, cache);
     }
     return run;
 }
@@ -32,27 +34,29 @@ ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const Ae
 void require_pages() {
     if (!has_pages()) {
         throw UsageError(
-            "this build brings no pages: install what viewer/README.md names (./dev setup does), and build again");
+            "this build brings no pages: install the packages that viewer/README.md names (./dev setup does), and "
+            "build "
+            "again");
     }
 }
 
-std::string page_of(const ShownRun& run) {
-    return run_page(run.record, *run.model, run.map.get());
-}
-
-void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
-                bool is_quiet) {
+void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
+                const std::filesystem::path& cache, bool is_quiet) {
     if (!has_pages()) {
         return;
     }
-    constexpr char name[] = "report.html";
     try {
-        folder.write(name, page_of(shown_run(folder.path(), std::move(map), cache, is_quiet)));
+        const ShownRun run = shown_run(record, std::move(map), cache, is_quiet);
+        folder.write(page_name, run_page(run.record, *run.model, run.map.get()));
     } catch (const std::runtime_error& error) {
-        std::error_code ignored;
-        std::filesystem::remove(folder.path() / name, ignored);
-        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", name, error.what()));
+        remove_page(folder);
+        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", page_name, error.what()));
     }
+}
+
+void remove_page(const OutputFolder& folder) {
+    std::error_code ignored;
+    std::filesystem::remove(folder.path() / page_name, ignored);
 }
 
 }  // namespace downwash::cli

@@ -2,10 +2,9 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
 
 #include "downwash/aeromap/aero_map.hpp"
-#include "downwash/cli/output_folder.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
@@ -18,21 +17,21 @@ struct ShownRun {
     std::shared_ptr<const AeroMap> map;  ///< empty without surface effects
 };
 
-/// Reads the run in a folder.
-/// @param map of the run's problem, where it is at hand  @param cache folder of aero maps; empty: nowhere
-/// @param is_quiet whether to keep silent while a map is built
-[[nodiscard]] ShownRun shown_run(const std::filesystem::path& folder, std::shared_ptr<const AeroMap> map,
+/// Completes a run that was read from its folder or is still in memory.
+/// @param map of the run's problem, if it is at hand; otherwise it is built   @param cache folder of aero maps; empty:
+/// none   @param is_quiet whether to keep silent while a map is built
+[[nodiscard]] ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map,
                                  const std::filesystem::path& cache, bool is_quiet = false);
 
 /// @throws UsageError unless this build brings pages
 void require_pages();
 
-/// The page of a run. @pre has_pages()
-[[nodiscard]] std::string page_of(const ShownRun& run);
+/// Writes the page of a run beside its other files, if this build brings pages. The run stands without it: an error is
+/// reported on standard error, and no page of an earlier run stays. The parameters are those of shown_run().
+void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
+                const std::filesystem::path& cache, bool is_quiet = false);
 
-/// Writes the page of the run in a folder beside its other files, if this build brings pages. A run stands without it:
-/// what goes wrong is said on standard error, and no page of an earlier run stays.
-void write_page(const OutputFolder& folder, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
-                bool is_quiet = false);
+/// Removes the page of an earlier run.
+void remove_page(const OutputFolder& folder);
 
 }  // namespace downwash::cli

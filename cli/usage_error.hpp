@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace downwash::cli {
 
@@ -9,5 +13,31 @@ namespace downwash::cli {
 struct UsageError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Says that there is no such name and which name was likely meant. @throws UsageError always
+/// @param what is missing: "there is no format"   @param known every name that there is
+[[noreturn]] void reject_unknown(const std::string& what, std::string_view word,
+                                 const std::vector<std::string_view>& known);
+
+/// The names of all entries of a table.
+template <class Table>
+[[nodiscard]] std::vector<std::string_view> names_of(const Table& table) {
+    std::vector<std::string_view> names;
+    for (const auto& entry : table) {
+        names.emplace_back(entry.name);
+    }
+    return names;
+}
+
+/// The entry of a table that has a name. @throws UsageError as reject_unknown() when there is none
+template <class Table>
+[[nodiscard]] const auto& entry_named(const Table& table, std::string_view name, const std::string& what) {
+    const auto found =
+        std::find_if(table.begin(), table.end(), [name](const auto& entry) { return entry.name == name; });
+    if (found == table.end()) {
+        reject_unknown(what, name, names_of(table));
+    }
+    return *found;
+}
 
 }  // namespace downwash::cli

@@ -10,6 +10,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/problems/problem_writer.hpp"
@@ -56,28 +57,19 @@ void append_row(std::string& text, const FlightModel& model, double x_m, double 
 
 }  // namespace
 
-double pitch_option(double pitch_deg) {
-    constexpr double most_deg = 80;  // farther a multirotor is lost: unstable_pitch_rad
-    if (!(std::abs(pitch_deg) <= most_deg)) {
-        throw UsageError(fmt::format("--pitch-deg {}: expected degrees, at most {} either way, positive nose down",
-                                     pitch_deg, most_deg));
-    }
-    return pitch_deg / degrees_per_radian;
-}
-
 double weight_times_radius_nm(const FlightModel& model) {
     return model.tick().plant.total_mass_kg * standard_gravity_m_s2 * model.robot().rotors.radius_m;
 }
 
 std::string vehicle_table(const Problem& problem, const FlightModel& model, const std::vector<double>& pitch_deg,
                           double step_m, int threads, const std::function<void(double)>& on_progress) {
-    constexpr double most_rows = 1e7;
+    constexpr double max_rows = 1e7;
     const Bounds& bounds = problem.bounds;
     const double rows = static_cast<double>(pitch_deg.size()) * (1 + (bounds.x_high_m - bounds.x_low_m) / step_m) *
                         (1 + (bounds.z_high_m - bounds.z_low_m) / step_m);
-    if (rows > most_rows) {
-        throw UsageError(fmt::format("--step {}: makes some {:.3g} rows, expected at most {:.0e}; choose it coarser",
-                                     step_m, rows, most_rows));
+    if (rows > max_rows) {
+        throw UsageError(fmt::format("--step {}: makes about {:.3g} rows, expected at most {:.0e}; choose it coarser",
+                                     step_m, rows, max_rows));
     }
     const GridAxis x = axis_over(bounds.x_low_m, bounds.x_high_m, step_m);
     const GridAxis z = axis_over(bounds.z_low_m, bounds.z_high_m, step_m);

@@ -57,4 +57,4 @@ downwash_component(CAMPAIGNS "campaigns and their reports"
   FINDS fmt SQLite3 DEBIAN libfmt-dev libsqlite3-dev)
 downwash_component(CLI "the program downwash, its documentation and the tests"
   NEEDS VTK FITTING EXPORTS REPORT CAMPAIGNS
-  FINDS CLI11 fmt spdlog DEBIAN libcli11-dev libfmt-dev libspdlog-dev)
+  FINDS CLI11 fmt DEBIAN libcli11-dev libfmt-dev)

@@ -8,8 +8,8 @@
 
 namespace downwash {
 
-/// Takes all steps out of a map or multimap of places to the places after them, and joins them to chains: first those
-/// that have a beginning, then closed ones, which end with the place that they began with.
+/// Removes all steps from a map or multimap of places to their successors and joins them to chains: first open ones,
+/// then closed ones, whose last place is their first.
 template <class Steps>
 std::vector<std::vector<typename Steps::key_type>> take_chains(Steps& steps) {
     using Place = typename Steps::key_type;

@@ -9,7 +9,7 @@
 namespace downwash {
 namespace {
 
-/// Viridis of matplotlib (Smith, van der Walt, Firing 2015), every ninth part of it, from light to dark.
+/// Viridis of matplotlib (Smith, van der Walt, Firing 2015) in nine equal steps, from light to dark.
 constexpr std::array<Color, 10> viridis{{{253, 231, 37},
                                          {181, 222, 43},
                                          {110, 206, 88},
@@ -39,7 +39,7 @@ Color spread(const std::array<Color, size>& row, std::size_t i, std::size_t n) {
     return {mixed(a.red, b.red), mixed(a.green, b.green), mixed(a.blue, b.blue)};
 }
 
-/// Limits -reach ... -first, first ... reach about a neutral class: `steps` above, and so many of them below.
+/// Limits on both sides of a neutral class: all `steps` above, the first ones of them below.
 ColorScale about(double middle, std::string label, const std::vector<double>& steps, std::size_t below) {
     ColorScale scale;
     scale.label = std::move(label);
@@ -59,13 +59,13 @@ ColorScale about(double middle, std::string label, const std::vector<double>& st
     return scale;
 }
 
-/// The classes that hold values up to `reach`, three at least so that there is something to tell apart.
+/// The number of classes for values up to `reach`, at least three.
 std::size_t steps_up_to(const std::vector<double>& steps, double reach) {
     const auto first = std::lower_bound(steps.begin(), steps.end(), reach * (1 - 1e-9));
     return std::clamp<std::size_t>(static_cast<std::size_t>(first - steps.begin()) + 1, 3, steps.size());
 }
 
-/// The nearest of 1, 2, 5 times a power of ten that is not below.
+/// The smallest 1, 2 or 5 times a power of ten that is not below a step.
 double round_step(double step) {
     const double power = std::pow(10, std::floor(std::log10(step)));
     for (const double factor : {1., 2., 5.}) {

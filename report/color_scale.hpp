@@ -9,22 +9,22 @@
 
 namespace downwash {
 
-/// Colours for the values of a field, in classes: each class of values has one colour, and all are equally wide on the
-/// colour bar whatever the values between which they lie.
+/// Colours for the values of a field, in classes. Each class of values has one colour; all classes have the same width
+/// on the colour bar.
 struct ColorScale {
-    std::string label;           ///< what the values are, with their unit
+    std::string label;           ///< the quantity, with its unit
     std::vector<double> limits;  ///< of the classes, increasing; one more than there are colours
     std::vector<Color> colors;   ///< of the classes; at least two
-    /// Of the classes, to be written at the colour bar instead of the limits. May be empty.
+    /// Names of the classes, shown at the colour bar instead of the limits. May be empty.
     std::vector<std::string> names;
 };
 
-/// Where a value stands on the colour bar: i at limits[i], linear between them. What lies outside stands at the ends.
+/// The position of a value on the colour bar: i at limits[i], linear between them, clamped to the ends.
 /// NaN for NaN.
 [[nodiscard]] DOWNWASH_EXPORT double position_on(const ColorScale& scale, double value);
 
-/// A scale for factors near one, finest at one, wide enough for values from `low` to `high`: from white through
-/// viridis (perceptually uniform, legible to the colour-blind) where nothing is below one, else blue below and red
+/// A scale for factors near one, finest at one, that covers `low` to `high`. Without values below one it runs from
+/// white through viridis (perceptually uniform, legible to the colour-blind); otherwise it is blue below one and red
 /// above.
 [[nodiscard]] DOWNWASH_EXPORT ColorScale factor_scale(std::string label, double low, double high);
 
@@ -35,7 +35,7 @@ struct ColorScale {
 /// @pre reach > 0 and finite  @param classes on each side, from 2 to 8
 [[nodiscard]] DOWNWASH_EXPORT ColorScale signed_scale(std::string label, double reach, int classes = 6);
 
-/// One colour for each of the values 0, 1, 2... of a field of kinds. @pre as many names as colours, two at least
+/// One colour for each of the values 0, 1, 2... of a field of kinds. @pre as many names as colours, at least two
 [[nodiscard]] DOWNWASH_EXPORT ColorScale scale_of_kinds(std::string label, std::vector<std::string> names,
                                                         std::vector<Color> colors);
 

@@ -60,7 +60,7 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
     }
 }
 
-/// What of the y axis the data need, with a little room.
+/// The range of the y axis for the data, with a margin.
 AxisRange needed_range(const CurveFigure& figure) {
     constexpr double room = 0.04;
     AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -94,7 +94,7 @@ AxisRange needed_range(const CurveFigure& figure) {
     return {range.low - more, range.high + more};
 }
 
-/// One figure and its place.
+/// One figure of a picture.
 class Panel {
  public:
     Panel(const CurveFigure& figure, std::size_t number, double width_px) : figure_(figure), number_(number) {
@@ -116,7 +116,7 @@ class Panel {
     void add_to(GnuplotScript& script, double left_px, double right_px, double bottom_px, double axes_px) const {
         const double middle_px = (left_px + right_px) / 2;
         const double axes_top_px = bottom_px + below_axes_px + axes_px;
-        // What stands around one panel must not be repeated around the next.
+        // Labels of one panel must not be repeated at the next.
         script.add("unset label\nunset arrow\nunset object");
         script.set_titles(figure_.title, figure_.subtitle, middle_px, axes_top_px + above_axes_px());
         legend_.place(script, middle_px, axes_top_px + legend_height_px_ + 4, right_px - left_px);
@@ -124,7 +124,7 @@ class Panel {
         add_range(script, "x", figure_.x_range);
         add_range(script, "y", figure_.y_range.value_or(needed_range(figure_)));
         script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label)));
-        // As an axis label it would vanish beyond the rim where the numbers at the axis are long.
+        // As an axis label it would leave the picture if the numbers at the axis are long.
         constexpr double y_label_px = 16;
         script.add(fmt::format("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
                                script.screen_x(y_label_px), script.screen_y(bottom_px + below_axes_px + axes_px / 2)));
@@ -149,7 +149,7 @@ class Panel {
                          : fmt::format("set {}range [*:*]", axis));
     }
 
-    /// Adds one block of data and how it is drawn.
+    /// Adds one block of data and its drawing style.
     void add(const std::string& rows, const std::string& how) {
         const std::string name = fmt::format("$data{}_{}", number_, count_++);
         data_ += name + " << END_OF_DATA\n" + rows + "END_OF_DATA\n";
@@ -192,7 +192,7 @@ class Panel {
             const double error = has_errors && std::isfinite(measured.errors[k]) ? measured.errors[k] : 0;
             rows += is_finite(p) ? fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x, p.y, error) : "\n";
         }
-        // Colours go on where the curves' end, so that points do not seem to belong to a curve by accident.
+        // Colours continue after those of the curves, so that points do not seem to belong to a curve.
         const std::string style =
             fmt::format("pointtype {} pointsize 1 linecolor rgb {}", point_types[i % point_types.size()],
                         in_quotes(colors[(figure_.curves.size() + i) % colors.size()]));
@@ -214,12 +214,12 @@ class Panel {
 std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings) {
     constexpr double left_px = 84, right_px = 24;
     if (figures.empty()) {
-        throw InputError({KeyError{"figures", "there is no figure to draw: expected one at least"}});
+        throw InputError({KeyError{"figures", "there is no figure to draw: expected at least one"}});
     }
     const double width_px = settings.width_px - left_px - right_px;
     std::vector<Panel> panels;
     double height_px = 0;
-    // What stands alone or above its residuals is looked at, of many each.
+    // A figure alone or above its residuals is high; one of many is low.
     const auto axes_px = [&](std::size_t i) { return width_px * (i == 0 && figures.size() <= 2 ? 0.5 : 0.22); };
     for (std::size_t i = 0; i < figures.size(); ++i) {
         require_drawable(figures[i], fmt::format("figures[{}]", i));

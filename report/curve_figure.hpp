@@ -15,16 +15,11 @@ struct DiagramPoint {
     double x = 0, y = 0;
 };
 
-/// A range of an axis.
-struct AxisRange {
-    double low = 0, high = 1;
-};
-
-/// A line through points; one that is not finite interrupts it.
+/// A line through points; a point that is not finite interrupts it.
 struct Curve {
     std::string name;
     std::vector<DiagramPoint> points;
-    std::optional<AxisRange> known_range = {};  ///< of x, both ends may be infinite: outside, the line is dotted
+    std::optional<AxisRange> known_range = {};  ///< of x, both ends may be infinite; the line is dotted outside
 };
 
 /// Points with or without error bars.
@@ -34,8 +29,8 @@ struct MeasuredPoints {
     std::vector<double> errors;  ///< half the length of each bar, in y; empty for none, else one for each point
 };
 
-/// A diagram of curves and measured points over one quantity. Colours go round after eight (Okabe and Ito 2008, legible
-/// to the colour-blind), and dashes tell curves apart where colours do not.
+/// A diagram of curves and measured points over one quantity. Eight colours repeat (Okabe and Ito 2008, legible to the
+/// colour-blind); dashes distinguish curves of equal colour.
 struct CurveFigure {
     std::string title;
     std::string subtitle;
@@ -44,17 +39,17 @@ struct CurveFigure {
     std::optional<double> level;                ///< a thin level line, for example at K = 1
     std::vector<Curve> curves;
     std::vector<MeasuredPoints> measurements;
-    std::string dotted_name = "outside the known range";  ///< what the legend says of dotted lines
+    std::string dotted_name = "outside the known range";  ///< legend of the dotted lines
 };
 
 /// The picture as the bytes of a file: the figures one below the other, with axes of equal width, for example a fit
 /// and its residuals. Each has a legend of its own; titles of all but the first may be empty. Equal figures give equal
-/// bytes. Text may hold anything: it is shown, never run.
+/// bytes. Text may be arbitrary: it is shown, never run.
 /// @throws InputError when there is no figure, nothing to draw in one, a range is empty, the numbers of points and
 /// error bars differ, or the width is out of range  @throws PictureError when gnuplot cannot draw
 [[nodiscard]] DOWNWASH_EXPORT std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings);
 
-/// The same of one figure.
+/// The same for one figure.
 [[nodiscard]] inline std::string draw(const CurveFigure& figure, const PictureSettings& settings) {
     return draw(std::span(&figure, 1), settings);
 }

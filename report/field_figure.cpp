@@ -8,14 +8,12 @@
 #include <utility>
 
 #include "downwash/base/text.hpp"
-#include "downwash/report/field_layout.hpp"
-#include "downwash/report/field_samples.hpp"
+#include "downwash/report/field_parts.hpp"
 #include "downwash/report/gnuplot_script.hpp"
 #include "downwash/report/legend.hpp"
 #include "downwash/report/obstacle_drawing.hpp"
 #include "downwash/report/picture_text.hpp"
-#include "downwash/report/plot_data.hpp"
-#include "downwash/report/plot_elements.hpp"
+#include "downwash/report/plot.hpp"
 #include "downwash/report/region_boundary.hpp"
 
 namespace downwash {
@@ -23,12 +21,12 @@ namespace {
 
 constexpr char hatch_color[] = "'#9a9a9a'";
 
-/// So many points for each pixel of the axes, but no more than that in all.
+/// Samples with a number of points per pixel of the axes, up to a maximum in all.
 FieldSamples sampled_for(const FieldFigure& figure, const FieldLayout& layout, double points_per_px,
-                         std::size_t most_points, bool at_corners) {
+                         std::size_t max_points, bool at_corners) {
     const double height_px = layout.top - layout.bottom;
     const double points = layout.width() * height_px * points_per_px * points_per_px;
-    const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(most_points) / points));
+    const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(max_points) / points));
     const auto count = [scale](double px) { return static_cast<std::size_t>(std::max(2L, std::lround(scale * px))); };
     return sampled(figure, count(layout.width()), count(height_px), at_corners);
 }
@@ -43,7 +41,7 @@ void add_contours(GnuplotScript& script, const FieldFigure& figure, const FieldS
     script.add("unset surface");
     script.add(fmt::format("set cntrparam levels incremental 1,1,{}", figure.scale.colors.size() - 1));
     script.add("set table $contours");
-    script.add("splot " + samples.surface_source());
+    script.add("splot " + samples.source(true));
     script.add_values(samples.places);
     script.add("unset table");
     script.add("unset contour");
@@ -135,7 +133,7 @@ void add_mark_data(GnuplotScript& script, const FieldFigure& figure) {
     }
 }
 
-/// The line around where the field is not defined, as the data $boundary.
+/// The line around the area where the field is not defined, as the data $boundary.
 void add_boundary(GnuplotScript& script, const FieldFigure& figure, const FieldLayout& layout) {
     constexpr double px_per_cell = 2;
     const auto cells = [](double px) { return static_cast<std::size_t>(std::max(1L, std::lround(px / px_per_cell))); };
@@ -157,13 +155,26 @@ void add_axes(GnuplotScript& script, const FieldFigure& figure, const FieldLayou
 
 }  // namespace
 
+AxisRange value_range(const std::function<double(double, double)>& value, const Bounds& extent, int steps,
+                      double included) {
+    AxisRange range{included, included};
+    for (int i = 0; i <= steps; ++i) {
+        for (int k = 0; k <= steps; ++k) {
+            const double at = value(extent.x_low_m + (extent.x_high_m - extent.x_low_m) * i / steps,
+                                    extent.z_low_m + (extent.z_high_m - extent.z_low_m) * k / steps);
+            range = {std::fmin(range.low, at), std::fmax(range.high, at)};
+        }
+    }
+    return range;
+}
+
 std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     require_drawable(figure.extent);
-    const double most_px_per_m = settings.width_px / (figure.extent.x_high_m - figure.extent.x_low_m);
-    const std::vector<ObstacleOutline> outlines = thinned_outlines(merged_outlines(figure.obstacles), most_px_per_m);
+    const double max_px_per_m = settings.width_px / (figure.extent.x_high_m - figure.extent.x_low_m);
+    const std::vector<ObstacleOutline> outlines = thinned_outlines(merged_outlines(figure.obstacles), max_px_per_m);
 
-    // The legend decides the layout, and the layout how finely the field is sampled: whether it is defined everywhere,
-    // which the legend says, is found out beforehand.
+    // The legend determines the layout, and the layout how finely the field is sampled. The legend also says whether
+    // the field is defined everywhere, which a coarse sampling finds out first.
     const FieldSamples glance = sampled(figure, 300, 300, false);
     const bool has_undefined = std::any_of(glance.places.begin(), glance.places.end(), is_undefined);
     const bool has_field = !std::all_of(glance.places.begin(), glance.places.end(), is_undefined);
@@ -196,12 +207,12 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
                          true));
     FieldSamples image;
     if (has_field) {
-        constexpr std::size_t most_image_points = 1'500'000, most_contour_points = 300'000;
+        constexpr std::size_t max_image_points = 1'500'000, max_contour_points = 300'000;
         const double points_per_px = settings.format == PictureFormat::png ? 1 : 2;
-        image = sampled_for(figure, layout, points_per_px, most_image_points, false);
+        image = sampled_for(figure, layout, points_per_px, max_image_points, false);
         plot.add(image.source() + " with image");
         if (figure.has_contour_lines) {
-            add_contours(script, figure, sampled_for(figure, layout, 0.5, most_contour_points, true));
+            add_contours(script, figure, sampled_for(figure, layout, 0.5, max_contour_points, true));
             plot.add_lines("$contours", "linewidth 0.5 linecolor rgb '#404040'");
         }
         if (has_undefined) {

@@ -38,17 +38,17 @@ std::optional<PlanePoint> next_point(const PlanarVelocity& velocity, const Plane
 
 std::vector<PlanePoint> streamline(const PlanarVelocity& velocity, const PlanePoint& start, const Bounds& extent,
                                    double step) {
-    constexpr std::size_t most_points = 10001;
+    constexpr std::size_t max_points = 10001;
     const auto is_shown = [&](const PlanePoint& p) {
         return p.x_m >= extent.x_low_m && p.x_m <= extent.x_high_m && p.z_m >= extent.z_low_m &&
                p.z_m <= extent.z_high_m;
     };
     std::vector<PlanePoint> points{start};
-    while (points.size() < most_points && is_shown(points.back())) {
+    while (points.size() < max_points && is_shown(points.back())) {
         const auto next = next_point(velocity, points.back(), step);
-        // At a stagnation point it would tremble on the spot: a step that hardly gains length ends it.
-        constexpr double least_gain = 0.5;
-        if (!next || std::hypot(next->x_m - points.back().x_m, next->z_m - points.back().z_m) < least_gain * step) {
+        // At a stagnation point the line would oscillate: a step that hardly gains length ends it.
+        constexpr double min_gain = 0.5;
+        if (!next || std::hypot(next->x_m - points.back().x_m, next->z_m - points.back().z_m) < min_gain * step) {
             break;
         }
         points.push_back(*next);

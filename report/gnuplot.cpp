@@ -22,8 +22,8 @@ std::string reason(int error) {
     return std::generic_category().message(error);
 }
 
-/// A file without a name: it vanishes with its last user. Unlike pipes, three of them cannot block each other, and a
-/// reader that ends early raises no signal.
+/// A file without a name, which disappears with its last user. Unlike pipes, three of them cannot block each other, and
+/// a reader that ends early raises no signal.
 class NamelessFile {
  public:
     NamelessFile() : file_(std::tmpfile(), &std::fclose) {
@@ -43,7 +43,7 @@ class NamelessFile {
         std::rewind(file_.get());
     }
 
-    /// Everything that is in it now.
+    /// The whole content.
     [[nodiscard]] std::string content() const {
         std::rewind(file_.get());
         std::string content;
@@ -58,7 +58,7 @@ class NamelessFile {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
-/// How a child starts: three descriptors, signals as they are by default.
+/// The start of a child process: three descriptors, default signals.
 class SpawnSettings {
  public:
     SpawnSettings(int in, int out, int err) {
@@ -90,7 +90,7 @@ class SpawnSettings {
         if (const int error = posix_spawnp(&process, name, &actions_, &attributes_, arguments, environ)) {
             if (error == ENOENT || error == EACCES) {
                 throw PictureError(
-                    "pictures are drawn by gnuplot, which is not to be found in PATH: install the Debian package "
+                    "gnuplot draws the pictures, and PATH does not contain it: install the Debian package "
                     "gnuplot-nox (apt-get install gnuplot-nox)");
             }
             throw PictureError("gnuplot cannot be started: " + reason(error));
@@ -110,7 +110,7 @@ int wait_for(pid_t process, std::chrono::milliseconds limit) {
     int status = 0;
     for (;;) {
         const pid_t ended = waitpid(process, &status, WNOHANG);
-        // A host that ignores SIGCHLD leaves no status behind: what gnuplot wrote has to tell.
+        // If the host program ignores SIGCHLD there is no status: only the output of gnuplot tells.
         if (ended == process || (ended < 0 && errno == ECHILD)) {
             return status;
         }
@@ -124,7 +124,7 @@ int wait_for(pid_t process, std::chrono::milliseconds limit) {
     }
 }
 
-/// What gnuplot complained about: the last line that says something.
+/// The last line of gnuplot's error output that is not empty.
 std::string last_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
         text.pop_back();

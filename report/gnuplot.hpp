@@ -10,8 +10,8 @@
 
 namespace downwash {
 
-/// Runs gnuplot with a script on its standard input and no settings of the user, and gives what it writes on its
-/// standard output. No shell is involved. The script is trusted: text of others goes into it through in_quotes() only.
+/// Runs gnuplot without the settings of the user, with a script on its standard input, and returns its standard output.
+/// No shell is involved. The script is trusted: foreign text must pass through in_quotes().
 /// @throws PictureError when gnuplot is not installed, fails, or takes longer than `limit`
 [[nodiscard]] DOWNWASH_EXPORT std::string run_gnuplot(std::string_view script,
                                                       std::chrono::milliseconds limit = std::chrono::minutes(2));

@@ -33,8 +33,8 @@ std::string terminal(const PictureSettings& settings, int height_px) {
     return fmt::format("svg size {},{}", settings.width_px, height_px);
 }
 
-/// Equal figures give equal bytes: the day on which a PDF was drawn becomes blank. Its length stays, as places in the
-/// file are counted.
+/// Blanks the date of a PDF, since equal figures give equal bytes. The length stays: a PDF counts positions in the
+/// file.
 void forget_date(std::string& pdf) {
     const std::size_t date = pdf.rfind("/CreationDate (");
     if (date != std::string::npos) {
@@ -47,9 +47,9 @@ void forget_date(std::string& pdf) {
 
 GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
     : settings_(settings), height_px_(static_cast<int>(std::lround(height_px))) {
-    if (settings.width_px < least_picture_width_px || settings.width_px > most_picture_width_px) {
+    if (settings.width_px < min_picture_width_px || settings.width_px > max_picture_width_px) {
         throw InputError({{"width_px", fmt::format("{} is out of range: expected {} to {} pixels", settings.width_px,
-                                                   least_picture_width_px, most_picture_width_px)}});
+                                                   min_picture_width_px, max_picture_width_px)}});
     }
     const double font_size = text_unit(settings.format) * font_px;
     add("set encoding utf8");

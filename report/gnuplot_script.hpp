@@ -13,7 +13,7 @@ namespace downwash {
 /// Size of the text in pictures [px].
 inline constexpr double font_px = 15;
 
-/// A script that draws one picture. Everything in it is ours, or went through in_quotes().
+/// A script that draws one picture. Foreign text in it has passed through in_quotes().
 class GnuplotScript {
  public:
     /// @throws InputError when the width is out of its range
@@ -25,21 +25,21 @@ class GnuplotScript {
         text_ += '\n';
     }
 
-    /// The values that a `'-' binary format='%float'` of the last line asks for.
+    /// Adds the values for a `'-' binary format='%float'` of the last line.
     void add_values(std::span<const float> values);
 
     /// A distance in pixels from the left or from the bottom, as a fraction of the picture.
     [[nodiscard]] double screen_x(double px) const { return px / settings_.width_px; }
     [[nodiscard]] double screen_y(double px) const { return px / height_px_; }
 
-    /// Where the axes stand, in pixels from the lower left corner of the picture.
+    /// Sets the position of the axes, in pixels from the lower left corner of the picture.
     void set_axes(double left_px, double right_px, double bottom_px, double top_px);
 
-    /// A text about a place in the picture, in `size` times the usual font or as small as it has to be.
+    /// Adds a centred text, in `size` times the usual font or smaller if it does not fit.
     void add_line_of_text(std::string_view text, double middle_px, double bottom_px, double size,
                           std::string_view color);
 
-    /// Title and, below it in grey, subtitle, `top_px` being where they begin.
+    /// Adds a title at `top_px` and, in grey, a subtitle below it.
     void set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px);
 
     /// Draws. @throws PictureError

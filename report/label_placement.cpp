@@ -65,14 +65,14 @@ bool is_inside(const Ring& ring, const PixelPoint& p) {
 /// The point of a ring nearest to p.
 PixelPoint nearest_point(const Ring& ring, const PixelPoint& p) {
     PixelPoint nearest = ring[0];
-    double least = std::hypot(nearest.x - p.x, nearest.y - p.y);
+    double min_distance = std::hypot(nearest.x - p.x, nearest.y - p.y);
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
         const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
         const double along = squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0., 1.) : 0;
         const PixelPoint candidate{a.x + along * dx, a.y + along * dy};
-        if (const double distance = std::hypot(candidate.x - p.x, candidate.y - p.y); distance < least) {
-            least = distance;
+        if (const double distance = std::hypot(candidate.x - p.x, candidate.y - p.y); distance < min_distance) {
+            min_distance = distance;
             nearest = candidate;
         }
     }
@@ -103,14 +103,14 @@ class Placement {
         : area_(area), height_px_(height_px), color_at_(color_at) {
         for (const NamedShape& shape : shapes) {
             Visible visible{shape.width_px, shape.is_filled, {}, {}};
-            double largest = 3;  // what is smaller cannot be seen
+            double largest = 3;  // smaller parts are invisible
             for (const Ring& ring : shape.rings) {
                 Ring part = clipped(ring, area);
                 if (part.empty()) {
                     continue;
                 }
                 const PixelBox box = box_of(part);
-                // The length tells among lines, which have no area.
+                // Lines have no area, only a length.
                 const double size = area_of(part) + std::hypot(box.right - box.left, box.top - box.bottom);
                 if (size > largest) {
                     largest = size;
@@ -123,7 +123,7 @@ class Placement {
     }
 
     std::vector<PlacedLabel> place() {
-        // What has room inside goes first, so that names beside their shapes can avoid it.
+        // Names inside their shapes come first, so that names beside shapes can avoid them.
         for (const auto find : {&Placement::find_inside, &Placement::find_beside}) {
             for (std::size_t i = 0; i < visible_.size(); ++i) {
                 const bool is_placed = std::any_of(labels_.begin(), labels_.end(),
@@ -203,7 +203,7 @@ class Placement {
         const double inset = height_px_ / 2 + room;
         std::vector<double> heights{middle.y};
         if (!shape.is_filled) {
-            // Names of outlines keep to their rim where they can: what lies within is not theirs.
+            // Names of outlines stay near the edge if possible: the inside may belong to other shapes.
             heights = {bounds.top - inset, bounds.bottom + inset};
             for (double y = bounds.top - 2 * inset; y > bounds.bottom + inset; y -= inset) {
                 heights.push_back(y);
@@ -235,7 +235,7 @@ class Placement {
         return false;
     }
 
-    /// Whether a line from a name to its shape comes across other filled shapes or names.
+    /// Whether a line from a name to its shape crosses other filled shapes or names.
     [[nodiscard]] bool crosses_other(const PixelPoint& from, const PixelPoint& to, std::size_t own) const {
         constexpr int steps = 32;
         for (int k = 0; k <= steps; ++k) {
@@ -264,8 +264,8 @@ class Placement {
         std::vector<PixelPoint> places{{x, up},     {right, y}, {left, y},     {x, down},
                                        {right, up}, {left, up}, {right, down}, {left, down}};
         for (const double part : {0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0., 1.}) {
-            const double least = shape.left + width / 2, most = std::max(least, shape.right - width / 2);
-            const double along = std::clamp(shape.left + part * (shape.right - shape.left), least, most);
+            const double low = shape.left + width / 2, high = std::max(low, shape.right - width / 2);
+            const double along = std::clamp(shape.left + part * (shape.right - shape.left), low, high);
             places.push_back({along, up});
             places.push_back({along, down});
         }

@@ -29,7 +29,7 @@ struct PixelBox {
     [[nodiscard]] PixelPoint middle() const { return {(left + right) / 2, (bottom + top) / 2}; }
 };
 
-/// Something with a name, by its outline.
+/// The outline of something with a name.
 struct NamedShape {
     std::string name;
     double width_px = 0;  ///< of the name
@@ -37,17 +37,18 @@ struct NamedShape {
     std::vector<std::vector<PixelPoint>> rings;
 };
 
-/// Where a name goes.
+/// The place of a name.
 struct PlacedLabel {
     std::size_t shape = 0;
     PixelBox box;
     bool is_inside = false;            ///< on its own filled shape
-    bool needs_ground = false;         ///< something would be seen through the letters
-    std::optional<PixelPoint> leader;  ///< where a line from the name should lead, when it stands apart
+    bool needs_ground = false;         ///< the background is not plain
+    std::optional<PixelPoint> leader;  ///< the end of a line from the name, if it is away from its shape
 };
 
-/// Finds places for the names of what can be seen within `area`: inside its shape where there is room, else near it,
-/// never on another name and, where that can be had, on no other shape and where the background is of one colour.
+/// Finds places for the names of the shapes that are visible within `area`: inside the shape if there is room,
+/// otherwise near it. A name never covers another name and, if possible, no other shape and only a background of one
+/// colour.
 /// @param color_at the number of the background's colour at a point
 [[nodiscard]] DOWNWASH_EXPORT std::vector<PlacedLabel> place_labels(
     const std::vector<NamedShape>& shapes, const PixelBox& area, double height_px,

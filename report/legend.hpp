@@ -10,22 +10,22 @@
 
 namespace downwash {
 
-/// What stands before a name: the options of gnuplot that draw a stroke, a filled box and a point; empty for none.
+/// The sample before a name: gnuplot options for a stroke, a filled box and a point; empty for none.
 struct LegendSample {
     std::string stroke;  ///< as after `set arrow`, for example "linewidth 2"
     std::string fill;    ///< as after `set object rectangle`
     std::string point;   ///< as after `set label ... point`
 };
 
-/// The names of what is drawn, in rows above the axes. gnuplot's own key overlaps the axes when it grows.
+/// The legend, in rows above the axes. gnuplot's own key overlaps the axes if it is large.
 class Legend {
  public:
     void add(std::string_view name, LegendSample sample);
 
-    /// How high it gets where it may be so wide [px].
+    /// Its height for an available width [px].
     [[nodiscard]] double height_px(double width_px) const;
 
-    /// Puts it below `top_px`, about `middle_px`.
+    /// Adds it below `top_px`, centred at `middle_px`.
     void place(GnuplotScript& script, double middle_px, double top_px, double width_px) const;
 
  private:
@@ -33,7 +33,7 @@ class Legend {
         std::string name;
         LegendSample sample;
     };
-    /// Widths of as many columns as fit, names included.
+    /// The widths of the columns that fit, names included.
     [[nodiscard]] std::vector<double> columns_px(double width_px) const;
 
     std::vector<Entry> entries_;

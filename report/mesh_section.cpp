@@ -12,25 +12,15 @@ namespace {
 /// An edge by the smaller and the larger index of its ends.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Gives vertices with the same coordinates one index.
-class Welding {
- public:
-    explicit Welding(const std::vector<Vector3>& vertices_m) : vertices_m_(vertices_m) {}
-    std::uint32_t operator()(std::uint32_t vertex) { return first_.emplace(vertices_m_[vertex], vertex).first->second; }
-
- private:
-    const std::vector<Vector3>& vertices_m_;
-    std::map<Vector3, std::uint32_t> first_;
-};
-
-/// The pieces that single triangles contribute, each from the edge where it begins to the one where it ends.
+/// The pieces of single triangles, each from the edge where it begins to the one where it ends.
 using Pieces = std::multimap<Edge, Edge>;
 
 Pieces pieces_of(const std::vector<Vector3>& vertices_m, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-    Welding welded(vertices_m);
+    std::map<Vector3, std::uint32_t> first;  // vertices with equal coordinates share an index
+    const auto welded = [&](std::uint32_t vertex) { return first.emplace(vertices_m[vertex], vertex).first->second; };
     Pieces pieces;
     for (const auto& triangle : triangles) {
-        std::array<Edge, 2> ends{};  // where the boundary goes to the left of the plane, and where it comes back
+        std::array<Edge, 2> ends{};  // where the boundary crosses to the left of the plane, and back
         bool is_cut = false;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t from = triangle[i];

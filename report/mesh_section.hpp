@@ -11,13 +11,13 @@
 
 namespace downwash {
 
-/// Where a plane cuts a surface.
+/// The section of a surface with a plane.
 struct MeshSection {
-    std::vector<std::vector<PlanePoint>> rings;  ///< closed, without repeating the first point
-    std::vector<std::vector<PlanePoint>> lines;  ///< open
+    std::vector<Ring> rings;  ///< closed
+    std::vector<Ring> lines;  ///< open
 };
 
-/// The section of triangles with the plane lateral = 0, corners being (x, lateral, z). Vertices with equal coordinates
+/// The section of triangles with the plane lateral = 0; corners are (x, lateral, z). Vertices with equal coordinates
 /// are one. Around solid parts of a closed surface whose corners run counter-clockwise seen from outside, rings run
 /// counter-clockwise; around holes, clockwise.
 [[nodiscard]] MeshSection mesh_section(const std::vector<Vector3>& vertices_m,

@@ -10,7 +10,6 @@
 
 #include "downwash/report/label_placement.hpp"
 #include "downwash/report/picture_text.hpp"
-#include "downwash/report/plot_data.hpp"
 
 namespace downwash {
 namespace {
@@ -19,24 +18,31 @@ constexpr double label_height_px = 18;
 constexpr char obstacle_color[] = "'#6e6e6e'";
 constexpr char outline_color[] = "'#303030'";
 
-/// All rings as one closed line. The ways between them are walked there and back and enclose nothing, so that holes,
-/// which run the other way round, stay open.
+/// All rings as one closed line. The connections between rings run there and back and enclose nothing, so that holes,
+/// which run in the opposite sense, stay open.
 std::string fill_text(const std::vector<Ring>& rings) {
     std::string text;
-    std::string way_back;
+    std::string back;
     for (const Ring& ring : rings) {
         if (!ring.empty()) {
             text += points_text(ring, true);
-            way_back.insert(0, points_text({ring[0]}, false));
+            back.insert(0, points_text({ring[0]}, false));
         }
     }
-    return text + way_back;
+    return text + back;
+}
+
+/// Calls visit(ring) for the rings and lines of an outline.
+template <class Visit>
+void for_each_ring(const ObstacleOutline& outline, const Visit& visit) {
+    std::for_each(outline.rings.begin(), outline.rings.end(), visit);
+    std::for_each(outline.lines.begin(), outline.lines.end(), visit);
 }
 
 /// A name as it is drawn.
 std::string shown_name(const std::string& name) {
-    constexpr std::size_t most_characters = 40;
-    return picture_text(name, most_characters);
+    constexpr std::size_t max_characters = 40;
+    return picture_text(name, max_characters);
 }
 
 }  // namespace
@@ -46,13 +52,11 @@ std::vector<ObstacleOutline> merged_outlines(const std::vector<ObstacleOutline>&
     std::map<std::pair<bool, std::string>, std::size_t> seen;
     for (const ObstacleOutline& outline : outlines) {
         std::string corners;
-        for (const auto* rings : {&outline.rings, &outline.lines}) {
-            for (const Ring& ring : *rings) {
-                for (const PlanePoint& p : ring) {
-                    corners += fmt::format("{} {} ", std::lround(p.x_m * 1e4), std::lround(p.z_m * 1e4));
-                }
+        for_each_ring(outline, [&corners](const Ring& ring) {
+            for (const PlanePoint& p : ring) {
+                corners += fmt::format("{} {} ", std::lround(p.x_m * 1e4), std::lround(p.z_m * 1e4));
             }
-        }
+        });
         const auto [place, is_new] = seen.emplace(std::pair(outline.is_cut, corners), merged.size());
         if (is_new) {
             merged.push_back(outline);
@@ -64,31 +68,27 @@ std::vector<ObstacleOutline> merged_outlines(const std::vector<ObstacleOutline>&
 }
 
 std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outlines, double px_per_m) {
-    constexpr std::size_t most_corners = 20'000;
-    constexpr double least_px = 0.5;
+    constexpr std::size_t max_corners = 20'000;
+    constexpr double min_px = 0.5;
     std::size_t corners = 0;
     for (const ObstacleOutline& outline : outlines) {
-        for (const auto* rings : {&outline.rings, &outline.lines}) {
-            for (const Ring& ring : *rings) {
-                corners += ring.size();
-            }
-        }
+        for_each_ring(outline, [&corners](const Ring& ring) { corners += ring.size(); });
     }
-    if (corners <= most_corners) {
+    if (corners <= max_corners) {
         return outlines;
     }
-    const double least_m = least_px / px_per_m;
-    const auto thin = [least_m](std::vector<Ring>& rings, std::size_t least_corners) {
+    const double min_m = min_px / px_per_m;
+    const auto thin = [min_m](std::vector<Ring>& rings, std::size_t min_corners) {
         for (Ring& ring : rings) {
             Ring kept;
             for (const PlanePoint& p : ring) {
-                if (kept.empty() || std::hypot(p.x_m - kept.back().x_m, p.z_m - kept.back().z_m) >= least_m) {
+                if (kept.empty() || std::hypot(p.x_m - kept.back().x_m, p.z_m - kept.back().z_m) >= min_m) {
                     kept.push_back(p);
                 }
             }
             ring = std::move(kept);
         }
-        std::erase_if(rings, [least_corners](const Ring& ring) { return ring.size() < least_corners; });
+        std::erase_if(rings, [min_corners](const Ring& ring) { return ring.size() < min_corners; });
     };
     for (ObstacleOutline& outline : outlines) {
         thin(outline.rings, 3);
@@ -114,9 +114,9 @@ void add_obstacles(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
                           fmt::format("fillstyle solid noborder fillcolor rgb {}", obstacle_color),
                           std::exchange(has_cut, true) ? "" : "obstacle");
         }
-        // The many cubes of an octree are shown as one.
-        constexpr std::size_t most_outlined = 30;
-        plot.add_lines(edge, outline.rings.size() <= most_outlined
+        // An octree with many cubes is drawn as one shape.
+        constexpr std::size_t max_outlined = 30;
+        plot.add_lines(edge, outline.rings.size() <= max_outlined
                                  ? fmt::format("linewidth 1 linecolor rgb {}", outline_color)
                                  : fmt::format("linewidth 0.5 linecolor rgb {}", obstacle_color));
     }
@@ -137,19 +137,17 @@ void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const 
     std::vector<NamedShape> shapes;
     for (const ObstacleOutline& outline : outlines) {
         NamedShape shape{outline.name, text_width_px(shown_name(outline.name), font_px) + 6, outline.is_cut, {}};
-        for (const auto* rings : {&outline.rings, &outline.lines}) {
-            for (const Ring& ring : *rings) {
-                auto& pixels = shape.rings.emplace_back();
-                for (const PlanePoint& p : ring) {
-                    pixels.push_back({layout.left + (p.x_m - extent.x_low_m) * px_per_m,
-                                      layout.bottom + (p.z_m - extent.z_low_m) * px_per_m});
-                }
+        for_each_ring(outline, [&](const Ring& ring) {
+            auto& pixels = shape.rings.emplace_back();
+            for (const PlanePoint& p : ring) {
+                pixels.push_back({layout.left + (p.x_m - extent.x_low_m) * px_per_m,
+                                  layout.bottom + (p.z_m - extent.z_low_m) * px_per_m});
             }
-        }
+        });
         shapes.push_back(std::move(shape));
     }
     const PixelBox area{layout.left + 2, layout.right - 2, layout.bottom + 2, layout.top - 2};
-    // A name hides nothing where the field is of one colour.
+    // A name hides nothing where the field has one colour.
     const auto color_at = [&](const PixelPoint& p) {
         const double place = position_on(figure.scale, figure.value(extent.x_low_m + (p.x - layout.left) / px_per_m,
                                                                     extent.z_low_m + (p.y - layout.bottom) / px_per_m));

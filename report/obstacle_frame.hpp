@@ -7,14 +7,14 @@
 
 namespace downwash {
 
-/// How an obstacle's own frame lies in the coordinates of a vertical plane: along the plane, to the left of it, and up.
+/// The transformation from an obstacle's own frame to coordinates of a vertical plane: along it, to its left, and up.
 class ObstacleFrame {
  public:
     /// @param lateral_m of the plane that is drawn, to the left of the plane of motion
     ObstacleFrame(const Obstacle& obstacle, const PlaneOfMotion& plane, double lateral_m)
         : placement_(obstacle), plane_(plane), lateral_m_(lateral_m) {}
 
-    /// A point of the own frame: (x, lateral, z) [m].
+    /// A point given in the own frame, as (x, lateral, z) [m].
     [[nodiscard]] Vector3 operator()(const Vector3& own_m) const {
         const Vector3 p = plane_.from_world(placement_.to_world(own_m));
         return {p[0], p[1] - lateral_m_, p[2]};

@@ -3,20 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
-#include "downwash/report/joined_rings.hpp"
 #include "downwash/report/mesh_section.hpp"
 #include "downwash/report/obstacle_frame.hpp"
-#include "downwash/report/planar_hull.hpp"
+#include "downwash/report/planar_geometry.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr int sides = 96;  // of a circle
-constexpr double whole_turn_rad = 6.283185307179586;
+constexpr std::size_t sides = 96;  // of a circle
+
+/// Sine and cosine of the corners of a circle.
+const std::array<std::pair<double, double>, sides>& unit_circle() {
+    static const auto corners = [] {
+        constexpr double whole_turn_rad = 6.283185307179586;
+        std::array<std::pair<double, double>, sides> made;
+        for (std::size_t i = 0; i < sides; ++i) {
+            lane::sin_cos(whole_turn_rad * static_cast<double>(i) / sides, made[i].first, made[i].second);
+        }
+        return made;
+    }();
+    return corners;
+}
 
 /// A convex solid with flat faces; points are (x, lateral, z) in the plane's own coordinates.
 struct Polyhedron {
@@ -28,7 +40,7 @@ PlanePoint projected(const Vector3& point_m) {
     return {point_m[0], point_m[2]};
 }
 
-std::vector<PlanePoint> projection(const std::vector<Vector3>& points_m) {
+Ring projection(const std::vector<Vector3>& points_m) {
     std::vector<PlanePoint> points;
     points.reserve(points_m.size());
     for (const Vector3& point_m : points_m) {
@@ -37,8 +49,8 @@ std::vector<PlanePoint> projection(const std::vector<Vector3>& points_m) {
     return convex_hull(std::move(points));
 }
 
-/// Empty when the plane lateral = 0 passes the solid by.
-std::vector<PlanePoint> section(const Polyhedron& solid) {
+/// Empty when the plane lateral = 0 does not cut the solid.
+Ring section(const Polyhedron& solid) {
     std::vector<PlanePoint> points;
     for (const auto& [from, to] : solid.edges) {
         const Vector3& a = solid.corners_m[from];
@@ -82,8 +94,7 @@ Polyhedron prism_of(const Cylinder& cylinder, const ObstacleFrame& frame) {
     const Vector3 v = scaled_to(cross(half, u), cylinder.radius_m);
     Polyhedron solid;
     for (std::size_t i = 0; i < sides; ++i) {
-        double sine = 0, cosine = 0;
-        lane::sin_cos(whole_turn_rad * static_cast<double>(i) / sides, sine, cosine);
+        const auto [sine, cosine] = unit_circle()[i];
         for (const double end : {-1., 1.}) {
             Vector3 corner{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -97,17 +108,15 @@ Polyhedron prism_of(const Cylinder& cylinder, const ObstacleFrame& frame) {
     return solid;
 }
 
-std::vector<PlanePoint> circle(const PlanePoint& center, double radius_m) {
-    std::vector<PlanePoint> points;
-    for (int i = 0; i < sides; ++i) {
-        double sine = 0, cosine = 0;
-        lane::sin_cos(whole_turn_rad * i / sides, sine, cosine);
+Ring circle(const PlanePoint& center, double radius_m) {
+    Ring points;
+    for (const auto& [sine, cosine] : unit_circle()) {
         points.push_back({center.x_m + radius_m * cosine, center.z_m + radius_m * sine});
     }
     return points;
 }
 
-/// Fills in what of an outline depends on the kind of shape.
+/// Sets the parts of an outline that depend on the kind of shape.
 class OutlineOf {
  public:
     OutlineOf(const ObstacleFrame& frame, ObstacleOutline& outline) : frame_(frame), outline_(outline) {}
@@ -142,7 +151,7 @@ class OutlineOf {
         const auto cube_at = [this](const OccupiedCube& cube) {
             return box_at(cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m}, frame_);
         };
-        std::vector<std::vector<PlanePoint>> sections;
+        std::vector<Ring> sections;
         for (const OccupiedCube& cube : octomap.tree->cubes) {
             if (std::abs(frame_(cube.center_local_m)[1]) <= half_diagonal * cube.side_m) {
                 add_section(cube_at(cube), sections);
@@ -166,7 +175,7 @@ class OutlineOf {
     }
 
  private:
-    static void add_section(const Polyhedron& solid, std::vector<std::vector<PlanePoint>>& rings) {
+    static void add_section(const Polyhedron& solid, std::vector<Ring>& rings) {
         if (auto ring = section(solid); ring.size() > 2) {
             rings.push_back(std::move(ring));
         }
@@ -200,6 +209,16 @@ std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOf
 std::vector<ObstacleOutline> projected_outlines(const Scene& scene, const PlaneOfMotion& plane) {
     constexpr double beside_everything_m = 1e7;
     return obstacle_outlines(scene, plane, beside_everything_m);
+}
+
+std::vector<Ring> body_outlines(const std::vector<BodyShape>& bodies) {
+    std::vector<Obstacle> obstacles;
+    std::transform(bodies.begin(), bodies.end(), std::back_inserter(obstacles), as_obstacle);
+    std::vector<Ring> rings;
+    for (const ObstacleOutline& outline : projected_outlines(Scene(obstacles), PlaneOfMotion())) {
+        rings.push_back(outline.rings.front());
+    }
+    return rings;
 }
 
 }  // namespace downwash

@@ -7,23 +7,23 @@
 #include "downwash/report/picture.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 #include "downwash/scene/scene.hpp"
+#include "downwash/scene/shapes.hpp"
 
 namespace downwash {
 
-/// An obstacle as it is drawn in a vertical plane.
+/// The drawing of an obstacle in a vertical plane.
 struct ObstacleOutline {
     std::string name;
     bool is_cut = true;  ///< whether the plane cuts it; otherwise its projection on the plane is shown
-    /// Closed rings, without repeating the first point. Of a mesh with cavities they run around solid parts in one
-    /// sense and around holes in the other.
-    std::vector<std::vector<PlanePoint>> rings;
-    /// Open lines, where a plane cuts a surface that is not closed.
-    std::vector<std::vector<PlanePoint>> lines;
+    /// Closed rings. Those of a mesh with cavities run around solid parts in one sense and around holes in the other.
+    std::vector<Ring> rings;
+    /// Open lines, where the plane cuts a surface that is not closed.
+    std::vector<Ring> lines;
 };
 
 /// Every obstacle of the scene in the plane parallel to the plane of motion, `lateral_m` to the left of it: the cross
-/// section of those that it cuts, the convex hull of the projection of the others. Round shapes become polygons of 96
-/// sides, whose corners lie on them.
+/// section of those that it cuts, the convex hull of the projection of the others. Round shapes become inscribed
+/// polygons of 96 sides.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene,
                                                                              const PlaneOfMotion& plane,
                                                                              double lateral_m);
@@ -31,5 +31,8 @@ struct ObstacleOutline {
 /// The projection of every obstacle on the plane of motion, whether it is cut or not.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<ObstacleOutline> projected_outlines(const Scene& scene,
                                                                               const PlaneOfMotion& plane);
+
+/// The side view of a robot's bodies: one convex ring each, in the body frame.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Ring> body_outlines(const std::vector<BodyShape>& bodies);
 
 }  // namespace downwash

@@ -8,14 +8,13 @@
 
 namespace downwash {
 
-/// Numbers as a page carries them: one list after the other, little-endian, deflated (zlib), then base64.
+/// Numbers in the form that a page contains: one list after the other, little-endian, deflated (zlib), then base64.
 class PackedNumbers {
  public:
     void add(std::span<const std::uint8_t> list);
     void add(std::span<const float> list);
     void add(std::span<const std::int32_t> list);
-    /// To the last bit, though smooth lists shrink well: the exclusive or of neighbours, first the lowest byte of each,
-    /// the highest last.
+    /// Lossless, for smooth lists: the exclusive or of neighbours compresses well, byte by byte from lowest to highest.
     void add_smooth(std::span<const double> list);
 
     [[nodiscard]] std::string text() const;

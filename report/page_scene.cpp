@@ -10,7 +10,6 @@
 #include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/packed_numbers.hpp"
-#include "downwash/report/robot_outline.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/solid_surface.hpp"
 
@@ -19,11 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json point_json(const Vector3& point) {
-    return {point[0], point[1], point[2]};
-}
-
-Json ring_json(const std::vector<PlanePoint>& ring) {
+Json ring_json(const Ring& ring) {
     Json points = Json::array();
     for (const PlanePoint& point : ring) {
         points.push_back({point.x_m, point.z_m});
@@ -31,9 +26,9 @@ Json ring_json(const std::vector<PlanePoint>& ring) {
     return points;
 }
 
-Json rings_json(const std::vector<std::vector<PlanePoint>>& rings) {
+Json rings_json(const std::vector<Ring>& rings) {
     Json all = Json::array();
-    for (const auto& ring : rings) {
+    for (const Ring& ring : rings) {
         all.push_back(ring_json(ring));
     }
     return all;
@@ -44,7 +39,7 @@ Vector3 direction(const ObstacleFrame& frame, const Vector3& own) {
     return {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
 }
 
-/// Triangles of a solid that has no closed form, in the coordinates of the plane: x, lateral, z.
+/// The triangles of a solid without a closed form, in the coordinates of the plane: x, lateral, z.
 Json triangles_json(const Obstacle& obstacle, const PlaneOfMotion& plane) {
     const TriangleMesh surface = surface_of(obstacle);
     std::vector<float> coordinates;
@@ -65,8 +60,8 @@ Json triangles_json(const Obstacle& obstacle, const PlaneOfMotion& plane) {
     return {{"triangles", {{"vertices", vertices.text()}, {"indices", indices.text()}}}};
 }
 
-/// Meshes and octrees with more pieces are shown by their outlines alone, so that a page stays small.
-constexpr std::size_t most_shown_triangles = 20000;
+/// Of meshes and octrees with more triangles a page shows only the outlines, so that it stays small.
+constexpr std::size_t max_shown_triangles = 20000;
 
 /// The kind of a shape and its solid.
 class SolidOf {
@@ -75,12 +70,11 @@ class SolidOf {
         : obstacle_(obstacle), plane_(plane), frame_(obstacle, plane, 0) {}
 
     Json operator()(const Box& box) const {
-        return {{"box",
-                 {{"size_m", point_json(box.size_m)},
-                  {"center_m", point_json(frame_({0, 0, 0}))},
-                  {"axes",
-                   {point_json(direction(frame_, {1, 0, 0})), point_json(direction(frame_, {0, 1, 0})),
-                    point_json(direction(frame_, {0, 0, 1}))}}}}};
+        return {
+            {"box",
+             {{"size_m", box.size_m},
+              {"center_m", frame_({0, 0, 0})},
+              {"axes", {direction(frame_, {1, 0, 0}), direction(frame_, {0, 1, 0}), direction(frame_, {0, 0, 1})}}}}};
     }
     Json operator()(const Cylinder& cylinder) const {
         const double length = std::hypot(cylinder.axis[0], cylinder.axis[1], cylinder.axis[2]);
@@ -88,20 +82,19 @@ class SolidOf {
         return {{"cylinder",
                  {{"radius_m", cylinder.radius_m},
                   {"length_m", cylinder.length_m},
-                  {"center_m", point_json(frame_({0, 0, 0}))},
-                  {"axis", point_json(direction(frame_, unit))}}}};
+                  {"center_m", frame_({0, 0, 0})},
+                  {"axis", direction(frame_, unit)}}}};
     }
     Json operator()(const Sphere& sphere) const {
-        return {{"sphere", {{"radius_m", sphere.radius_m}, {"center_m", point_json(frame_({0, 0, 0}))}}}};
+        return {{"sphere", {{"radius_m", sphere.radius_m}, {"center_m", frame_({0, 0, 0})}}}};
     }
     Json operator()(const Mesh& mesh) const {
-        return mesh.surface->triangles.size() > most_shown_triangles ? Json() : triangles_json(obstacle_, plane_);
+        return mesh.surface->triangles.size() > max_shown_triangles ? Json() : triangles_json(obstacle_, plane_);
     }
     Json operator()(const Octomap& octomap) const {
         constexpr std::size_t triangles_of_cube = 12;
-        return octomap.tree->cubes.size() * triangles_of_cube > most_shown_triangles
-                   ? Json()
-                   : triangles_json(obstacle_, plane_);
+        return octomap.tree->cubes.size() * triangles_of_cube > max_shown_triangles ? Json()
+                                                                                    : triangles_json(obstacle_, plane_);
     }
 
  private:
@@ -156,10 +149,9 @@ Json scene_json(const Problem& problem, const Scene& scene) {
                              {"solid", std::visit(SolidOf(obstacle, problem.plane), obstacle.shape)}});
     }
     const Bounds& bounds = problem.bounds;
-    return {
-        {"bounds", {{"x_m", {bounds.x_low_m, bounds.x_high_m}}, {"z_m", {bounds.z_low_m, bounds.z_high_m}}}},
-        {"plane", {{"origin_m", point_json(problem.plane.origin_m())}, {"heading_rad", problem.plane.heading_rad()}}},
-        {"obstacles", std::move(obstacles)}};
+    return {{"bounds", {{"x_m", {bounds.x_low_m, bounds.x_high_m}}, {"z_m", {bounds.z_low_m, bounds.z_high_m}}}},
+            {"plane", {{"origin_m", problem.plane.origin_m()}, {"heading_rad", problem.plane.heading_rad()}}},
+            {"obstacles", std::move(obstacles)}};
 }
 
 Json robot_json(const Robot& robot) {
@@ -171,17 +163,13 @@ Json robot_json(const Robot& robot) {
         shapes.push_back(
             {{"outline", ring_json(outlines[i])}, {"solid", std::visit(SolidOf(body, body_plane), body.shape)}});
     }
-    Json hubs = Json::array();
-    for (const Vector3& hub_m : robot.rotors.positions_m) {
-        hubs.push_back(point_json(hub_m));
-    }
     const ArmParameters& arm = robot.arm;
     return {
         {"name", robot.name},
         {"bodies", std::move(shapes)},
         {"rotors",
          {{"radius_m", robot.rotors.radius_m},
-          {"positions_m", std::move(hubs)},
+          {"positions_m", robot.rotors.positions_m},
           {"min_thrust_n", robot.rotors.min_thrust_n},
           {"max_thrust_n", robot.rotors.max_thrust_n}}},
         {"arm", {{"joint_m", {arm.joint_x_m, arm.joint_z_m}}, {"length_m", arm.length_m}, {"radius_m", arm.radius_m}}}};
@@ -202,12 +190,12 @@ std::string_view goal_order(const Problem& problem) {
 }
 
 Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& map) {
-    constexpr double most_points = 120'000;
+    constexpr double max_points = 120'000;
     constexpr std::uint8_t not_flyable = 255;
     const Bounds& bounds = problem.bounds;
     const double width_m = bounds.x_high_m - bounds.x_low_m;
     const double height_m = bounds.z_high_m - bounds.z_low_m;
-    const double cell_m = std::max(problem.aero.grid_m, std::sqrt(width_m * height_m / most_points));
+    const double cell_m = std::max(problem.aero.grid_m, std::sqrt(width_m * height_m / max_points));
     const auto columns = static_cast<std::size_t>(width_m / cell_m) + 1;
     const auto rows = static_cast<std::size_t>(height_m / cell_m) + 1;
     const std::size_t layer = model.rotor_layer(0);

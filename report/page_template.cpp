@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "downwash/report/campaign_page.hpp"
+
 #ifdef DOWNWASH_PAGES
 #include "downwash/base/embedded_file.hpp"
 
@@ -12,21 +14,21 @@ DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
 
 namespace downwash {
 
+#ifdef DOWNWASH_PAGES
 std::string_view run_page_template() noexcept {
-#ifdef DOWNWASH_PAGES
     return DOWNWASH_EMBEDDED_FILE(downwash_run_page);
-#else
-    return {};
-#endif
 }
-
 std::string_view campaign_page_template() noexcept {
-#ifdef DOWNWASH_PAGES
     return DOWNWASH_EMBEDDED_FILE(downwash_campaign_page);
-#else
-    return {};
-#endif
 }
+#else
+std::string_view run_page_template() noexcept {
+    return {};
+}
+std::string_view campaign_page_template() noexcept {
+    return {};
+}
+#endif
 
 std::string page_data(const nlohmann::ordered_json& data) {
     constexpr int on_one_line = -1;
@@ -34,21 +36,12 @@ std::string page_data(const nlohmann::ordered_json& data) {
     const std::string json = data.dump(on_one_line, ' ', as_ascii, nlohmann::ordered_json::error_handler_t::replace);
     std::string text;
     text.reserve(json.size());
-    // Outside of strings JSON has none of these letters.
+    // Only strings of JSON hold these characters.
     for (const char letter : json) {
-        switch (letter) {
-            case '<':
-                text += "\\u003c";
-                break;
-            case '>':
-                text += "\\u003e";
-                break;
-            case '&':
-                text += "\\u0026";
-                break;
-            default:
-                text += letter;
-        }
+        text += letter == '<'   ? "\\u003c"
+                : letter == '>' ? "\\u003e"
+                : letter == '&' ? "\\u0026"
+                                : std::string_view(&letter, 1);
     }
     return text;
 }
@@ -61,6 +54,10 @@ std::string filled_page(std::string_view page, const std::string& data) {
         throw std::logic_error("the page has no place for its data");
     }
     return filled.replace(place, gap.size(), data);
+}
+
+std::string campaign_page(const std::string& figures) {
+    return filled_page(campaign_page_template(), page_data(nlohmann::ordered_json::parse(figures)));
 }
 
 }  // namespace downwash

@@ -4,33 +4,32 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 
 namespace downwash {
 
-/// What a picture is stored as.
+/// The file format of a picture.
 enum class PictureFormat {
     svg,  ///< vector graphics; fields inside are embedded as images
     png,
     pdf,  ///< vector graphics on one page; 96 pixels are an inch
 };
 
-/// How a figure becomes a picture. The height follows from what is drawn.
+/// Settings for drawing a figure. The height follows from the content.
 struct PictureSettings {
     PictureFormat format = PictureFormat::svg;
-    int width_px = 1200;  ///< from least_picture_width_px to most_picture_width_px
+    int width_px = 1200;  ///< from min_picture_width_px to max_picture_width_px
 };
 
-/// Least PictureSettings::width_px.
-inline constexpr int least_picture_width_px = 400;
-/// Greatest PictureSettings::width_px.
-inline constexpr int most_picture_width_px = 8000;
+/// Limits of PictureSettings::width_px.
+inline constexpr int min_picture_width_px = 400, max_picture_width_px = 8000;
 
 /// The format that a file's extension asks for, .svg, .png or .pdf in any case; empty for any other.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<PictureFormat> picture_format_of(const std::filesystem::path& file);
 
-/// A picture cannot be drawn on this machine: gnuplot is missing or failed. what() says why and what to do about it.
+/// A picture cannot be drawn on this machine: gnuplot is missing or failed. what() gives the reason and a remedy.
 struct DOWNWASH_EXPORT PictureError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -44,6 +43,14 @@ struct Color {
 /// A point of the plane of motion.
 struct PlanePoint {
     double x_m = 0, z_m = 0;
+};
+
+/// The corners of a polygon, without repeating the first one, or the points of a line.
+using Ring = std::vector<PlanePoint>;
+
+/// A range of an axis.
+struct AxisRange {
+    double low = 0, high = 1;
 };
 
 }  // namespace downwash

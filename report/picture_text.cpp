@@ -41,10 +41,10 @@ bool is_control(std::string_view character) {
 
 }  // namespace
 
-std::string picture_text(std::string_view text, std::size_t most_characters) {
+std::string picture_text(std::string_view text, std::size_t max_characters) {
     std::string shown;
     for (std::size_t count = 0; !text.empty(); ++count) {
-        if (count == most_characters) {
+        if (count == max_characters) {
             return shown + "…";
         }
         const std::size_t length = character_length(text);

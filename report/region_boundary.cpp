@@ -1,65 +1,46 @@
 #include "downwash/report/region_boundary.hpp"
 
+#include <utility>
+
 #include "downwash/base/grid_contour.hpp"
 
 namespace downwash {
-namespace {
 
-class Grid {
- public:
-    Grid(const std::function<bool(double, double)>& contains, const Bounds& extent, std::size_t columns,
-         std::size_t rows)
-        : contains_(contains), extent_(extent), columns_(columns), rows_(rows), inside_((columns + 1) * (rows + 1)) {
-        for (std::size_t node = 0; node < inside_.size(); ++node) {
-            const PlanePoint p = point(node);
-            inside_[node] = contains(p.x_m, p.z_m);
-        }
-    }
-
-    [[nodiscard]] std::size_t node(std::size_t column, std::size_t row) const { return row * (columns_ + 1) + column; }
-    [[nodiscard]] bool is_inside(std::size_t node) const { return inside_[node]; }
-
-    [[nodiscard]] PlanePoint point(std::size_t node) const {
+std::vector<Ring> region_boundary(const std::function<bool(double, double)>& contains, const Bounds& extent,
+                                  std::size_t columns, std::size_t rows) {
+    const auto point = [&](std::size_t column, std::size_t row) -> PlanePoint {
         const auto part = [](std::size_t i, std::size_t n) { return static_cast<double>(i) / static_cast<double>(n); };
-        const double s = part(node % (columns_ + 1), columns_), t = part(node / (columns_ + 1), rows_);
-        return {(1 - s) * extent_.x_low_m + s * extent_.x_high_m, (1 - t) * extent_.z_low_m + t * extent_.z_high_m};
-    }
-
-    /// Where between two nodes, one inside, the region ends.
-    [[nodiscard]] PlanePoint crossing(std::size_t inside, std::size_t outside) const {
-        constexpr int halvings = 10;
-        PlanePoint in = point(inside), out = point(outside);
-        for (int i = 0; i < halvings; ++i) {
-            const PlanePoint middle{(in.x_m + out.x_m) / 2, (in.z_m + out.z_m) / 2};
-            (contains_(middle.x_m, middle.z_m) ? in : out) = middle;
-        }
-        return {(in.x_m + out.x_m) / 2, (in.z_m + out.z_m) / 2};
-    }
-
- private:
-    const std::function<bool(double, double)>& contains_;
-    Bounds extent_;
-    std::size_t columns_, rows_;
-    std::vector<bool> inside_;
-};
-
-}  // namespace
-
-std::vector<std::vector<PlanePoint>> region_boundary(const std::function<bool(double, double)>& contains,
-                                                     const Bounds& extent, std::size_t columns, std::size_t rows) {
-    const Grid grid(contains, extent, columns, rows);
-    // Inside counts as the low side: two fields of a region that meet at a corner only are taken as apart.
-    const auto side = [&grid](std::size_t column, std::size_t row) {
-        return grid.is_inside(grid.node(column, row)) ? -1 : 1;
+        const double s = part(column, columns), t = part(row, rows);
+        return {(1 - s) * extent.x_low_m + s * extent.x_high_m, (1 - t) * extent.z_low_m + t * extent.z_high_m};
     };
-    std::vector<std::vector<PlanePoint>> lines;
+    std::vector<bool> inside;
+    for (std::size_t row = 0; row <= rows; ++row) {
+        for (std::size_t column = 0; column <= columns; ++column) {
+            const PlanePoint p = point(column, row);
+            inside.push_back(contains(p.x_m, p.z_m));
+        }
+    }
+    const auto is_inside = [&](std::size_t column, std::size_t row) { return inside[row * (columns + 1) + column]; };
+    const auto middle_of = [](const PlanePoint& a, const PlanePoint& b) {
+        return PlanePoint{(a.x_m + b.x_m) / 2, (a.z_m + b.z_m) / 2};
+    };
+    // Inside counts as the low side: two parts of a region that meet only at a corner are separate.
+    const auto side = [&](std::size_t column, std::size_t row) { return is_inside(column, row) ? -1 : 1; };
+    std::vector<Ring> lines;
     for (const auto& edges : grid_contour(columns + 1, rows + 1, side)) {
-        auto& line = lines.emplace_back();
+        Ring& line = lines.emplace_back();
         for (const GridEdge& edge : edges) {
-            const std::size_t from = grid.node(edge.column, edge.row);
-            const std::size_t to =
-                edge.is_upright ? grid.node(edge.column, edge.row + 1) : grid.node(edge.column + 1, edge.row);
-            line.push_back(grid.is_inside(from) ? grid.crossing(from, to) : grid.crossing(to, from));
+            PlanePoint in = point(edge.column, edge.row);
+            PlanePoint out = point(edge.column + (edge.is_upright ? 0 : 1), edge.row + (edge.is_upright ? 1 : 0));
+            if (!is_inside(edge.column, edge.row)) {
+                std::swap(in, out);
+            }
+            constexpr int halvings = 10;
+            for (int i = 0; i < halvings; ++i) {
+                const PlanePoint middle = middle_of(in, out);
+                (contains(middle.x_m, middle.z_m) ? in : out) = middle;
+            }
+            line.push_back(middle_of(in, out));
         }
     }
     return lines;

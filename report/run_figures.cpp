@@ -11,12 +11,12 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/report/robot_outline.hpp"
+#include "downwash/report/obstacle_outline.hpp"
 
 namespace downwash {
 namespace {
 
-using Pieces = std::vector<std::vector<PlanePoint>>;
+using Pieces = std::vector<Ring>;
 
 constexpr Color flown_color{0xd5, 0x5e, 0x00}, planned_color{0x55, 0x55, 0x55}, end_effector_color{0x00, 0x72, 0xb2},
     goal_color{0xcc, 0x79, 0xa7};
@@ -28,7 +28,7 @@ void require_flight(const RunRecord& run) {
     }
 }
 
-/// Columns of the flight by name; read_run() saw to it that those which are asked for here are there.
+/// The columns of the flight by name; a RunRecord has all that are used here.
 class Flight {
  public:
     explicit Flight(const RunRecord& run) : table_(run.flight) {}
@@ -40,12 +40,12 @@ class Flight {
     const NumberTable& table_;
 };
 
-/// Vehicle and arm at a place, as lines.
+/// The lines of vehicle and arm at a place.
 class RobotDrawing {
  public:
     explicit RobotDrawing(const Robot& robot) : robot_(robot), bodies_(body_outlines(robot.body)) {}
 
-    /// From rim to rim of its outermost rotors.
+    /// The width between the outer edges of the outermost rotors.
     [[nodiscard]] double width_m() const {
         double low_m = 0, high_m = 0;
         for (const Vector3& hub_m : robot_.rotors.positions_m) {
@@ -83,22 +83,22 @@ class RobotDrawing {
     Pieces bodies_;
 };
 
-std::vector<PlanePoint> way(const std::vector<double>& x_m, const std::vector<double>& z_m) {
-    std::vector<PlanePoint> points;
+Ring way(const std::vector<double>& x_m, const std::vector<double>& z_m) {
+    Ring points;
     for (std::size_t i = 0; i < x_m.size(); ++i) {
         points.push_back({x_m[i], z_m[i]});
     }
     return points;
 }
 
-/// Rows at equal intervals, such that a vehicle moves on by some length of its own between two; the last among them.
+/// Rows at equal intervals of about one vehicle length, the last one included.
 std::vector<std::size_t> snapshot_rows(const Flight& flight, double vehicle_m) {
     double length_m = 0;
     for (std::size_t i = 1; i < flight.rows(); ++i) {
         length_m += std::hypot(flight["x_m"][i] - flight["x_m"][i - 1], flight["z_m"][i] - flight["z_m"][i - 1]);
     }
-    constexpr double least = 5, most = 16;
-    const double count = std::clamp(std::round(length_m / (1.3 * vehicle_m)), least, most);
+    constexpr double min_count = 5, max_count = 16;
+    const double count = std::clamp(std::round(length_m / (1.3 * vehicle_m)), min_count, max_count);
     std::vector<std::size_t> rows;
     const auto last = static_cast<double>(flight.rows() - 1);
     for (double i = 0; i <= count; ++i) {
@@ -107,9 +107,9 @@ std::vector<std::size_t> snapshot_rows(const Flight& flight, double vehicle_m) {
     return rows;
 }
 
-/// The way of the reference, hold apart.
-std::vector<PlanePoint> planned_way(const RunRecord& run) {
-    std::vector<PlanePoint> points;
+/// The path of the reference without the final hover.
+Ring planned_way(const RunRecord& run) {
+    Ring points;
     if (!run.plan) {
         return points;
     }
@@ -127,7 +127,7 @@ std::vector<PlanePoint> planned_way(const RunRecord& run) {
     return points;
 }
 
-/// What plan, flight and goals need, with room around.
+/// The extent of plan and flight, with a margin.
 Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     const double room_m = 1.2 * run.problem.robot.arm.length_m;
     Bounds extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
@@ -144,10 +144,10 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     }
     include(flight["x_m"], flight["z_m"]);
     include(flight["ee_x_m"], flight["ee_z_m"]);
-    // To scale, neither side may be many times as long as the other.
-    constexpr double most_ratio = 4;
+    // A drawing to scale needs sides of similar length.
+    constexpr double max_ratio = 4;
     const auto widen = [](double& low, double& high, double other_side) {
-        const double lacking_m = other_side / most_ratio - (high - low);
+        const double lacking_m = other_side / max_ratio - (high - low);
         if (lacking_m > 0) {
             low -= lacking_m / 2;
             high += lacking_m / 2;
@@ -158,7 +158,7 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     return extent;
 }
 
-/// Where goals are that lie at one point of the plane.
+/// The goals that are a point of the plane.
 std::vector<FigurePoints> goal_points(const Problem& problem) {
     FigurePoints goals{"goal of the end effector", {}, goal_color};
     for (const Goal& visited : goals_of(problem)) {
@@ -172,21 +172,6 @@ std::vector<FigurePoints> goal_points(const Problem& problem) {
         return {};
     }
     return {std::move(goals)};
-}
-
-/// The least and the greatest of the factors within the bounds, on a grid: runs of a problem have one scale.
-std::pair<double, double> factor_range(const FieldFigure& figure, const Bounds& bounds) {
-    constexpr int steps = 200;
-    double low = 1, high = 1;
-    for (int i = 0; i <= steps; ++i) {
-        for (int k = 0; k <= steps; ++k) {
-            const double factor = figure.value(bounds.x_low_m + (bounds.x_high_m - bounds.x_low_m) * i / steps,
-                                               bounds.z_low_m + (bounds.z_high_m - bounds.z_low_m) * k / steps);
-            low = std::fmin(low, factor);
-            high = std::fmax(high, factor);
-        }
-    }
-    return {low, high};
 }
 
 std::vector<DiagramPoint> over_time(const Flight& flight, const std::vector<double>& values, double factor = 1) {
@@ -205,7 +190,7 @@ CurveFigure diagram(std::string y_label, std::vector<Curve> curves) {
     return figure;
 }
 
-/// One curve for each rotor; rotors one behind the other share one.
+/// One curve per rotor; rotors with equal values share one.
 std::vector<Curve> rotor_curves(const Flight& flight, std::size_t rotors, const std::string& column) {
     std::vector<Curve> curves;
     std::vector<std::size_t> shown;
@@ -239,15 +224,19 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, cons
         fmt::format("{}, every {} s of {} s", name_of(run.problem.planner.variant),
                     to_text((flight["t_s"][rows[1]] - flight["t_s"][rows[0]]), 3), to_text(flight["t_s"].back(), 4));
     figure.extent = shown_extent(run, flight);
-    figure.obstacles = obstacle_outlines(Scene(run.problem.obstacles), run.problem.plane, 0);
+    figure.obstacles = obstacle_outlines(model.effect(0).scene(), run.problem.plane, 0);
     const std::size_t layer = model.rotor_layer(0);
     figure.value = [map, layer](double x_m, double z_m) {
         return map != nullptr && map->is_flyable(layer, x_m, z_m) ? map->factor(layer, x_m, z_m)
                                                                   : std::numeric_limits<double>::quiet_NaN();
     };
     figure.has_contour_lines = false;
-    const auto [low, high] = factor_range(figure, run.problem.bounds);
-    figure.scale = factor_scale("aero factor K of rotor 1 there", low, high);
+    // Over the bounds, so that all runs of a problem have the same scale.
+    const Bounds& bounds = run.problem.bounds;
+    constexpr int steps = 200;
+    const AxisRange range =
+        value_range(figure.value, {bounds.x_low_m, bounds.x_high_m, bounds.z_low_m, bounds.z_high_m}, steps, 1);
+    figure.scale = factor_scale("aero factor K of rotor 1 there", range.low, range.high);
 
     Pieces flown, planned;
     for (const std::size_t row : rows) {

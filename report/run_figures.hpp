@@ -9,14 +9,14 @@
 
 namespace downwash {
 
-/// The snapshot diagram of a run, as figures C.6 and C.7 of the thesis: vehicle and arm at equal intervals of time,
-/// flown beside where the reference wanted them, over the scene and its aero map.
-/// @param model of run.problem   @param map of it; nullptr: the scene alone
+/// The snapshot diagram of a run, as in figures C.6 and C.7 of the thesis: executed and planned vehicle and arm at
+/// equal intervals of time, over the scene and its aero map.
+/// @param model of run.problem   @param map of the same problem; nullptr: the scene alone
 /// @throws InputError when nothing was flown
 [[nodiscard]] DOWNWASH_EXPORT FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model,
                                                           const AeroMap* map);
 
-/// What happened over time, one diagram below the other: tracking error, pitch and arm, rotor commands, aero factors,
+/// Diagrams over time, one below the other: tracking error, pitch and arm, rotor commands, aero factors,
 /// clearance, power. @throws InputError when nothing was flown
 [[nodiscard]] DOWNWASH_EXPORT std::vector<CurveFigure> time_figures(const RunRecord& run);
 

@@ -23,7 +23,7 @@ bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
     });
 }
 
-/// Rotors one behind the other have the same columns; they are stored once.
+/// Equal columns, such as those of rotors one behind the other, are stored once.
 Json flight_json(const NumberTable& flight) {
     if (flight.rows() == 0) {
         return {};
@@ -59,7 +59,7 @@ Json tree_json(const NumberTable& tree) {
     return {{"nodes", tree.rows()}, {"data", packed.text()}};
 }
 
-/// What repeats the run from within its folder: to the byte, unless several goals in turn shared a time limit.
+/// The command that repeats the run in its folder: to the byte, unless several goals in turn shared a time limit.
 std::string command_of(const Problem& problem, const Json& solution) {
     const Json::json_pointer aero("/execution/aero"), iterations("/planning/iterations");
     if (solution.contains(aero) && solution[aero] == false) {
@@ -83,29 +83,29 @@ bool has_pages() noexcept {
 std::string run_page_data(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
     const Problem& problem = run.problem;
     const Json solution = Json::parse(run.solution_text);
-    const Json page{
-        {"schema", "downwash/report/v1"},
-        {"version", version()},
-        {"command", command_of(problem, solution)},
-        {"solution", solution},
-        {"effective_yaml", run.problem_text},
-        {"description", problem.description},
-        {"scene", scene_json(problem, Scene(problem.obstacles))},
-        {"robot", robot_json(problem.robot)},
-        {"start",
-         {{"x_m", problem.start.x_m},
-          {"z_m", problem.start.z_m},
-          {"pitch_rad", problem.start.pitch_rad},
-          {"arm_rad", problem.start.arm_rad}}},
-        {"goals", goals_json(problem)},
-        {"goal_order", goal_order(problem)},
-        {"limits",
-         {{"safety_margin_m", problem.planner.safety_margin_m},
-          {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
-          {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
-        {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
-        {"flight", flight_json(run.flight)},
-        {"tree", tree_json(run.tree)}};
+    const Json page{{"schema", "downwash/report/v1"},
+                    {"version", version()},
+                    {"command", command_of(problem, solution)},
+                    {"solution", solution},
+                    {"effective_yaml", run.problem_text},
+                    {"description", problem.description},
+                    {"scene", scene_json(problem, model.effect(0).scene())},
+                    {"robot", robot_json(problem.robot)},
+                    {"start",
+                     {{"x_m", problem.start.x_m},
+                      {"z_m", problem.start.z_m},
+                      {"pitch_rad", problem.start.pitch_rad},
+                      {"arm_rad", problem.start.arm_rad}}},
+                    {"goals", goals_json(problem)},
+                    {"goal_order", goal_order(problem)},
+                    {"limits",
+                     {{"safety_margin_m", problem.planner.safety_margin_m},
+                      {"max_tilt_rad",
+                       std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
+                      {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
+                    {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
+                    {"flight", flight_json(run.flight)},
+                    {"tree", tree_json(run.tree)}};
     return page_data(page);
 }
 

@@ -9,12 +9,12 @@
 
 namespace downwash {
 
-/// Whether this build brings the pages: they are made from viewer/ where esbuild is installed.
+/// Whether this build brings the pages, which need esbuild at build time.
 [[nodiscard]] DOWNWASH_EXPORT bool has_pages() noexcept;
 
-/// A run as one HTML file that needs nothing else: scene, flight with playback, plots, search, how to repeat it.
-/// Numbers of the flight are those of trajectory.csv to the last bit.
-/// @param model of run.problem   @param map of it, shown over the scene; nullptr: none
+/// A run as one self-contained HTML file: scene, flight with playback, plots, search, and how to repeat the run.
+/// The numbers of the flight equal those of trajectory.csv to the last bit.
+/// @param model of run.problem   @param map of the same problem, shown over the scene; nullptr: none
 /// @pre has_pages()
 [[nodiscard]] DOWNWASH_EXPORT std::string run_page(const RunRecord& run, const FlightModel& model, const AeroMap* map);
 

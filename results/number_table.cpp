@@ -59,6 +59,13 @@ void read_row(const CsvLines& lines, NumberTable& table, LineErrors& errors) {
 
 }  // namespace
 
+void NumberTable::add_row(const std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        columns[i].push_back(numbers[i]);
+    }
+    lines.push_back(rows() + 1);  // below the line of names
+}
+
 const std::vector<double>* NumberTable::find(std::string_view name) const {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];

@@ -16,6 +16,8 @@ struct NumberTable {
     std::vector<std::size_t> lines;  ///< of the file, counted from 1: where each row stands
 
     [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().size(); }
+    /// Adds a row below the others. @pre as many numbers as columns
+    DOWNWASH_EXPORT void add_row(const std::vector<double>& numbers);
     /// @return nullptr when there is none of that name
     [[nodiscard]] DOWNWASH_EXPORT const std::vector<double>* find(std::string_view name) const;
 };

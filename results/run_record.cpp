@@ -9,6 +9,8 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/solution_file.hpp"
+#include "downwash/results/trajectory_csv.hpp"
+#include "downwash/results/tree_csv.hpp"
 
 namespace downwash {
 namespace {
@@ -138,6 +140,17 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
 }
 
 }  // namespace
+
+RunRecord run_record(const Problem& problem, const Solution& solution, const Execution& flight) {
+    RunRecord run;
+    run.problem = problem;
+    run.status = name_of(solution.status);
+    run.outcome = solution.execution ? name_of(solution.execution->outcome) : "";
+    run.plan = solution.plan;
+    run.flight = trajectory_table(flight);
+    run.tree = tree_table(solution.tree);
+    return run;
+}
 
 RunRecord read_run(const fs::path& folder) {
     std::error_code ignored;

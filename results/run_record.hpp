@@ -11,7 +11,7 @@
 
 namespace downwash {
 
-/// A finished run, as its folder tells it.
+/// A finished run: what its folder holds, in memory.
 struct RunRecord {
     Problem problem;            ///< effective.yaml
     std::string problem_text;   ///< the same as text
@@ -22,6 +22,11 @@ struct RunRecord {
     NumberTable flight;         ///< trajectory.csv; no rows when nothing was flown
     NumberTable tree;           ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
 };
+
+/// The record of a run that has just ended. The texts stay empty: they are those of the files that are written.
+/// @param flight of the solution, or one without rows when nothing was flown
+[[nodiscard]] DOWNWASH_EXPORT RunRecord run_record(const Problem& problem, const Solution& solution,
+                                                   const Execution& flight);
 
 /// Reads what `solve` or `execute` left in a folder.
 /// @throws ProblemFileError or InputError with the place of every error: a file that is missing or is not what they

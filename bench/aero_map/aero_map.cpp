@@ -1,5 +1,6 @@
-// What the aero map costs: building, memory, look-ups, against direct evaluation; for scenes of primitives, the shipped
-// problems, triangle meshes and a volume. Prints Markdown, with the bounds that the map is to keep and whether it does.
+// The cost of the aero map: building, memory and look-ups beside direct evaluation, for scenes of primitives, the
+// shipped problems, triangle meshes and a volume. Prints Markdown, with the bounds for the map and whether they are
+// kept.
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -8,118 +9,137 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "../../tests/support/random.hpp"
+#include "../support/measuring.hpp"
+#include "../support/scenes.hpp"
 #include "downwash/aeromap/map_cache.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/aeromap/volume_map.hpp"
+#include "downwash/bench/machine.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "measuring.hpp"
-#include "scenes.hpp"
-#include "volume.hpp"
 
 using namespace downwash;
 using namespace downwash::bench;
 
 namespace {
 
-constexpr double most_build_s = 1;
-constexpr double most_bytes = 64e6;
-constexpr double most_look_up_s = 15e-9;
+constexpr double max_build_s = 1;
+constexpr double max_bytes = 64e6;
+constexpr double max_look_up_s = 15e-9;
 
 struct Options {
     std::string ten_primitives;
     std::vector<std::string> problems;
-    std::string commit = "unknown";
     int repetitions = 5;
     unsigned random_scenes = 20;
     bool with_meshes = true;
 };
 
-struct Point {
-    double x_m, z_m;
+/// Part of the plane of motion, or a block of space about it.
+struct Region {
+    Bounds extent;
+    double lateral_m = 0;  ///< to either side
+
+    [[nodiscard]] bool holds(const Vector3& at) const {
+        return at[0] >= extent.x_low_m && at[0] <= extent.x_high_m && std::abs(at[1]) <= lateral_m &&
+               at[2] >= extent.z_low_m && at[2] <= extent.z_high_m;
+    }
 };
 
-class RandomPoints {
+/// Random flyable hubs of a region, as (x, lateral, z) in the coordinates of the plane.
+class RandomHubs {
  public:
-    explicit RandomPoints(const AeroMap& map) : map_(map) {}
+    RandomHubs(const Region& region, std::function<bool(const Vector3&)> is_flyable)
+        : region_(region), is_flyable_(std::move(is_flyable)) {}
 
-    /// Flyable for the map's first layer.
-    Point one() {
-        const Bounds& all = map_.extent();
-        while (true) {
-            const Point p{uniform(all.x_low_m, all.x_high_m), uniform(all.z_low_m, all.z_high_m)};
-            if (map_.is_flyable(0, p.x_m, p.z_m)) {
-                return p;
-            }
-        }
-    }
-    std::vector<Point> scattered(std::size_t count) {
-        std::vector<Point> points(count);
-        std::generate(points.begin(), points.end(), [this] { return one(); });
-        return points;
+    std::vector<Vector3> scattered(std::size_t count) {
+        std::vector<Vector3> hubs(count);
+        std::generate(hubs.begin(), hubs.end(), [this] { return one(); });
+        return hubs;
     }
     /// Along straight flights of 1 m/s, looked up at 500 Hz, each at most 4 m long.
-    std::vector<Point> in_flight_order(std::size_t count) {
+    std::vector<Vector3> in_flight_order(std::size_t count) {
         constexpr double step_m = 0.002;
-        std::vector<Point> points;
-        while (points.size() < count) {
-            Point p = one();
-            const double angle = uniform(-3.14, 3.14);
-            for (int i = 0; i < 2000 && points.size() < count && is_inside(p); ++i) {
-                points.push_back(p);
-                p = {p.x_m + step_m * std::cos(angle), p.z_m + step_m * std::sin(angle)};
+        std::vector<Vector3> hubs;
+        while (hubs.size() < count) {
+            Vector3 at = one();
+            const double heading = region_.lateral_m > 0 ? random_.uniform(-3.14, 3.14) : 0;
+            const double climb = region_.lateral_m > 0 ? random_.uniform(-0.5, 0.5) : random_.uniform(-3.14, 3.14);
+            for (int i = 0; i < 2000 && hubs.size() < count && region_.holds(at) && is_flyable_(at); ++i) {
+                hubs.push_back(at);
+                at = {at[0] + step_m * std::cos(heading) * std::cos(climb),
+                      at[1] + step_m * std::sin(heading) * std::cos(climb), at[2] + step_m * std::sin(climb)};
             }
         }
-        return points;
+        return hubs;
     }
 
  private:
-    double uniform(double low, double high) { return uniform_between(engine_, low, high); }
-    bool is_inside(const Point& p) const {
-        const Bounds& all = map_.extent();
-        return p.x_m >= all.x_low_m && p.x_m <= all.x_high_m && p.z_m >= all.z_low_m && p.z_m <= all.z_high_m &&
-               map_.is_flyable(0, p.x_m, p.z_m);
+    Vector3 one() {
+        const Bounds& all = region_.extent;
+        while (true) {
+            const Vector3 at{random_.uniform(all.x_low_m, all.x_high_m),
+                             random_.uniform(-region_.lateral_m, region_.lateral_m),
+                             random_.uniform(all.z_low_m, all.z_high_m)};
+            if (is_flyable_(at)) {
+                return at;
+            }
+        }
     }
 
-    const AeroMap& map_;
-    std::mt19937_64 engine_{1};
+    Region region_;
+    std::function<bool(const Vector3&)> is_flyable_;
+    test::Random random_{1};
 };
 
-void look_up(const AeroMap& map, const std::vector<Point>& points) {
-    double sum = 0;
-    for (const Point& p : points) {
-        sum += map.factor(0, p.x_m, p.z_m);
-    }
-    keep(sum);
+/// The minimum of the mean time of a query over the repetitions [s].
+template <class Query>
+double mean_s(const std::vector<Vector3>& hubs, int repetitions, const Query& query) {
+    return best_of(repetitions,
+                   [&] {
+                       double sum = 0;
+                       for (const Vector3& hub : hubs) {
+                           sum += query(hub);
+                       }
+                       keep(sum);
+                   }) /
+           static_cast<double>(hubs.size());
 }
 
-/// Repeated more often than the rest: it takes milliseconds, and a neighbour on the machine soon doubles it.
-double look_up_s(const AeroMap& map, const std::vector<Point>& points) {
-    constexpr int repetitions = 100;
-    return best_of(repetitions, [&] { look_up(map, points); }) / static_cast<double>(points.size());
+/// The cost of a map: times [s] and memory [bytes].
+struct MapFigures {
+    std::string name;
+    double build_s = 0, bytes = 0, growth_bytes = 0, load_s = 0;
+    double cold_s = 0, scattered_s = 0, in_flight_order_s = 0, direct_s = 0;
+};
+
+template <class Map>
+void measure_build(MapFigures& figures, int repetitions, std::shared_ptr<const Map>& map,
+                   const std::function<std::shared_ptr<const Map>()>& build) {
+    figures.growth_bytes = peak_growth_bytes([&] { map = build(); });
+    figures.build_s = best_of(repetitions, [&] { map = build(); });
+    figures.bytes = static_cast<double>(map->memory_bytes());
 }
 
-/// Mean over batches, before each of which the caches are emptied of all but the points.
-double cold_look_up_s(const AeroMap& map, RandomPoints& random) {
-    constexpr int batches = 20;
-    constexpr std::size_t batch = 1024;
-    double total_s = 0;
-    for (int i = 0; i < batches; ++i) {
-        const std::vector<Point> points = random.scattered(batch);
+/// @param times of a look-up: repeated more often than the rest, since a neighbour on the machine soon doubles it
+template <class LookUp, class Direct>
+void measure_look_ups(MapFigures& figures, RandomHubs& random, std::size_t count, int times, int repetitions,
+                      const LookUp& look_up, const Direct& direct) {
+    constexpr int cold_batches = 20;  // before each of which the caches are emptied of all but the hubs
+    for (int i = 0; i < cold_batches; ++i) {
+        const std::vector<Vector3> hubs = random.scattered(1024);
         empty_caches();
-        double sum = 0;
-        for (const Point& p : points) {
-            sum += p.x_m + p.z_m;
-        }
-        keep(sum);
-        total_s += best_of(1, [&] { look_up(map, points); });
+        keep(mean_s(hubs, 1, [](const Vector3& hub) { return hub[0] + hub[2]; }));
+        figures.cold_s += mean_s(hubs, 1, look_up) / cold_batches;
     }
-    return total_s / (batches * static_cast<double>(batch));
+    figures.scattered_s = mean_s(random.scattered(count), times, look_up);
+    figures.in_flight_order_s = mean_s(random.in_flight_order(count), times, look_up);
+    figures.direct_s = mean_s(random.scattered(8192), repetitions, direct);
 }
 
 double cache_load_s(const AeroMap& map, int repetitions) {
@@ -127,58 +147,54 @@ double cache_load_s(const AeroMap& map, int repetitions) {
     const MapCache cache(folder);
     cache.keep(map);
     bool is_found = true;
-    const double least_s = best_of(
+    const double min_s = best_of(
         repetitions, [&] { is_found = is_found && cache.find(map.layers(), map.plane(), map.extent()) != nullptr; });
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
     if (!is_found) {
         throw std::runtime_error("a map that was kept was not found again");
     }
-    return least_s;
+    return min_s;
 }
 
-/// One row of the first table.
-struct MapFigures {
-    std::string name;
-    double build_s = 0, bytes = 0, growth_bytes = 0, load_s = 0;
-    double cold_s = 0, scattered_s = 0, in_flight_order_s = 0, direct_s = 0;
-};
+/// Flyable hubs of a map's first layer.
+RandomHubs random_hubs(const AeroMap& map) {
+    return {{map.extent()}, [&map](const Vector3& hub) { return map.is_flyable(0, hub[0], hub[2]); }};
+}
 
 MapFigures measured(const std::string& name, const Problem& problem, int repetitions) {
     MapFigures figures;
     figures.name = name;
     const auto model = make_flight_model(problem);
     std::shared_ptr<const AeroMap> map;
-    figures.growth_bytes = peak_growth_bytes([&] { map = model->make_map(problem.bounds); });
-    figures.build_s = best_of(repetitions, [&] { map = model->make_map(problem.bounds); });
-    figures.bytes = static_cast<double>(map->memory_bytes());
+    measure_build<AeroMap>(figures, repetitions, map, [&] { return model->make_map(problem.bounds); });
     figures.load_s = cache_load_s(*map, repetitions);
-    RandomPoints random(*map);
-    figures.cold_s = cold_look_up_s(*map, random);
-    constexpr std::size_t many = std::size_t{1} << 18U;
-    figures.scattered_s = look_up_s(*map, random.scattered(many));
-    figures.in_flight_order_s = look_up_s(*map, random.in_flight_order(many));
-    const std::vector<Point> points = random.scattered(8192);
-    figures.direct_s = best_of(repetitions,
-                               [&] {
-                                   double sum = 0;
-                                   for (const Point& p : points) {
-                                       sum += model->direct_factor(0, p.x_m, p.z_m);
-                                   }
-                                   keep(sum);
-                               }) /
-                       static_cast<double>(points.size());
+    RandomHubs random = random_hubs(*map);
+    measure_look_ups(
+        figures, random, std::size_t{1} << 18U, 100, repetitions,
+        [&map](const Vector3& hub) { return map->factor(0, hub[0], hub[2]); },
+        [&model](const Vector3& hub) { return model->direct_factor(0, hub[0], hub[2]); });
     return figures;
 }
 
-std::string processor() {
-    std::ifstream info("/proc/cpuinfo");
-    for (std::string line; std::getline(info, line);) {
-        if (line.rfind("model name", 0) == 0) {
-            return line.substr(line.find(':') + 2);
-        }
-    }
-    return "an unknown processor";
+/// A volume of 30 m3 under the deck of the bridge: its underside, the walkway's top and edges, the cross girder.
+MapFigures measured_volume(const Problem& bridge, int repetitions) {
+    const Region block{{-8, -2, 8, 10}, 1.25};
+    const auto model = make_flight_model(bridge);
+    const auto effect = std::make_shared<const DirectEffect>(model->effect(0));
+    const auto in_world = [&model](const Vector3& hub) { return model->plane().to_world(hub[0], hub[1], hub[2]); };
+    MapFigures figures;
+    std::shared_ptr<const VolumeMap> map;
+    measure_build<VolumeMap>(figures, std::min(2, repetitions), map, [&] {
+        return std::make_shared<const VolumeMap>(effect, model->plane(), block.extent, -block.lateral_m,
+                                                 block.lateral_m);
+    });
+    RandomHubs random(block, [&](const Vector3& hub) { return effect->is_flyable(in_world(hub)); });
+    measure_look_ups(
+        figures, random, std::size_t{1} << 16U, 30, repetitions,
+        [&](const Vector3& hub) { return map->factor(in_world(hub)); },
+        [&](const Vector3& hub) { return effect->factor(in_world(hub)); });
+    return figures;
 }
 
 std::string megabytes(double bytes) {
@@ -207,59 +223,35 @@ std::vector<MapFigures> print_maps(const Options& options) {
     return all;
 }
 
-/// Building alone.
-struct BuildFigures {
-    double build_s = 0, bytes = 0, growth_bytes = 0;
-};
-
-std::vector<BuildFigures> print_random_scenes(const Options& options) {
+std::vector<MapFigures> print_random_scenes(const Options& options) {
     const Problem bounds_of = read_problem(options.ten_primitives);
-    std::vector<BuildFigures> all;
+    std::vector<MapFigures> all;
     for (unsigned seed = 1; seed <= options.random_scenes; ++seed) {
         const Problem problem = with_random_primitives(bounds_of, seed);
         const auto model = make_flight_model(problem);
         std::shared_ptr<const AeroMap> map;
-        BuildFigures f;
-        f.growth_bytes = peak_growth_bytes([&] { map = model->make_map(problem.bounds); });
-        f.build_s = best_of(std::min(2, options.repetitions), [&] { map = model->make_map(problem.bounds); });
-        f.bytes = static_cast<double>(map->memory_bytes());
-        all.push_back(f);
+        measure_build<AeroMap>(all.emplace_back(), std::min(2, options.repetitions), map,
+                               [&] { return model->make_map(problem.bounds); });
     }
-    std::sort(all.begin(), all.end(),
-              [](const BuildFigures& a, const BuildFigures& b) { return a.build_s < b.build_s; });
-    const auto largest = [&all](double BuildFigures::*figure) {
-        double most = 0;
-        for (const BuildFigures& f : all) {
-            most = std::max(most, f.*figure);
+    std::sort(all.begin(), all.end(), [](const MapFigures& a, const MapFigures& b) { return a.build_s < b.build_s; });
+    const auto largest = [&all](double MapFigures::*figure) {
+        double max = 0;
+        for (const MapFigures& f : all) {
+            max = std::max(max, f.*figure);
         }
-        return most;
+        return max;
     };
     const auto within =
-        std::count_if(all.begin(), all.end(), [](const BuildFigures& f) { return f.build_s <= most_build_s; });
+        std::count_if(all.begin(), all.end(), [](const MapFigures& f) { return f.build_s <= max_build_s; });
     fmt::print(
         "\n## Ten primitives at random\n\n{} scenes (seeds 1 to {}) of the same bounds with four boxes, three "
         "cylinders "
         "and three spheres at any attitude around the plane:\nbuilt in {:.2f} to {:.2f} s, median {:.2f} s, {} of {} "
         "within {:.0f} s; maps of at most {}, peak at most {}.\n",
         all.size(), all.size(), all.front().build_s, all.back().build_s, all[all.size() / 2].build_s, within,
-        all.size(), most_build_s, megabytes(largest(&BuildFigures::bytes)),
-        megabytes(largest(&BuildFigures::growth_bytes)));
+        all.size(), max_build_s, megabytes(largest(&MapFigures::bytes)), megabytes(largest(&MapFigures::growth_bytes)));
     std::fflush(stdout);
     return all;
-}
-
-/// The mean time of a query at poses or points [s].
-template <class Query>
-double mean_s(const std::vector<Point>& points, int repetitions, const Query& query) {
-    return best_of(repetitions,
-                   [&] {
-                       double sum = 0;
-                       for (const Point& p : points) {
-                           sum += query(p);
-                       }
-                       keep(sum);
-                   }) /
-           static_cast<double>(points.size());
 }
 
 void print_meshes(const Options& options) {
@@ -282,21 +274,19 @@ void print_meshes(const Options& options) {
         const auto model = make_flight_model(problem);
         std::shared_ptr<const AeroMap> map;
         const double build_s = best_of(1, [&] { map = model->make_map(problem.bounds); });
-        RandomPoints random(*map);
-        const std::vector<Point> anywhere = random.scattered(512);
+        const std::vector<Vector3> anywhere = random_hubs(*map).scattered(512);
         const Vector3& center_m = problem.obstacles.front().center_world_m;
-        std::vector<Point> above;
-        std::vector<Point> below;
+        std::vector<Vector3> above, below;
         for (int i = 0; i < 256; ++i) {
             const double x_m = center_m[0] + 5 * std::sin(i);
             const double gap_m = 0.1 + 0.5 * i / 256;
-            above.push_back({x_m, center_m[2] + 0.25 + gap_m});
-            below.push_back({x_m, center_m[2] - 0.25 - gap_m});
+            above.push_back({x_m, 0, center_m[2] + 0.25 + gap_m});
+            below.push_back({x_m, 0, center_m[2] - 0.25 - gap_m});
         }
-        const auto direct = [&](const Point& p) { return model->direct_factor(0, p.x_m, p.z_m); };
-        const auto clearance = [&](const Point& p) { return model->collisions().clearance_m({p.x_m, p.z_m, 0, 0}); };
-        const auto collision = [&](const Point& p) {
-            return model->collisions().is_nearer_than({p.x_m, p.z_m, 0, 0}, 0.05) ? 1.0 : 0.0;
+        const auto direct = [&](const Vector3& p) { return model->direct_factor(0, p[0], p[2]); };
+        const auto clearance = [&](const Vector3& p) { return model->collisions().clearance_m({p[0], p[2], 0, 0}); };
+        const auto collision = [&](const Vector3& p) {
+            return model->collisions().is_nearer_than({p[0], p[2], 0, 0}, 0.05) ? 1.0 : 0.0;
         };
         const int n = std::min(3, options.repetitions);
         fmt::print(
@@ -312,14 +302,14 @@ void print_meshes(const Options& options) {
 }
 
 /// Of the bridge, where it is among the problems.
-std::optional<VolumeFigures> print_volume(const Options& options) {
+std::optional<MapFigures> print_volume(const Options& options) {
     const auto bridge = std::find_if(options.problems.begin(), options.problems.end(), [](const std::string& file) {
         return std::filesystem::path(file).stem() == "bridge_inspection";
     });
     if (bridge == options.problems.end()) {
         return std::nullopt;
     }
-    const VolumeFigures f = measured_volume(read_problem(*bridge), options.repetitions);
+    const MapFigures f = measured_volume(read_problem(*bridge), options.repetitions);
     fmt::print(
         "\n## A volume\n\n`VolumeMap` of 6 m x 2.5 m x 2 m under the deck of `bridge_inspection`, its underside, the "
         "walkway and a girder included; look-ups as above, at 65,536 flyable hubs.\n\n"
@@ -331,21 +321,17 @@ std::optional<VolumeFigures> print_volume(const Options& options) {
     return f;
 }
 
-void print_bound(const std::string& bound, const std::string& found, bool is_kept) {
-    fmt::print("| {} | {} | {} |\n", bound, found, is_kept ? "kept" : "**not kept**");
-}
-
-void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFigures>& random_scenes,
-                  const std::optional<VolumeFigures>& volume) {
+void print_bounds(const std::vector<MapFigures>& maps, const std::vector<MapFigures>& random_scenes,
+                  const std::optional<MapFigures>& volume) {
     const MapFigures& ten = maps.front();
     fmt::print("\n## Bounds\n\n| bound | found | |\n|---|---|---|\n");
     print_bound("map of 20 m x 12 m with ten primitives built within 1 s on one core",
-                fmt::format("{:.3f} s", ten.build_s), ten.build_s <= most_build_s);
+                fmt::format("{:.3f} s", ten.build_s), ten.build_s <= max_build_s);
     const double slowest_s = random_scenes.empty() ? 0 : random_scenes.back().build_s;
     print_bound("the slowest of the random scenes built within 1 s", fmt::format("{:.2f} s", slowest_s),
-                slowest_s <= most_build_s);
-    const double most = std::max(ten.bytes, ten.growth_bytes);
-    print_bound("under 64 MB, building included", megabytes(most), most < most_bytes);
+                slowest_s <= max_build_s);
+    const double bytes = std::max(ten.bytes, ten.growth_bytes);
+    print_bound("under 64 MB, building included", megabytes(bytes), bytes < max_bytes);
     const auto slowest_of = [&maps](double MapFigures::*figure) {
         return *std::max_element(maps.begin(), maps.end(),
                                  [figure](const MapFigures& a, const MapFigures& b) { return a.*figure < b.*figure; });
@@ -354,7 +340,7 @@ void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFi
         const MapFigures slowest = slowest_of(figure);
         print_bound("a look-up within 15 ns, " + kind + ", every problem above",
                     fmt::format("at most {:.1f} ns ({})", 1e9 * (slowest.*figure), slowest.name),
-                    slowest.*figure <= most_look_up_s);
+                    slowest.*figure <= max_look_up_s);
     };
     print_look_up("in flight order", &MapFigures::in_flight_order_s);
     print_look_up("at random points", &MapFigures::scattered_s);
@@ -362,7 +348,7 @@ void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFi
     if (volume) {
         const auto print_volume_look_up = [](const std::string& kind, double time_s) {
             print_bound("a volume's look-up within 15 ns, " + kind, fmt::format("{:.1f} ns", 1e9 * time_s),
-                        time_s <= most_look_up_s);
+                        time_s <= max_look_up_s);
         };
         print_volume_look_up("in flight order", volume->in_flight_order_s);
         print_volume_look_up("at random points", volume->scattered_s);
@@ -372,19 +358,18 @@ void print_bounds(const std::vector<MapFigures>& maps, const std::vector<BuildFi
 
 void run(const Options& options) {
     fmt::print(
-        "# What the aero map costs\n\nCommit {}, {}, {} core(s), g++ {}, {}. One thread; the least processor time of "
+        "# Cost of the aero map\n\nCommit {}, {}, g++ {}, {}. One thread; the minimum processor time of "
         "{} repetitions\n(look-ups: of 100; meshes: of 3, their maps built once; random scenes and volume: of 2), as "
         "other "
         "programs may have run at "
         "the same time. `bench/aero_map.sh` writes this page.\n\n",
-        options.commit, processor(), sysconf(_SC_NPROCESSORS_ONLN), __VERSION__, DOWNWASH_BUILD_TYPE,
-        options.repetitions);
+        source_commit(), processor(), __VERSION__, DOWNWASH_BUILD_TYPE, options.repetitions);
     const std::vector<MapFigures> maps = print_maps(options);
-    const std::vector<BuildFigures> random_scenes = print_random_scenes(options);
+    const std::vector<MapFigures> random_scenes = print_random_scenes(options);
     if (options.with_meshes) {
         print_meshes(options);
     }
-    const std::optional<VolumeFigures> volume = print_volume(options);
+    const std::optional<MapFigures> volume = print_volume(options);
     print_bounds(maps, random_scenes, volume);
 }
 
@@ -392,19 +377,11 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app("What the aero map costs, as Markdown");
+    CLI::App app("The cost of the aero map, as Markdown");
     app.add_option("ten_primitives", options.ten_primitives, "the problem that the bounds are for")->required();
-    app.add_option("problems", options.problems, "others to measure");
-    app.add_option("--commit", options.commit, "commit that the runs are made from");
+    app.add_option("problems", options.problems, "other problems to measure");
     app.add_option("--repetitions", options.repetitions, "of which the best counts")->check(CLI::PositiveNumber);
-    app.add_option("--random-scenes", options.random_scenes, "how many")->check(CLI::PositiveNumber);
+    app.add_option("--random-scenes", options.random_scenes, "number of random scenes")->check(CLI::PositiveNumber);
     app.add_flag("!--no-meshes", options.with_meshes, "leave the meshes out");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 1;
-    }
-    return 0;
+    return run_program(app, argc, argv, [&options] { run(options); });
 }

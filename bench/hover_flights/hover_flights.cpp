@@ -8,13 +8,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "../aero_map/scenes.hpp"
+#include "../../tests/support/random.hpp"
+#include "../support/measuring.hpp"
+#include "../support/scenes.hpp"
+#include "downwash/bench/machine.hpp"
 #include "downwash/bench/statistics.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
@@ -34,7 +36,6 @@ constexpr int max_places = 30000;
 
 struct Options {
     std::vector<std::string> problems;
-    std::string commit = "unknown";
     std::size_t flights = 150;
     std::uint64_t seed = 1;
 };
@@ -43,18 +44,6 @@ struct Options {
 struct Disturbance {
     double size = 1e-3;
     double leaving = 0.05;
-};
-
-class Random {
- public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double uniform(double low, double high) {
-        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
-    }
-    bool one_in(int n) { return engine_() % static_cast<std::uint64_t>(n) == 0; }
-
- private:
-    std::mt19937_64 engine_;
 };
 
 double distance(const FlightState& a, const FlightState& b) {
@@ -67,7 +56,7 @@ double distance(const FlightState& a, const FlightState& b) {
 
 /// Flies with direct aerodynamics from beside the hover. Whether the vehicle leaves it, or is farther away in the last
 /// quarter than in the one before.
-bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& disturbance, Random& random) {
+bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& disturbance, test::Random& random) {
     FlightState state = trim.state;
     for (int i = 0; i < 4; ++i) {
         state.plant.q[i] += random.uniform(-disturbance.size, disturbance.size);
@@ -119,9 +108,10 @@ class Campaign {
             const bool is_unstable = hover.verdict == HoldVerdict::unstable;
             const bool is_stable = hover.verdict == HoldVerdict::stable;
             const double rate_1_s = hover.stability.growth_rate_1_s;
-            const bool is_wanted = is_unstable ? 2 * count.unstable < until
-                                               : is_stable && 2 * count.stable < until &&
-                                                     (rate_1_s > -critical_rate_1_s || random_.one_in(clear_ones));
+            const bool is_wanted = is_unstable
+                                       ? 2 * count.unstable < until
+                                       : is_stable && 2 * count.stable < until &&
+                                             (rate_1_s > -critical_rate_1_s || random_.integer(1, clear_ones) == 1);
             if (!is_wanted) {
                 continue;
             }
@@ -180,7 +170,7 @@ class Campaign {
             "| problem | robot | disturbance, leaving | called unstable: grew | called stable: decayed | critical | "
             "unknown "
             "|\n|---|---|---|---|---|---|---|\n",
-            options_.commit, __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, max_places, critical_rate_1_s, clear_ones,
+            source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, max_places, critical_rate_1_s, clear_ones,
             flight_s, critical_rate_1_s);
         Count all{"all", "", {}};
         for (const Count& c : rows_) {
@@ -223,7 +213,7 @@ class Campaign {
     }
 
     const Options& options_;
-    Random random_;
+    test::Random random_;
     std::vector<Count> rows_;
     std::vector<std::string> disagreements_;
 };
@@ -235,17 +225,11 @@ int main(int argc, char** argv) {
     CLI::App app("Verdicts of the hover analysis against flights, as Markdown");
     app.add_option("problems", options.problems, "problem files; random scenes have the bounds of the first")
         ->required();
-    app.add_option("--commit", options.commit, "commit that the flights are made from");
     app.add_option("--flights", options.flights, "flights per row")->check(CLI::PositiveNumber);
     app.add_option("--seed", options.seed, "of places and disturbances");
-    CLI11_PARSE(app, argc, argv);
-    try {
+    return run_program(app, argc, argv, [&options] {
         Campaign campaign(options);
         campaign.run();
         campaign.print();
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }

@@ -1,4 +1,4 @@
-// What an iteration and a node cost while a tree grows to a hundred thousand nodes. Prints Markdown.
+// The cost of an iteration and of a node while a tree grows to a hundred thousand nodes. Prints Markdown.
 
 #include <fmt/core.h>
 
@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <string>
 
-#include "../aero_map/measuring.hpp"
+#include "../support/measuring.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -51,10 +51,6 @@ struct Stage {
     }
 };
 
-const char* verdict(bool is_kept) {
-    return is_kept ? "kept" : "**not kept**";
-}
-
 void run(const Options& options) {
     Problem problem = read_problem(options.problem);
     problem.planner.variant = Variant::mp_arm_ada;
@@ -83,7 +79,7 @@ void run(const Options& options) {
     const Solution solution = solve(problem, solve_options);
 
     fmt::print(
-        "# What a large tree costs\n\nCommit {}; {}; {}, mp-arm-ada, seed {}, one thread. Processor time of an "
+        "# Cost of a large tree\n\nCommit {}; {}; {}, mp-arm-ada, seed {}, one thread. Processor time of an "
         "iteration, its share of the "
         "refinement included, while the tree has about so many nodes, and how much memory the search has taken by "
         "then, the aero map apart. "
@@ -93,29 +89,22 @@ void run(const Options& options) {
         fmt::print("| {} | {:.0f} us | {:.0f} MB |\n", stage.nodes, 1e6 * stage.iteration_s(), 1e-6 * stage.bytes);
     }
     const double ratio = stages.back().iteration_s() / stages.front().iteration_s();
-    fmt::print(
-        "\n| bound | found | |\n| --- | --: | --- |\n| an iteration at {} nodes costs at most 3 times one at {} | "
-        "{:.2f} "
-        "times | {} |\n| {} nodes take less than 300 MB | {:.0f} MB | {} |\n\nThe plan after {} iterations costs "
-        "{:.0f}.\n",
-        stages.back().nodes, stages.front().nodes, ratio, verdict(ratio <= 3), stages.back().nodes,
-        1e-6 * stages.back().bytes, verdict(stages.back().bytes < 300e6), solution.planning.iterations, solution.cost);
+    fmt::print("\n| bound | found | |\n| --- | --: | --- |\n");
+    bench::print_bound(fmt::format("an iteration at {} nodes costs at most 3 times one at {}", stages.back().nodes,
+                                   stages.front().nodes),
+                       fmt::format("{:.2f} times", ratio), ratio <= 3);
+    bench::print_bound(fmt::format("{} nodes take less than 300 MB", stages.back().nodes),
+                       fmt::format("{:.0f} MB", 1e-6 * stages.back().bytes), stages.back().bytes < 300e6);
+    fmt::print("\nThe plan after {} iterations costs {:.0f}.\n", solution.planning.iterations, solution.cost);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App program("What an iteration and a node cost while a tree grows, as Markdown");
+    CLI::App program("The cost of an iteration and of a node while a tree grows, as Markdown");
     program.add_option("PROBLEM", options.problem, "problem file")->required();
     program.add_option("--nodes", options.nodes, "of the tree at its end")->check(CLI::Range(1000, 10000000));
     program.add_option("--seed", options.seed, "of the search");
-    CLI11_PARSE(program, argc, argv);
-    try {
-        run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 2;
-    }
-    return 0;
+    return bench::run_program(program, argc, argv, [&options] { run(options); });
 }

@@ -1,18 +1,14 @@
-// What one core does per second on the shipped bridge: ticks, look-ups, collision checks, edges. Compare ratios of one
-// run, not figures of different machines or days; see README.md.
+// Work per second of one core on the shipped bridge: ticks, look-ups, collision checks, edges. Compare ratios of one
+// run, not figures of different machines or days; see README.md. bench_aero_map measures maps and volumes.
 
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
 #include <atomic>
-#include <filesystem>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "../../tests/support/random.hpp"
 #include "bridge.hpp"
-#include "downwash/aeromap/map_cache.hpp"
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/simulation/flight_batch.hpp"
@@ -63,137 +59,57 @@ void tick_with_direct_effect(benchmark::State& state) {
 }
 BENCHMARK(tick_with_direct_effect);
 
-std::vector<PlanarPose> random_queries(const Bounds& bounds) {
-    std::mt19937_64 engine(1);
-    const auto uniform = [&engine](double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    };
-    std::vector<PlanarPose> queries(4096);
-    for (PlanarPose& q : queries) {
-        q = {uniform(bounds.x_low_m, bounds.x_high_m), uniform(bounds.z_low_m, bounds.z_high_m), uniform(-0.2, 0.2),
-             uniform(-3, 3)};
+struct Query {
+    double x_m, z_m, pitch_rad, arm_rad;
+};
+
+std::vector<Query> random_queries(const Bounds& bounds) {
+    test::Random random(1);
+    std::vector<Query> queries(4096);
+    for (Query& q : queries) {
+        q = {random.uniform(bounds.x_low_m, bounds.x_high_m), random.uniform(bounds.z_low_m, bounds.z_high_m),
+             random.uniform(-0.2, 0.2), random.uniform(-3, 3)};
     }
     return queries;
 }
 
-void map_look_up(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
+/// One query of something, at random poses within the bounds.
+template <class Ask>
+void each_query(benchmark::State& state, const Ask& ask) {
+    const std::vector<Query> queries = random_queries(Bridge::get().problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const PlanarPose& q : queries) {
-            benchmark::DoNotOptimize(bridge.map->factor(0, q.x_m, q.z_m));
+        for (const Query& q : queries) {
+            benchmark::DoNotOptimize(ask(q));
         }
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+
+void map_look_up(benchmark::State& state) {
+    each_query(state, [&map = *Bridge::get().map](const Query& q) { return map.factor(0, q.x_m, q.z_m); });
 }
 BENCHMARK(map_look_up);
 
 void direct_effect(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
-    for ([[maybe_unused]] auto _ : state) {
-        for (const PlanarPose& q : queries) {
-            benchmark::DoNotOptimize(bridge.model->effect(0).factor({q.x_m, 0.32, q.z_m}));
-        }
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+    each_query(state, [&effect = Bridge::get().model->effect(0)](const Query& q) {
+        return effect.factor({q.x_m, 0.32, q.z_m});
+    });
 }
 BENCHMARK(direct_effect);
 
 void collision_check(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
-    for ([[maybe_unused]] auto _ : state) {
-        for (const PlanarPose& q : queries) {
-            benchmark::DoNotOptimize(bridge.model->collisions().is_nearer_than(q, 0.05));
-        }
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+    each_query(state, [&collisions = Bridge::get().model->collisions()](const Query& q) {
+        return collisions.is_nearer_than({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}, 0.05);
+    });
 }
 BENCHMARK(collision_check);
 
 void clearance(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
-    for ([[maybe_unused]] auto _ : state) {
-        for (const PlanarPose& q : queries) {
-            benchmark::DoNotOptimize(bridge.model->collisions().clearance_m(q));
-        }
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+    each_query(state, [&collisions = Bridge::get().model->collisions()](const Query& q) {
+        return collisions.clearance_m({q.x_m, q.z_m, q.pitch_rad, q.arm_rad});
+    });
 }
 BENCHMARK(clearance);
-
-void map_build(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    for ([[maybe_unused]] auto _ : state) {
-        benchmark::DoNotOptimize(bridge.model->make_map(bridge.problem.bounds));
-    }
-    state.counters["MB"] = static_cast<double>(bridge.map->memory_bytes()) * 1e-6;
-}
-BENCHMARK(map_build)->Unit(benchmark::kMillisecond);
-
-/// What map_build costs from the second run on: key, file, digest and sampled values included.
-void map_load(benchmark::State& state) {
-    const Bridge& bridge = Bridge::get();
-    const auto folder = std::filesystem::temp_directory_path() / ("downwash-bench-" + std::to_string(getpid()));
-    const MapCache cache(folder);
-    cache.keep(*bridge.map);
-    for ([[maybe_unused]] auto _ : state) {
-        if (!cache.find(bridge.map->layers(), bridge.map->plane(), bridge.map->extent())) {
-            state.SkipWithError("the map was not found");
-            break;
-        }
-    }
-    std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
-}
-BENCHMARK(map_load)->Unit(benchmark::kMillisecond);
-
-/// 30 m3 under the deck: its underside, the walkway's top and edges, the cross girder.
-struct UnderDeck {
-    Bounds extent{-8, -2, 8, 10};
-    double lateral_m = 1.25;  ///< to either side
-
-    [[nodiscard]] VolumeMap map() const {
-        const Bridge& bridge = Bridge::get();
-        return {std::make_shared<const DirectEffect>(bridge.model->effect(0)), bridge.model->plane(), extent,
-                -lateral_m, lateral_m};
-    }
-};
-
-void volume_build(benchmark::State& state) {
-    Bridge::get();
-    std::size_t bytes = 0;
-    for ([[maybe_unused]] auto _ : state) {
-        bytes = UnderDeck().map().memory_bytes();
-    }
-    state.counters["MB"] = static_cast<double>(bytes) * 1e-6;
-}
-BENCHMARK(volume_build)->Unit(benchmark::kMillisecond);
-
-void volume_look_up(benchmark::State& state) {
-    const UnderDeck block;
-    const VolumeMap map = block.map();
-    std::mt19937_64 engine(1);
-    const auto uniform = [&engine](double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    };
-    std::vector<Vector3> hubs_m(65536);
-    for (Vector3& hub_m : hubs_m) {
-        const double x_m = uniform(block.extent.x_low_m, block.extent.x_high_m);
-        const double lateral_m = uniform(-block.lateral_m, block.lateral_m);
-        hub_m =
-            Bridge::get().model->plane().to_world(x_m, lateral_m, uniform(block.extent.z_low_m, block.extent.z_high_m));
-    }
-    for ([[maybe_unused]] auto _ : state) {
-        for (const Vector3& hub_m : hubs_m) {
-            benchmark::DoNotOptimize(map.factor(hub_m));
-        }
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hubs_m.size()));
-}
-BENCHMARK(volume_look_up);
 
 /// Random edges all over the bridge under all rules, side by side.
 void batch(benchmark::State& state, bool is_aware, Instructions instructions, int threads) {
@@ -275,6 +191,36 @@ void search(benchmark::State& state, std::uint64_t iterations, int threads, std:
     add("search/two_at_once", whole, 1, 2);
     add("search/first_seconds_one_thread", first_seconds, 1, 1);
     add("search/first_seconds_two_threads", first_seconds, 2, 1);
+    return true;
+}();
+
+/// How soon searches end that have a time limit of 0.1 s: of every algorithm, and one whose edges are flights of minutes.
+void limited_search(benchmark::State& state, const Problem& problem) {
+    for ([[maybe_unused]] auto _ : state) {
+        benchmark::DoNotOptimize(solve(problem).planning.iterations);
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+
+[[maybe_unused]] const bool limited_searches_are_registered = [] {
+    const auto add = [](const std::string& name, Problem problem) {
+        problem.planner.time_limit_s = 0.1;
+        problem.planner.max_iterations.reset();
+        benchmark::RegisterBenchmark(("limited_search/" + name).c_str(), limited_search, std::move(problem))
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond);
+    };
+    Problem problem = read_problem(DOWNWASH_PROBLEMS "/open_air.yaml");
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        problem.planner.algorithm = algorithm.name;
+        problem.planner.variant = algorithm.plans_flights ? Variant::mp_arm_da : Variant::mp_arm;
+        add(std::string(algorithm.name), problem);
+    }
+    problem.planner.algorithm = "rrt-star";
+    problem.planner.variant = Variant::mp_arm_da;
+    problem.motion.max_speed_m_s = 0.01;
+    problem.robot.controller.rate_hz = 500;
+    add("long_flights", problem);
     return true;
 }();
 

@@ -1,5 +1,5 @@
-// The same closed loop as others would compute it, to read beside tick_with_map and batch in one run: items are steps
-// of 10 ms.
+// The same closed loop in the way of other programs, to compare with tick_with_map and batch in one run: items are
+// steps of 10 ms.
 
 #include <benchmark/benchmark.h>
 #include <ompl/control/SpaceInformation.h>

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/measuring.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/ompl_user/user_planner.hpp"
 #include "downwash/bench/statistics.hpp"
@@ -42,17 +43,16 @@ std::string milliseconds(double time_s) {
 
 /// How many times as long the user's set-up takes. Both medians lie in their ranges with 95 % confidence.
 void print_ratio(const Row& user, const Row& ours) {
-    constexpr double least_ratio = 50;
+    constexpr double min_ratio = 50;
     constexpr double confidence_of_each = 0.975;
     const double ratio = bench::quantile(user.times_s, 0.5) / bench::quantile(ours.times_s, 0.5);
     const bench::Range theirs = bench::median_range(user.times_s, confidence_of_each);
     const bench::Range own = bench::median_range(ours.times_s, confidence_of_each);
-    fmt::print(
-        "\n| bound | found | |\n| --- | --- | --- |\n"
-        "| the median of {} is at least {} times sooner than a user's | {:.1f} times, 95 % interval {:.1f} to "
-        "{:.1f} | {} |\n",
-        ours.name, least_ratio, ratio, std::max(0.0, theirs.low) / own.high, theirs.high / std::max(0.0, own.low),
-        ratio >= least_ratio ? "kept" : "**not kept**");
+    fmt::print("\n| bound | found | |\n| --- | --- | --- |\n");
+    bench::print_bound(fmt::format("the median of {} is at least {} times sooner than a user's", ours.name, min_ratio),
+                       fmt::format("{:.1f} times, 95 % interval {:.1f} to {:.1f}", ratio,
+                                   std::max(0.0, theirs.low) / own.high, theirs.high / std::max(0.0, own.low)),
+                       ratio >= min_ratio);
 }
 
 void print(const Options& options, const Problem& problem, const std::vector<Row>& rows) {
@@ -127,12 +127,5 @@ int main(int argc, char** argv) {
     program.add_option("PROBLEM", options.problem, "problem file; obstacles boxes, cylinders, spheres")->required();
     program.add_option("--seeds", options.seeds, "runs of each planner")->check(CLI::Range(1, 10000));
     program.add_option("--time-limit", options.time_limit_s, "of each run [s]")->check(CLI::Range(0.01, 3600.0));
-    CLI11_PARSE(program, argc, argv);
-    try {
-        run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return 2;
-    }
-    return 0;
+    return bench::run_program(program, argc, argv, [&options] { run(options); });
 }

@@ -54,7 +54,7 @@ TEST_CASE("every seed is in the denominator, and what has no value is infinite")
     CHECK(aware.solved.hits == 4);
     CHECK(aware.first_solution_s.median == Approx(0.25));
     CHECK(aware.flown_cost.median == Approx(116));
-    CHECK(aware.least_clearance_m == 0.06);
+    CHECK(aware.min_clearance_m == 0.06);
     const CellFigures& geometric = report.cells[1];
     CHECK(geometric.solved.hits == 3);
     CHECK(geometric.solved.attempts == 4);
@@ -62,7 +62,7 @@ TEST_CASE("every seed is in the denominator, and what has no value is infinite")
     CHECK(geometric.failed_flights.attempts == 4);
     CHECK(geometric.held.hits == 2);
     CHECK(geometric.first_solution_s.median == Approx(0.025));
-    CHECK(std::isinf(geometric.first_solution_s.most));
+    CHECK(std::isinf(geometric.first_solution_s.quantile_95));
     CHECK(std::isinf(geometric.flown_cost.median));  // 91, 98, infinite, infinite
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("failures are listed by cause with their seeds") {
     CHECK(report.failures[1].cause == "collision");
     CHECK(report.failures[1].planner == 1);
     const std::string markdown = markdown_of(report);
-    CHECK(markdown.find("2 of 8 runs have no flight that held.") != std::string::npos);
+    CHECK(markdown.find("2 of 8 runs have no flight that hovers at the goal.") != std::string::npos);
     CHECK(markdown.find("- bridge, energy, mp-arm rrt-star: collision: seeds 3\n") != std::string::npos);
 }
 
@@ -103,86 +103,86 @@ TEST_CASE("planners are compared on equal seeds") {
     CHECK(report.comparisons[1].pairing.median_difference == Approx((10 + 33) / 2.0));
 }
 
-TEST_CASE("an unfinished campaign says so and keeps no bar") {
+TEST_CASE("an unfinished campaign says so and meets no target") {
     CampaignResults results = some_results();
-    CampaignExpectation bar;
-    bar.solved_ratio = 1;
-    bar.failed_flights = 0;
-    bar.first_solution_median_s = 0.25;
-    bar.first_solution_95_s = 0.39;
-    results.plan.expectations = {bar};
+    CampaignExpectation target;
+    target.solved_ratio = 1;
+    target.failed_flights = 0;
+    target.first_solution_median_s = 0.25;
+    target.first_solution_95_s = 0.39;
+    results.plan.expectations = {target};
     const CampaignReport whole = report_of(results);
-    CHECK(whole.keeps_its_bars());
-    CHECK(whole.bars.size() == 4);
+    CHECK(whole.meets_its_targets());
+    CHECK(whole.targets.size() == 4);
 
     results.runs.erase(results.runs.begin());
     const CampaignReport part = report_of(results);
     CHECK(part.cells[0].missing == 1);
     CHECK(part.cells[0].solved.attempts == 3);
-    CHECK_FALSE(part.keeps_its_bars());
+    CHECK_FALSE(part.meets_its_targets());
     CHECK(markdown_of(part).find("7 of 8 runs done: **the campaign is not finished**") != std::string::npos);
 }
 
-TEST_CASE("each bar is missed on its own") {
-    using Bar = CampaignExpectation;
+TEST_CASE("each target is missed on its own") {
+    using Target = CampaignExpectation;
     const auto with = [](auto member, auto value) {
-        Bar bar;
-        bar.variant = Variant::mp_arm;
-        bar.*member = value;
-        return bar;
+        Target target;
+        target.variant = Variant::mp_arm;
+        target.*member = value;
+        return target;
     };
-    const auto [bar, found] =
-        GENERATE_COPY(std::pair(with(&Bar::solved_ratio, 0.8), "3/4"), std::pair(with(&Bar::failed_flights, 0U), "1/4"),
-                      std::pair(with(&Bar::first_solution_median_s, 0.024), "0.025 s"),
-                      std::pair(with(&Bar::first_solution_95_s, 100.0), "none"),
-                      std::pair(with(&Bar::verified_median_s, 0.0249), "0.025 s"));
+    const auto [target, found] = GENERATE_COPY(std::pair(with(&Target::solved_ratio, 0.8), "3/4"),
+                                               std::pair(with(&Target::failed_flights, 0U), "1/4"),
+                                               std::pair(with(&Target::first_solution_median_s, 0.024), "0.025 s"),
+                                               std::pair(with(&Target::first_solution_95_s, 100.0), "none"),
+                                               std::pair(with(&Target::verified_median_s, 0.0249), "0.025 s"));
     CampaignResults results = some_results();
-    results.plan.expectations = {bar};
+    results.plan.expectations = {target};
     const CampaignReport report = report_of(results);
-    REQUIRE(report.bars.size() == 1);
-    CHECK(report.bars[0].found == found);
-    CHECK_FALSE(report.bars[0].is_kept);
-    CHECK_FALSE(report.keeps_its_bars());
+    REQUIRE(report.targets.size() == 1);
+    CHECK(report.targets[0].found == found);
+    CHECK_FALSE(report.targets[0].is_met);
+    CHECK_FALSE(report.meets_its_targets());
 }
 
 TEST_CASE("a median cost is held against the least that any planner has flown there") {
     CampaignResults results = some_results();
     results.plan.planners[1].variant = Variant::mp_arm_ada;
     results.plan.planners[1].algorithm = "sst";
-    CampaignExpectation bar;
-    bar.algorithm = "rrt-star";
-    bar.cost_after_s = 1;
+    CampaignExpectation target;
+    target.algorithm = "rrt-star";
+    target.cost_after_s = 1;
     // 115 is the median of 100 to 130; the least flight is one of sst, 91.
-    bar.cost_to_best = 115.0 / 91 + 1e-9;
-    results.plan.expectations = {bar};
+    target.cost_to_best = 115.0 / 91 + 1e-9;
+    results.plan.expectations = {target};
     const CampaignReport kept = report_of(results);
-    REQUIRE(kept.bars.size() == 1);  // none for sst
-    CHECK(kept.bars[0].is_kept);
-    CHECK(kept.bars[0].found == "1.264");
+    REQUIRE(kept.targets.size() == 1);  // none for sst
+    CHECK(kept.targets[0].is_met);
+    CHECK(kept.targets[0].found == "1.264");
     results.plan.expectations[0].cost_to_best = 115.0 / 91 - 1e-9;
-    CHECK_FALSE(report_of(results).bars[0].is_kept);
+    CHECK_FALSE(report_of(results).targets[0].is_met);
     results.runs.pop_back();  // of sst: the best is not known yet
     results.plan.expectations[0].cost_to_best = 2;
-    CHECK_FALSE(report_of(results).bars[0].is_kept);
+    CHECK_FALSE(report_of(results).targets[0].is_met);
 }
 
 TEST_CASE("a median cost is held against that of a rival at a time of its own") {
     CampaignResults results = some_results();
     results.plan.planners[1] = {Variant::mp_arm_ada, "sst", {}};
-    CampaignExpectation bar;
-    bar.algorithm = "sst";
-    bar.cost_after_s = 0.5;  // 90, 95, 97 and an infinite one
-    bar.cheaper_than = "rrt-star";
-    bar.cheaper_than_after_s = 0.3;  // 150, 160, 170 and an infinite one
-    results.plan.expectations = {bar};
+    CampaignExpectation target;
+    target.algorithm = "sst";
+    target.cost_after_s = 0.5;  // 90, 95, 97 and an infinite one
+    target.cheaper_than = "rrt-star";
+    target.cheaper_than_after_s = 0.3;  // 150, 160, 170 and an infinite one
+    results.plan.expectations = {target};
     const CampaignReport report = report_of(results);
-    REQUIRE(report.bars.size() == 1);
-    CHECK(report.bars[0].planner == 1);
-    CHECK(report.bars[0].found == "96 against 165");
-    CHECK(report.bars[0].is_kept);
+    REQUIRE(report.targets.size() == 1);
+    CHECK(report.targets[0].planner == 1);
+    CHECK(report.targets[0].found == "96 against 165");
+    CHECK(report.targets[0].is_met);
     results.plan.expectations[0].cost_after_s = 0.005;  // before its first plan
-    CHECK(report_of(results).bars[0].found == "none against 165");
-    CHECK_FALSE(report_of(results).bars[0].is_kept);
+    CHECK(report_of(results).targets[0].found == "none against 165");
+    CHECK_FALSE(report_of(results).targets[0].is_met);
 }
 
 TEST_CASE("costs over time are those flown, where the planner has flown its plans") {

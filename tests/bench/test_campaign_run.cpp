@@ -111,9 +111,9 @@ TEST_CASE("what is read from a file of results is what was written") {
     written.simulated_s = 7.5;
     written.discarded = 8;
     written.improvements = {{0.25, 3, 12.5, {}}, {0.5, 9, 1.0 / 7, 2.0 / 7}};
-    written.refusals = {{"collision", 11}, {"bounds", 12}};
+    written.rejections = {{"collision", 11}, {"bounds", 12}};
     written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
-    written.error = "a 'quoted'; error";
+    written.error = "a 'quoted'; fault";
     {
         CampaignStore store(folder.path() / "results", plan, false);
         store.add(written);
@@ -138,7 +138,7 @@ TEST_CASE("what is read from a file of results is what was written") {
     CHECK(read.improvements[1].cost == 1.0 / 7);
     CHECK_FALSE(read.improvements[0].flown_cost.has_value());
     CHECK(read.improvements[1].flown_cost == 2.0 / 7);
-    CHECK(read.refusals == written.refusals);
+    CHECK(read.rejections == written.rejections);
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->outcome == Outcome::left_flyable_area);
     CHECK(read.flight->min_clearance_m == HUGE_VAL);
@@ -199,7 +199,7 @@ TEST_CASE("results are neither overwritten nor mixed with those of other setting
     const ScratchFolder folder;
     const ReadCampaign read = small_campaign();
     run_into(folder, read);
-    CHECK_THROWS_WITH(run_into(folder, read), Catch::Contains("holds runs already; --resume goes on with them"));
+    CHECK_THROWS_WITH(run_into(folder, read), Catch::Contains("holds runs already; --resume continues with them"));
 
     ReadCampaign other = read;
     other.campaign.max_iterations = 151;

@@ -4,11 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <thread>
 
 namespace downwash::test {
@@ -24,7 +26,7 @@ void redirect(const fs::path& file, int descriptor) {
 }
 
 [[noreturn]] void become_program(const fs::path& folder, const fs::path& in, const fs::path& out, const fs::path& err,
-                                 const std::vector<std::string>& arguments, const Environment& environment) {
+                                 const Words& arguments, const Environment& environment) {
     for (const auto& [name, value] : environment) {
         value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
     }
@@ -47,19 +49,23 @@ void redirect(const fs::path& file, int descriptor) {
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "downwash-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-    fs::create_directory(path_ / "run");
-}
-
-ScratchFolder::~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
+void words_of::add(Words& all, const char* blank_separated) {
+    std::istringstream text(blank_separated);
+    all.insert(all.end(), std::istream_iterator<std::string>(text), {});
 }
 
 std::string problem_file(const std::string& name) {
     return std::string(DOWNWASH_PROBLEMS) + "/" + name + ".yaml";
+}
+
+std::string problem_text(const std::string& name) {
+    return replaced(read_file(problem_file(name)), "robots/", std::string(DOWNWASH_PROBLEMS) + "/robots/");
+}
+
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+    const std::size_t at = text.find(part);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, part.size(), by);
 }
 
 std::string read_file(const fs::path& path) {
@@ -71,26 +77,36 @@ void write_file(const fs::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
-std::map<std::string, std::string> files_in(const fs::path& folder) {
+void check_rejected(const Result& result, const std::string& reason) {
+    CHECK(result.code == 2);
+    CHECK(result.out.empty());
+    CHECK_THAT(result.err, Catch::Contains(reason));
+}
+
+std::map<std::string, std::string> Workspace::files(const std::string& below) const {
     std::map<std::string, std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(in_run(below))) {
         if (entry.is_regular_file()) {
-            files[fs::relative(entry.path(), folder).string()] = read_file(entry.path());
+            files[fs::relative(entry.path(), in_run(below)).string()] = read_file(entry.path());
         }
     }
     return files;
 }
 
-Program::Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment,
+Result Workspace::run_in(const Environment& environment, const std::string& input, const Words& arguments) const {
+    return Program(*this, arguments, environment, input).wait();
+}
+
+Program::Program(const Workspace& work, const Words& arguments, const Environment& environment,
                  const std::string& input)
-    : out_(folder / "standard-output"), err_(folder / "standard-error") {
-    const fs::path in = folder / "standard-input";
+    : out_(work / "standard-output"), err_(work / "standard-error") {
+    const fs::path in = work / "standard-input";
     write_file(in, input);
     process_ = fork();
     if (process_ == 0) {
         Environment whole = environment;
-        whole.emplace("XDG_CACHE_HOME", folder / "cache");
-        become_program(folder.path() / "run", in, out_, err_, arguments, whole);
+        whole.emplace("XDG_CACHE_HOME", work / "cache");
+        become_program(work.in_run(), in, out_, err_, arguments, whole);
     }
 }
 
@@ -112,11 +128,6 @@ Result Program::wait() const {
     int status = 0;
     waitpid(process_, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out_), read_file(err_)};
-}
-
-Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment,
-           const std::string& input) {
-    return Program(folder, arguments, environment, input).wait();
 }
 
 }  // namespace downwash::test

@@ -8,25 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "../support/scratch_folder.hpp"
+
 namespace downwash::test {
 
-/// An empty folder that disappears with the test.
-class ScratchFolder {
- public:
-    ScratchFolder();
-    ~ScratchFolder();
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
+/// The words of a command line.
+using Words = std::vector<std::string>;
 
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-    [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+/// A command line in parts: a literal is split at its blanks, a string or path is one word, a list is its words.
+template <class... Parts>
+[[nodiscard]] Words words(const Parts&... parts);
 
- private:
-    std::filesystem::path path_;
-};
-
-/// The installed problem of that name.
+/// The shipped problem of that name.
 [[nodiscard]] std::string problem_file(const std::string& name);
+/// Its text for a file elsewhere: the robot is named by its absolute path.
+[[nodiscard]] std::string problem_text(const std::string& name);
+/// The text with its first `part` replaced. Fails the test where there is none.
+[[nodiscard]] std::string replaced(std::string text, const std::string& part, const std::string& by);
 
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const std::string& text);
@@ -34,9 +32,6 @@ void write_file(const std::filesystem::path& path, const std::string& text);
 /// How many files `solve` and `execute` write; the page is one of them where the viewer is built.
 inline constexpr bool has_pages = DOWNWASH_HAS_PAGES;
 inline constexpr std::size_t files_of_a_run = has_pages ? 5 : 4;
-
-/// Every file below a folder, with its content.
-[[nodiscard]] std::map<std::string, std::string> files_in(const std::filesystem::path& folder);
 
 /// What a run of the program left behind.
 struct Result {
@@ -47,14 +42,38 @@ struct Result {
     [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
 
+/// Checks that a command line was rejected: exit code 2, nothing on standard output, the reason on standard error.
+void check_rejected(const Result& result, const std::string& reason);
+
 /// Environment variables; an empty value takes one away.
 using Environment = std::map<std::string, std::string>;
 
-/// The program, running in a folder. Its cache is `cache` beside that, unless the environment says otherwise.
+/// A folder for one test. The program runs in its subfolder `run`; what a test gives it may stand beside that.
+class Workspace : public ScratchFolder {
+ public:
+    Workspace() { std::filesystem::create_directory(*this / "run"); }
+
+    /// A path within the folder in which the program runs.
+    [[nodiscard]] std::filesystem::path in_run(const std::string& name = "") const { return *this / "run" / name; }
+    /// The content of a file there.
+    [[nodiscard]] std::string text(const std::string& name) const { return read_file(in_run(name)); }
+    /// Every file below that folder, or below a folder in it, with its content.
+    [[nodiscard]] std::map<std::string, std::string> files(const std::string& below = "") const;
+
+    /// Runs the program to its end; the arguments are those of words().
+    template <class... Parts>
+    [[nodiscard]] Result run(const Parts&... parts) const {
+        return run_in({}, {}, words(parts...));
+    }
+    /// The same with other environment variables and something on standard input.
+    [[nodiscard]] Result run_in(const Environment& environment, const std::string& input, const Words& arguments) const;
+};
+
+/// The program, running in a workspace. Its cache is `cache` in there, unless the environment says otherwise.
 class Program {
  public:
     /// @param input what it reads from standard input; empty: nothing
-    Program(const ScratchFolder& folder, const std::vector<std::string>& arguments, const Environment& environment = {},
+    Program(const Workspace& work, const Words& arguments, const Environment& environment = {},
             const std::string& input = {});
 
     void send(int signal) const;
@@ -67,8 +86,24 @@ class Program {
     pid_t process_;
 };
 
-/// Runs the program in a folder to its end.
-[[nodiscard]] Result run(const ScratchFolder& folder, const std::vector<std::string>& arguments,
-                         const Environment& environment = {}, const std::string& input = {});
+namespace words_of {
+void add(Words& all, const char* blank_separated);
+inline void add(Words& all, const std::string& word) {
+    all.push_back(word);
+}
+inline void add(Words& all, const std::filesystem::path& path) {
+    all.push_back(path.string());
+}
+inline void add(Words& all, const Words& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+}  // namespace words_of
+
+template <class... Parts>
+Words words(const Parts&... parts) {
+    Words all;
+    (words_of::add(all, parts), ...);
+    return all;
+}
 
 }  // namespace downwash::test

@@ -15,50 +15,40 @@ using Catch::Matchers::EndsWith;
 namespace {
 
 /// The open air with such a ground model, in a file.
-std::string problem_with(const ScratchFolder& folder, const std::string& ground) {
-    const std::string shipped = problem_file("open_air");
-    const std::string robot = (std::filesystem::path(shipped).parent_path() / "robots/ars_lrm.yaml").string();
-    std::string text = read_file(shipped);
-    text.replace(text.find("robots/ars_lrm.yaml"), std::string("robots/ars_lrm.yaml").size(), robot);
-    write_file(folder / "problem.yaml", text + "aero: {ground: {model: " + ground + "}}\n");
-    return folder / "problem.yaml";
+std::filesystem::path problem_with(const Workspace& work, const std::string& ground) {
+    write_file(work / "problem.yaml", problem_text("open_air") + "aero: {ground: {model: " + ground + "}}\n");
+    return work / "problem.yaml";
 }
 
 }  // namespace
 
 TEST_CASE("A grid built where a fountain pushes the body says that it lacks it") {
-    const ScratchFolder folder;
-    const auto build = [&](const std::string& ground, const std::vector<std::string>& more = {}) {
-        std::vector<std::string> arguments{"aeromap", "build", problem_with(folder, ground), "-o", folder / "grid.csv",
-                                           "--step",  "0.5"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(folder, arguments);
+    const Workspace work;
+    const auto build = [&](const std::string& ground, const char* more = "") {
+        return work.run("aeromap build", problem_with(work, ground), "-o", work / "grid.csv", "--step 0.5", more);
     };
     const std::string line = "# fountain: not contained: the grid holds the factors of rotors\n";
     const Result loud = build("multirotor-body");
     CAPTURE(loud.err);
     CHECK(loud.code == 0);
-    CHECK_THAT(loud.err, Contains("the fountain that pushes the body is not contained"));
-    CHECK_THAT(read_file(folder / "grid.csv"), Contains(line));
-    CHECK(build("multirotor-body", {"--quiet", "--lateral", "-1", "1"}).err.empty());
-    CHECK_THAT(read_file(folder / "grid.csv"), Contains(line));
+    CHECK_THAT(loud.err, Contains("does not contain the fountain that pushes the body"));
+    CHECK_THAT(read_file(work / "grid.csv"), Contains(line));
+    CHECK(build("multirotor-body", "--quiet --lateral -1 1").err.empty());
+    CHECK_THAT(read_file(work / "grid.csv"), Contains(line));
     CHECK_THAT(build("multirotor-images").err, !Contains("fountain"));
-    CHECK_THAT(read_file(folder / "grid.csv"), !Contains("fountain"));
+    CHECK_THAT(read_file(work / "grid.csv"), !Contains("fountain"));
 }
 
 TEST_CASE("The whole vehicle is written over place and pitch as its formulas say over wide ground") {
-    const ScratchFolder folder;
-    const std::string problem = problem_with(folder, "cheeseman-bennett");
-    std::string text = read_file(problem);
-    const std::string bounds = "z_m: [1, 10]";
-    text.replace(text.find(bounds), bounds.size(), "z_m: [0.1, 10]");
-    write_file(problem, text);
-    const Result result = run(folder, {"aeromap", "build", problem, "-o", folder / "vehicle.csv", "--step", "9.9",
-                                       "--pitch-deg", "-10", "0", "30", "--quiet"});
+    const Workspace work;
+    const auto problem = problem_with(work, "cheeseman-bennett");
+    write_file(problem, replaced(read_file(problem), "z_m: [1, 10]", "z_m: [0.1, 10]"));
+    const Result result =
+        work.run("aeromap build", problem, "-o", work / "vehicle.csv", "--step 9.9 --pitch-deg -10 0 30 --quiet");
     CAPTURE(result.err);
     REQUIRE(result.code == 0);
     CHECK(result.err.empty());
-    const std::string table = read_file(folder / "vehicle.csv");
+    const std::string table = read_file(work / "vehicle.csv");
     CHECK_THAT(table, Contains("# problem: open_air\n"));
     std::istringstream lines(table.substr(table.find("\nx_m,z_m,pitch_deg,") + 1));
     std::string line;
@@ -99,112 +89,102 @@ TEST_CASE("The whole vehicle is written over place and pitch as its formulas say
     CHECK(not_flyable == 4);  // low, 30 degrees nose down
 }
 
-TEST_CASE("A table of the vehicle that cannot be is refused before it is built") {
-    const ScratchFolder folder;
-    const auto error = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"aeromap", "build", problem_file("open_air")};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const Result result = run(folder, arguments);
-        CHECK(result.code == 2);
-        return result.err;
-    };
-    CHECK_THAT(error({"-o", "v.vti", "--pitch-deg", "0"}), Contains("expected a name that ends in .csv"));
-    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "90"}),
-               Contains("--pitch-deg 90: expected degrees, at most 80"));
-    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "--step", "0.0001"}), Contains("choose it coarser"));
-    CHECK_THAT(error({"-o", "no/such/v.csv", "--pitch-deg", "0"}), Contains("no/such/v.csv"));
-    CHECK_THAT(error({"-o", "v.csv", "--pitch-deg", "0", "--rotor", "1"}), Contains("--rotor"));
-    CHECK(files_in(folder.path() / "run").empty());
+TEST_CASE("A table of the vehicle that cannot be is rejected before it is built") {
+    const Workspace work;
+    for (const auto& [options, reason] : {std::pair{"-o v.vti --pitch-deg 0", "expected a name that ends in .csv"},
+                                          {"-o v.csv --pitch-deg 0 90", "--pitch-deg 90: expected degrees, at most 80"},
+                                          {"-o v.csv --pitch-deg 0 --step 0.0001", "choose it coarser"},
+                                          {"-o no/such/v.csv --pitch-deg 0", "no/such/v.csv"},
+                                          {"-o v.csv --pitch-deg 0 --rotor 1", "--rotor"}}) {
+        check_rejected(work.run("aeromap build", problem_file("open_air"), options), reason);
+    }
+    CHECK(work.files().empty());
 }
 
-TEST_CASE("A grid that cannot be written is refused before it is built") {
-    const ScratchFolder folder;
+TEST_CASE("A grid that cannot be written is rejected before it is built") {
+    const Workspace work;
     // Neither problem exists: the output comes first.
-    const Result wrong = run(folder, {"aeromap", "build", "nowhere.yaml", "-o", "grid.txt"});
+    const Result wrong = work.run("aeromap build nowhere.yaml -o grid.txt");
     CHECK(wrong.code == 2);
     CHECK(wrong.err == "downwash: grid.txt ends in '.txt': expected .vti (VTK ImageData) or .csv\n");
-    const Result nowhere = run(folder, {"aeromap", "build", "nowhere.yaml", "-o", "no/such/folder/grid.vti"});
-    CHECK(nowhere.code == 2);
-    CHECK_THAT(nowhere.err, Contains("no/such/folder/grid.vti cannot be written"));
-    CHECK(run(folder, {"aeromap", "build", "nowhere.yaml", "-o", "grid.vti"}).code == 2);
-    CHECK(files_in(folder.path() / "run").empty());
+    check_rejected(work.run("aeromap build nowhere.yaml -o no/such/folder/grid.vti"),
+                   "no/such/folder/grid.vti cannot be written");
+    CHECK(work.run("aeromap build nowhere.yaml -o grid.vti").code == 2);
+    CHECK(work.files().empty());
 }
 
 TEST_CASE("Any bytes in a file become JSON that can be read") {
-    const ScratchFolder folder;
-    write_file(folder / "grid.csv", "# note: \xff!\nx_m,z_m,factor\n0,0,1\n1,0,1\n0,1,1\n1,1,1\n");
-    const Result result = run(folder, {"aeromap", "info", folder / "grid.csv", "--json"});
+    const Workspace work;
+    write_file(work / "grid.csv", "# note: \xff!\nx_m,z_m,factor\n0,0,1\n1,0,1\n0,1,1\n1,1,1\n");
+    const Result result = work.run("aeromap info", work / "grid.csv", "--json");
     CAPTURE(result.err);
     REQUIRE(result.code == 0);
     CHECK(result.json().at("provenance").at(0).at("value") == "\xef\xbf\xbd!");
-    write_file(folder / "data.csv", "source,surface,z_over_r,thrust_ratio\nb\xff,ground,0.5,1.3\nb\xff,ground,1,1.1\n");
-    const Result comparison = run(folder, {"aeromap", "compare", folder / "data.csv", "--json"});
+    write_file(work / "data.csv", "source,surface,z_over_r,thrust_ratio\nb\xff,ground,0.5,1.3\nb\xff,ground,1,1.1\n");
+    const Result comparison = work.run("aeromap compare", work / "data.csv", "--json");
     CAPTURE(comparison.err);
     REQUIRE(comparison.code == 0);
     CHECK_FALSE(comparison.json().empty());
 }
 
-TEST_CASE("Points that are none are refused") {
-    const ScratchFolder folder;
-    const auto query = [&](const std::string& points) {
-        return run(folder, {"aeromap", "query", problem_file("open_air"), "--no-cache", "--points", points});
+TEST_CASE("Points that are none are rejected") {
+    const Workspace work;
+    const auto query = [&](const std::filesystem::path& points) {
+        return work.run("aeromap query", problem_file("open_air"), "--no-cache --points", points);
     };
-    const Result directory = query(folder.path().string());
+    const Result directory = query(work.path());
     CHECK(directory.code == 2);
     CHECK_THAT(directory.err, EndsWith(": is a directory, expected a file\n"));
-    write_file(folder / "points.txt", "x_m,y_m,z_m\n# nothing\n\n");
-    const Result nothing = query(folder / "points.txt");
+    write_file(work / "points.txt", "x_m,y_m,z_m\n# nothing\n\n");
+    const Result nothing = query(work / "points.txt");
     CHECK(nothing.code == 2);
     CHECK_THAT(nothing.err, EndsWith(": holds no point, expected lines of three numbers, x_m y_m z_m\n"));
-    write_file(folder / "points.txt", "x_m,y_m,z_m\n0,0,3 # one\n");
-    CHECK(query(folder / "points.txt").code == 0);
+    write_file(work / "points.txt", "x_m,y_m,z_m\n0,0,3 # one\n");
+    CHECK(query(work / "points.txt").code == 0);
 }
 
-TEST_CASE("The ranges of a grid are those where one may fly") {
-    const ScratchFolder folder;
+TEST_CASE("The ranges of a grid are those where a rotor may fly") {
+    const Workspace work;
     const std::string head = "x_m,z_m,factor,flyable\n";
-    write_file(folder / "grid.csv", head + "0,0,2,0\n1,0,1.5,1\n0,1,1.1,1\n1,1,0.5,0\n");
-    const Result text = run(folder, {"aeromap", "info", folder / "grid.csv"});
-    CHECK_THAT(text.out, Contains("\nflyable      2 of 4 nodes\n"));
-    CHECK_THAT(text.out, Contains("\nfactor       1.1 to 1.5 where flyable\n"));
-    const auto json = run(folder, {"aeromap", "info", folder / "grid.csv", "--json"}).json();
+    const Words info = words("aeromap info", work / "grid.csv");
+    write_file(work / "grid.csv", head + "0,0,2,0\n1,0,1.5,1\n0,1,1.1,1\n1,1,0.5,0\n");
+    CHECK_THAT(work.run(info).out,
+               Contains("\nflyable      2 of 4 nodes\n") && Contains("\nfactor       1.1 to 1.5 where flyable\n"));
+    const auto json = work.run(info, "--json").json();
     CHECK(json.at("nodes") == 4);
     CHECK(json.at("flyable_nodes") == 2);
     REQUIRE(json.at("fields").size() == 1);
     CHECK(json.at("fields")[0].at("greatest") == 1.5);
-    write_file(folder / "grid.csv", head + "0,0,2,0\n1,0,1.5,0\n0,1,1.1,0\n1,1,0.5,0\n");
-    CHECK_THAT(run(folder, {"aeromap", "info", folder / "grid.csv"}).out, Contains("factor       flyable nowhere"));
-    CHECK(run(folder, {"aeromap", "info", folder / "grid.csv", "--json"}).json().at("fields")[0].at("least").is_null());
-    write_file(folder / "grid.csv", "x_m,z_m,factor\n0,0,2\n1,0,1.5\n0,1,1.1\n1,1,0.5\n");
-    CHECK_THAT(run(folder, {"aeromap", "info", folder / "grid.csv"}).out, Contains("\nfactor       0.5 to 2\n"));
+    write_file(work / "grid.csv", head + "0,0,2,0\n1,0,1.5,0\n0,1,1.1,0\n1,1,0.5,0\n");
+    CHECK_THAT(work.run(info).out, Contains("factor       flyable nowhere"));
+    CHECK(work.run(info, "--json").json().at("fields")[0].at("least").is_null());
+    write_file(work / "grid.csv", "x_m,z_m,factor\n0,0,2\n1,0,1.5\n0,1,1.1\n1,1,0.5\n");
+    CHECK_THAT(work.run(info).out, Contains("\nfactor       0.5 to 2\n"));
 }
 
 TEST_CASE("A grid built into a log says what it wrote and no hundred percentages") {
-    const ScratchFolder folder;
-    const Result result =
-        run(folder, {"aeromap", "build", problem_file("open_air"), "-o", folder / "grid.csv", "--step", "0.5"});
+    const Workspace work;
+    const Result result = work.run("aeromap build", problem_file("open_air"), "-o grid.csv --step 0.5");
     REQUIRE(result.code == 0);
-    CHECK_THAT(result.err, !Contains("%"));
-    CHECK_THAT(result.err, Contains("nodes"));
+    CHECK_THAT(result.err, !Contains("%") && Contains("nodes"));
 }
 
 TEST_CASE("A grid built onto a link is written where that leads") {
-    const ScratchFolder folder;
-    std::filesystem::create_directory(folder / "store");
-    write_file(folder / "store/old.csv", "old");
-    std::filesystem::create_symlink("store/old.csv", folder / "grid.csv");
-    REQUIRE(
-        run(folder, {"aeromap", "build", problem_file("open_air"), "-o", folder / "grid.csv", "--step", "0.5"}).code ==
-        0);
-    CHECK(std::filesystem::is_symlink(folder / "grid.csv"));
-    CHECK_THAT(read_file(folder / "store/old.csv"), Contains("x_m,"));
+    const Workspace work;
+    std::filesystem::create_directory(work / "store");
+    write_file(work / "store/old.csv", "old");
+    std::filesystem::create_symlink("store/old.csv", work / "grid.csv");
+    REQUIRE(work.run("aeromap build", problem_file("open_air"), "-o", work / "grid.csv", "--step 0.5").code == 0);
+    CHECK(std::filesystem::is_symlink(work / "grid.csv"));
+    CHECK_THAT(read_file(work / "store/old.csv"), Contains("x_m,"));
 }
 
 TEST_CASE("Every line of what is wrong says which program found it") {
-    const ScratchFolder folder;
-    write_file(folder / "grid.csv", "x_m,z_m,factor\n0,0,a\n1,0,b\n");
-    const Result result = run(folder, {"aeromap", "info", folder / "grid.csv"});
+    const Workspace work;
+    write_file(work.in_run("grid.csv"), "x_m,z_m,factor\n0,0,a\n1,0,b\n");
+    const Result result = work.run("aeromap info grid.csv");
     CHECK(result.code == 2);
-    CHECK(result.err == "downwash: " + (folder / "grid.csv") + ":2:5: factor is 'a': expected a number\n" +
-                            "downwash: " + (folder / "grid.csv") + ":3:5: factor is 'b': expected a number\n");
+    CHECK(result.err ==
+          "downwash: grid.csv:2:5: factor is 'a': expected a number\n"
+          "downwash: grid.csv:3:5: factor is 'b': expected a number\n");
 }

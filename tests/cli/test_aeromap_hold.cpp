@@ -3,12 +3,13 @@
 #include "program.hpp"
 
 using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
+using Catch::Contains;
 
 TEST_CASE("A hold query tells flyable from stable points and says what competes there") {
-    const ScratchFolder folder;
+    const Workspace work;
     // Far below the deck, close under it, inside the walkway, hanging arm in the ground.
-    const auto answer = run(folder, {"aeromap", "hold", problem_file("bridge_inspection"), "--arm-deg", "90", "--at",
-                                     "-8", "5", "--at", "-8", "9.75", "--at", "-3", "7.8", "--at", "-8", "1", "--json"})
+    const auto answer = work.run("aeromap hold", problem_file("bridge_inspection"),
+                                 "--arm-deg 90 --at -8 5 --at -8 9.75 --at -3 7.8 --at -8 1 --json")
                             .json();
     CHECK(answer.at("arm_deg") == 90);
     const auto& points = answer.at("points");
@@ -41,55 +42,44 @@ TEST_CASE("A hold query tells flyable from stable points and says what competes 
 }
 
 TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without an answer") {
-    const ScratchFolder folder;
+    const Workspace work;
     const auto verdicts = [&](const std::string& aero) {
-        std::string text = read_file(problem_file("bridge_inspection"));
-        const std::string robot = "robots/ars_lrm.yaml";
-        const auto at = text.find(robot);
-        REQUIRE(at != std::string::npos);
-        const std::string problems = problem_file("bridge_inspection");
-        text.replace(at, robot.size(), problems.substr(0, problems.rfind('/') + 1) + robot);
+        const std::string text = problem_text("bridge_inspection");
         REQUIRE(text.find("\naero:") == std::string::npos);
-        write_file(folder / "capped.yaml", text + aero);
-        std::vector<std::string> found;
-        const auto answer =
-            run(folder, {"aeromap", "hold", folder / "capped.yaml", "--arm-deg", "90", "--at", "1", "9.7", "--at", "1",
-                         "9.86", "--at", "1", "9.87", "--at", "1", "9.88", "--json"})
-                .json();
-        for (const auto& point : answer.at("points")) {
+        write_file(work / "capped.yaml", text + aero);
+        Words found;
+        const auto answer = work.run("aeromap hold", work / "capped.yaml",
+                                     "--arm-deg 90 --at 1 9.7 --at 1 9.86 --at 1 9.87 --at 1 9.88 --json");
+        for (const auto& point : answer.json().at("points")) {
             CHECK(point.at("stability").is_object());
             found.push_back(point.at("verdict"));
         }
         return found;
     };
-    using Verdicts = std::vector<std::string>;
-    CHECK(verdicts("") == Verdicts{"unstable", "unstable", "unstable", "unstable"});
-    CHECK(verdicts("aero: {max_factor: 1.3}\n") == Verdicts{"unstable", "unknown", "unknown", "unknown"});
-    write_file(folder / "k.csv", "z_over_r,factor\n0.9,1.2\n3,1\n");
-    const Verdicts measured = verdicts("aero: {ceiling: {model: table, file: k.csv}}\n");
+    CHECK(verdicts("") == words("unstable unstable unstable unstable"));
+    CHECK(verdicts("aero: {max_factor: 1.3}\n") == words("unstable unknown unknown unknown"));
+    write_file(work / "k.csv", "z_over_r,factor\n0.9,1.2\n3,1\n");
+    const Words measured = verdicts("aero: {ceiling: {model: table, file: k.csv}}\n");
     CHECK(measured[2] == "unknown");
     CHECK(measured[3] == "unknown");
 }
 
 TEST_CASE("A hold query prints a table for people") {
-    const ScratchFolder folder;
-    const auto answer = run(folder, {"aeromap", "hold", problem_file("bridge_inspection"), "--arm-deg", "90", "--at",
-                                     "-8", "5", "--at", "-8", "9.74955"});
+    const Workspace work;
+    const auto answer =
+        work.run("aeromap hold", problem_file("bridge_inspection"), "--arm-deg 90 --at -8 5 --at -8 9.74955");
     CHECK(answer.code == 0);
-    CHECK(answer.out.find(" 9.74955 ") != std::string::npos);
-    CHECK(answer.out.find("verdict") != std::string::npos);
-    CHECK(answer.out.find("unstable") != std::string::npos);
+    CHECK_THAT(answer.out, Contains(" 9.74955 ") && Contains("verdict") && Contains("unstable"));
 }
 
-TEST_CASE("A hold query without an arm angle, a point or finite numbers is refused") {
-    const ScratchFolder folder;
-    const std::string problem = problem_file("bridge_inspection");
-    CHECK(run(folder, {"aeromap", "hold", problem, "--at", "0", "5"}).code == 2);
-    CHECK(run(folder, {"aeromap", "hold", problem, "--arm-deg", "90"}).code == 2);
-    const auto far = run(folder, {"aeromap", "hold", problem, "--arm-deg", "90", "--at", "nan", "5"});
-    CHECK(far.code == 2);
-    CHECK(far.err.find("finite coordinates") != std::string::npos);
-    const auto turned = run(folder, {"aeromap", "hold", problem, "--arm-deg", "1e9", "--at", "0", "5"});
-    CHECK(turned.code == 2);
-    CHECK(turned.err.find("at most 3600 degrees") != std::string::npos);
+TEST_CASE("A hold query without an arm angle, a point or finite numbers is rejected") {
+    const Workspace work;
+    for (const auto& [options, reason] : {std::pair{"--at 0 5", "--arm-deg is required"},
+                                          {"--arm-deg 90", "--at is required"},
+                                          {"--arm-deg 90 --at nan 5", "finite coordinates"},
+                                          {"--arm-deg 90 --at 1 2 3", "3"},
+                                          {"--arm-deg 1e9 --at 0 5", "at most 3600 degrees"}}) {
+        CAPTURE(options);
+        check_rejected(work.run("aeromap hold", problem_file("bridge_inspection"), options), reason);
+    }
 }

@@ -5,147 +5,125 @@
 #include "program.hpp"
 
 using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
+using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 
-/// A folder with a run in it.
-class Run {
+/// A workspace with a run in its folder `flown`.
+class SolvedWorkspace : public Workspace {
  public:
-    Run() {
-        REQUIRE(run(folder, {"solve", problem_file("open_air"), "--max-iterations", "200", "--out", directory}).code ==
-                0);
-    }
-
-    /// A file of the run.
-    [[nodiscard]] std::filesystem::path file(const std::string& name) const { return work() / directory / name; }
-    /// Where commands run.
-    [[nodiscard]] std::filesystem::path work() const { return folder.path() / "run"; }
-
-    ScratchFolder folder;
-    std::string directory = "flown";
+    SolvedWorkspace() { REQUIRE(run("solve", problem_file("open_air"), "--max-iterations 200 --out flown").code == 0); }
 };
 
 }  // namespace
 
 TEST_CASE("Pictures of a run go into its folder or another") {
-    const Run solved;
-    const Result here = run(solved.folder, {"report", solved.directory, "--svg", "--pdf"});
+    const SolvedWorkspace work;
+    const Result here = work.run("report flown --svg --pdf");
     CHECK(here.code == 0);
     CHECK(here.out == "flown/flight.svg\nflown/plots.svg\nflown/flight.pdf\nflown/plots.pdf\n");
-    CHECK(read_file(solved.file("plots.pdf")).starts_with("%PDF"));
-    CHECK(run(solved.folder, {"report", solved.directory, "--png", "-o", "figures"}).out ==
-          "figures/flight.png\nfigures/plots.png\n");
+    CHECK_THAT(work.text("flown/plots.pdf"), StartsWith("%PDF"));
+    CHECK(work.run("report flown --png -o figures").out == "figures/flight.png\nfigures/plots.png\n");
 }
 
 TEST_CASE("A page is made again from the files of a run, to the byte") {
-    const Run solved;
-    const auto page = solved.file("report.html");
-    const Result again = run(solved.folder, {"report", solved.directory, "-o", "page.html"});
-    if (!std::filesystem::exists(page)) {
-        CHECK(again.code == 2);  // a build without its viewer
-        CHECK_THAT(again.err, Catch::Contains("this build brings no pages"));
+    const SolvedWorkspace work;
+    const Result again = work.run("report flown -o page.html");
+    if (!has_pages) {
+        check_rejected(again, "this build brings no pages");
         return;
     }
     CHECK(again.code == 0);
     CHECK(again.out == "page.html\n");
-    CHECK(read_file(solved.work() / "page.html") == read_file(page));
+    CHECK(work.text("page.html") == work.text("flown/report.html"));
 }
 
 TEST_CASE("A run is exported in every format, under the usual name") {
-    const Run solved;
-    for (const auto& [format, name] :
-         {std::pair{"csv", "setpoints.csv"}, std::pair{"ros", "trajectory.json"}, std::pair{"qgc", "mission.plan"},
-          std::pair{"vtp", "flight.vtp"}, std::pair{"vtp-scene", "scene.vtp"}, std::pair{"glb", "run.glb"}}) {
+    const SolvedWorkspace work;
+    for (const auto& [format, name] : {std::pair{"csv", "setpoints.csv"},
+                                       {"ros", "trajectory.json"},
+                                       {"qgc --origin 47 -8.5 400 --bearing 90", "mission.plan"},
+                                       {"vtp", "flight.vtp"},
+                                       {"vtp-scene", "scene.vtp"},
+                                       {"glb", "run.glb"}}) {
         CAPTURE(format);
-        std::vector<std::string> arguments{"export", solved.directory, "--format", format};
-        if (std::string_view(format) == "qgc") {
-            arguments.insert(arguments.end(), {"--origin", "47", "-8.5", "400", "--bearing", "90"});
-        }
-        const Result result = run(solved.folder, arguments);
+        const Result result = work.run("export flown --format", format);
         CHECK(result.err.empty());
         CHECK(result.code == 0);
         CHECK(result.out == std::string("flown/") + name + "\n");
-        CHECK(std::filesystem::file_size(solved.file(name)) > 200);
+        CHECK(work.text(std::string("flown/") + name).size() > 200);
     }
 }
 
 TEST_CASE("Results stand without their page") {
-    const ScratchFolder folder;
-    std::filesystem::create_directories(folder.path() / "run" / "x" / "report.html");
-    const Result result = run(folder, {"solve", problem_file("open_air"), "--max-iterations", "100", "--out", "x"});
+    const Workspace work;
+    std::filesystem::create_directories(work.in_run("x/report.html"));
+    const Result result = work.run("solve", problem_file("open_air"), "--max-iterations 100 --out x");
     CHECK(result.code == 0);
-    CHECK(result.out.starts_with("Solved. "));
+    CHECK_THAT(result.out, StartsWith("Solved. "));
 }
 
 TEST_CASE("A plan whose flight failed is not handed on unasked") {
-    const ScratchFolder folder;
-    REQUIRE(run(folder, {"solve", problem_file("bridge_inspection"), "--variant", "mp-arm", "--max-iterations", "1000",
-                         "--out", "x"})
-                .code == 3);
-    const Result refused = run(folder, {"export", "x", "--format", "csv"});
-    CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("its flight ended 'collision'; --anyway"));
-    CHECK(run(folder, {"export", "x", "--format", "csv", "--anyway"}).code == 0);
-    CHECK(run(folder, {"export", "x", "--format", "glb"}).code == 0);
+    const Workspace work;
+    REQUIRE(
+        work.run("solve", problem_file("bridge_inspection"), "--variant mp-arm --max-iterations 1000 --out x").code ==
+        3);
+    check_rejected(work.run("export x --format csv"), "its flight ended 'collision'; --anyway");
+    CHECK(work.run("export x --format csv --anyway").code == 0);
+    CHECK(work.run("export x --format glb").code == 0);
 }
 
 TEST_CASE("A first problem is written, sound and solved, and nothing is replaced") {
-    const ScratchFolder folder;
-    CHECK(run(folder, {"init"}).out == "my_problem.yaml\nars_lrm.yaml\n");
-    CHECK(run(folder, {"check", "my_problem.yaml"}).out == "my_problem.yaml: ok\n");
-    CHECK(run(folder, {"solve", "my_problem.yaml", "--max-iterations", "500"}).code == 0);
-    const Result again = run(folder, {"init"});
-    CHECK(again.code == 2);
-    CHECK_THAT(again.err, Catch::Contains("my_problem.yaml is there already"));
-    CHECK(run(folder, {"init", "other-1.yaml"}).code == 0);
-    const std::string other = read_file(folder.path() / "run/other-1.yaml");
-    CHECK_THAT(other, Catch::Contains("\nname: other-1                           # becomes") &&
-                          Catch::Contains("#   downwash check other-1.yaml          checks the file"));
-    CHECK(run(folder, {"init", "an odd name.yaml"}).code == 0);
-    CHECK(run(folder, {"check", "an odd name.yaml", "other-1.yaml"}).code == 0);
+    const Workspace work;
+    CHECK(work.run("init").out == "my_problem.yaml\nars_lrm.yaml\n");
+    CHECK(work.run("check my_problem.yaml").out == "my_problem.yaml: ok\n");
+    CHECK(work.run("solve my_problem.yaml --max-iterations 500").code == 0);
+    check_rejected(work.run("init"), "my_problem.yaml exists already");
+    CHECK(work.run("init other-1.yaml").code == 0);
+    CHECK_THAT(work.text("other-1.yaml"), Contains("\nname: other-1                           # becomes") &&
+                                              Contains("#   downwash check other-1.yaml          checks the file"));
+    const std::string odd = "an odd name.yaml";
+    CHECK(work.run("init", odd).code == 0);
+    CHECK(work.run("check other-1.yaml", odd).code == 0);
 }
 
 TEST_CASE("Keys are explained from the table that reads them") {
-    const ScratchFolder folder;
-    const Result margin = run(folder, {"explain", "safety_margin_m"});
+    const Workspace work;
+    const Result margin = work.run("explain safety_margin_m");
     CHECK(margin.code == 0);
-    CHECK(margin.out.starts_with("planner.safety_margin_m\n"));
-    CHECK_THAT(margin.out, Catch::Contains("expected: a number in m"));
-    CHECK_THAT(run(folder, {"explain", "environment.obstacles[3].name"}).out,
-               Catch::Contains("environment.obstacles[].name"));
-    CHECK_THAT(run(folder, {"explain", "goal"}).out, Catch::Contains("hold_s"));
-    CHECK(run(folder, {"explain", "goal.hold"}).out == run(folder, {"explain", "goal.hold_s"}).out);
-    const Result unknown = run(folder, {"explain", "safety_margn_m"});
-    CHECK(unknown.code == 2);
-    CHECK_THAT(unknown.err, Catch::Contains("did you mean 'safety_margin_m'?"));
+    CHECK_THAT(margin.out, StartsWith("planner.safety_margin_m\n") && Contains("expected: a number in m"));
+    CHECK_THAT(work.run("explain environment.obstacles[3].name").out, Contains("environment.obstacles[].name"));
+    CHECK_THAT(work.run("explain goal").out, Contains("hold_s"));
+    CHECK(work.run("explain goal.hold").out == work.run("explain goal.hold_s").out);
+    check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
 }
 
 TEST_CASE("Schemas, manual pages and completions come from the same tables") {
-    const ScratchFolder folder;
+    const Workspace work;
     for (const char* kind : {"problem", "robot", "campaign"}) {
-        const nlohmann::json schema = run(folder, {"check", "--schema", kind}).json();
+        const nlohmann::json schema = work.run("check --schema", kind).json();
         CHECK(schema.at("type") == "object");
         CHECK(schema.at("properties").contains("schema"));
     }
-    const nlohmann::json problem = run(folder, {"check", "--schema", "problem"}).json();
+    const nlohmann::json problem = work.run("check --schema problem").json();
     const nlohmann::json& seed = problem.at("properties").at("planner").at("properties").at("seed");
     CHECK(seed.at("type") == "integer");
     CHECK(seed.at("minimum") == 0);
     CHECK(seed.at("default") == 1);
     const std::string shown = seed.at("description");  // all that an editor shows of a key
-    CHECK(shown == "of every random number of the search\na whole number from 0 to 4294967295; default 1");
-    CHECK_THAT(run(folder, {"manual", "aeromap", "plot"}).out,
-               Catch::StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Catch::Contains(".SH OPTIONS"));
-    CHECK(run(folder, {"manual", "--all", "man"}).code == 0);
-    const auto pages = files_in(folder.path() / "run/man");
-    CHECK(pages.at("downwash-aeromap-plot.1") == run(folder, {"manual", "aeromap", "plot"}).out);
-    CHECK(pages.at("downwash.1") == run(folder, {"manual"}).out);
-    CHECK(run(folder, {"manual", "solve", "--all", "man"}).code == 2);
-    CHECK(run(folder, {"completion", "fish"}).code == 2);
+    CHECK_THAT(shown, Catch::EndsWith("\na whole number from 0 to 4294967295; default 1"));
+    CHECK_THAT(work.run("manual aeromap plot").out,
+               StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Contains(".SH OPTIONS"));
+    CHECK(work.run("manual --all man").code == 0);
+    CHECK(work.text("man/downwash-aeromap-plot.1") == work.run("manual aeromap plot").out);
+    CHECK(work.text("man/downwash.1") == work.run("manual").out);
+    CHECK(work.run("manual solve --all man").code == 2);
+    CHECK(work.run("completion fish").code == 2);
 }
 
 TEST_CASE("Completions offer commands, options, what options take, and files, in bash and zsh") {
-    const ScratchFolder folder;
+    const Workspace work;
     struct Asked {
         const char* words;  ///< of the command line, quoted for the shell; the last one is completed
         const char* offered;
@@ -178,54 +156,40 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
     };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
     questions += "for PREFIX; do :; done; _downwash; echo \"${COMPREPLY[*]}\"; }\n";  // zsh finds files by PREFIX
-    questions += "cd '" + (folder.path() / "run").string() + "' && touch one.yaml\n";
+    questions += "cd '" + work.in_run().string() + "' && touch one.yaml\n";
     std::string expected;
     for (const Asked& asked : all) {
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
     }
-    const auto path = [&folder](const char* name) { return (folder.path() / name).string(); };
     // What zsh sets up before it calls a completion that was written for bash.
     const std::string zsh_head = "autoload -U compinit && compinit -u -D\n";
     const std::string zsh_middle = "emulate sh; setopt kshglob noshglob braceexpand\n";
     for (const std::string shell : {"bash", "zsh"}) {
         CAPTURE(shell);
         const bool is_zsh = shell == "zsh";
-        std::string script = is_zsh ? zsh_head : "";
-        script += run(folder, {"completion", shell}).out;
-        script += is_zsh ? zsh_middle : "";
-        script += questions;
-        write_file(path("script"), script);
-        REQUIRE(std::system((shell + " '" + path("script") + "' >'" + path("offered") + "'").c_str()) == 0);
-        CHECK(read_file(path("offered")) == expected);
+        write_file(work / "script", (is_zsh ? zsh_head : "") + work.run("completion", shell).out +
+                                        (is_zsh ? zsh_middle : "") + questions);
+        const std::string command = shell + " '" + (work / "script").string() + "' >'";
+        REQUIRE(std::system((command + (work / "offered").string() + "'").c_str()) == 0);
+        CHECK(read_file(work / "offered") == expected);
     }
 }
 
-TEST_CASE("What cannot be reported or exported is refused with a remedy") {
-    const Run solved;
-    struct Refused {
-        std::vector<std::string> arguments;
-        const char* message;
-    };
-    const Refused all[] = {
-        {{"report", "elsewhere", "--svg"}, "elsewhere: there is no such folder"},
-        {{"report", "flown", "--svg", "--width", "10"}, "--width"},
-        {{"report", "flown", "--width", "800"}, "--width: of which picture?"},
-        {{"export", "flown", "--format", "roz"}, "did you mean 'ros'?"},
-        {{"export", "flown", "--format", "qgc"}, "give --origin LATITUDE LONGITUDE ALTITUDE"},
-        {{"export", "flown", "--format", "csv", "--rate", "0"}, "the rate is 0 Hz"},
-        {{"export", "flown", "--format", "glb", "--rate", "5"}, "--rate: the format glb has no set-points"},
-        {{"export", "flown"}, "--format"},
-    };
-    for (const Refused& refused : all) {
-        CAPTURE(refused.message);
-        const Result result = run(solved.folder, refused.arguments);
-        CHECK(result.code == 2);
-        CHECK_THAT(result.err, Catch::Contains(refused.message));
-        CHECK(result.out.empty());
+TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
+    const SolvedWorkspace work;
+    for (const auto& [arguments, reason] :
+         {std::pair{"report elsewhere --svg", "elsewhere: there is no such folder"},
+          {"report flown --svg --width 10", "--width"},
+          {"report flown --width 800", "--width: of which picture?"},
+          {"export flown --format roz", "did you mean 'ros'?"},
+          {"export flown --format qgc", "give --origin LATITUDE LONGITUDE ALTITUDE"},
+          {"export flown --format csv --rate 0", "the rate is 0 Hz"},
+          {"export flown --format glb --rate 5", "--rate: the format glb has no set-points"},
+          {"export flown", "--format"}}) {
+        CAPTURE(arguments);
+        check_rejected(work.run(arguments), reason);
     }
-    write_file(solved.file("trajectory.csv"), "t_s,x_m\n1,2\n");
-    const Result broken = run(solved.folder, {"export", "flown", "--format", "vtp"});
-    CHECK(broken.code == 2);
-    CHECK_THAT(broken.err, Catch::Contains("trajectory.csv:1: there is no column 'ref_x_m'"));
+    write_file(work.in_run("flown/trajectory.csv"), "t_s,x_m\n1,2\n");
+    check_rejected(work.run("export flown --format vtp"), "trajectory.csv:1: there is no column 'ref_x_m'");
 }

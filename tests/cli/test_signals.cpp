@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <csignal>
 
 #include "program.hpp"
@@ -8,21 +7,21 @@ using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
 
 namespace {
 
-const std::vector<std::string> long_search{"solve", problem_file("open_air"), "--time-limit", "600", "--out", "x"};
+const Words long_search = words("solve", problem_file("open_air"), "--time-limit 600 --out x");
 
 }  // namespace
 
 TEST_CASE("A signal in the middle of a search writes the best plan so far") {
     const auto [signal, code] = GENERATE(std::pair(SIGINT, 130), std::pair(SIGTERM, 143));
-    const ScratchFolder folder;
-    const Program program(folder, long_search);
+    const Workspace work;
+    const Program program(work, long_search);
     REQUIRE(program.has_said("best cost"));
     program.send(signal);
     const Result result = program.wait();
     CHECK(result.code == code);
-    CHECK(result.out.starts_with("Interrupted. Solved. "));
+    CHECK_THAT(result.out, Catch::StartsWith("Interrupted. Solved. "));
 
-    const auto files = files_in(folder.path() / "run/x");
+    const auto files = work.files("x");
     REQUIRE(files.size() == files_of_a_run);
     const auto solution = nlohmann::json::parse(files.at("solution.json"));
     CHECK(solution.at("interrupted") == true);
@@ -32,26 +31,25 @@ TEST_CASE("A signal in the middle of a search writes the best plan so far") {
 }
 
 TEST_CASE("A signal at the very beginning leaves valid files too") {
-    const ScratchFolder folder;
-    const Program program(folder, long_search);
+    const Workspace work;
+    const Program program(work, long_search);
     REQUIRE(program.has_said("planning"));
     program.send(SIGINT);
-    const Result result = program.wait();
-    CHECK(result.code == 130);
-    const auto files = files_in(folder.path() / "run/x");
+    CHECK(program.wait().code == 130);
+    const auto files = work.files("x");
     REQUIRE(files.size() == files_of_a_run);
     CHECK(nlohmann::json::parse(files.at("solution.json")).at("interrupted") == true);
 }
 
 TEST_CASE("Two signals end the program at once and leave no half file") {
-    const ScratchFolder folder;
-    const Program program(folder, long_search);
+    const Workspace work;
+    const Program program(work, long_search);
     REQUIRE(program.has_said("planning"));
     program.send(SIGINT);
     program.send(SIGTERM);
     const Result result = program.wait();
     CHECK((result.code == 130 || result.code == 143));
-    for (const auto& [name, text] : files_in(folder.path() / "run")) {
+    for (const auto& [name, text] : work.files()) {
         CHECK_FALSE(name.ends_with("solution.json"));
     }
 }

@@ -208,7 +208,7 @@ TEST_CASE("a stop asked for before the search ends it at once") {
         const Solution solution = solve(problem, options);
         CHECK(solution.interrupted);
         CHECK(solution.status != Status::solved);
-        CHECK(solution.planning.wall_s < 1);
+        CHECK(solution.planning.iterations < 100);
     }
 }
 
@@ -223,11 +223,10 @@ TEST_CASE("a stop asked for in mid-search keeps the best plan so far") {
     };
     Problem problem = with(Variant::mp_arm_ada);
     problem.planner.max_iterations.reset();
-    problem.planner.time_limit_s = 60;
+    problem.planner.time_limit_s = 3600;  // longer than a test may take
     const Solution solution = solve(problem, options);
     CHECK(solution.interrupted);
     CHECK(solution.status == Status::solved);
-    CHECK(solution.planning.wall_s < 30);
 }
 
 TEST_CASE("flights of absurd length are refused, not flown") {

@@ -48,6 +48,15 @@ bool holds(std::string_view text, std::string_view part) {
     return text.find(part) != std::string_view::npos;
 }
 
+double area_of(const Ring& ring) {
+    double twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        twice += a.x_m * b.z_m - a.z_m * b.x_m;
+    }
+    return twice / 2;
+}
+
 const std::array<std::string, 13>& hostile_texts() {
     static const std::array<std::string, 13> texts{
         "`touch downwash-was-here`",

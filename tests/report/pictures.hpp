@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "../support/scratch_folder.hpp"
+#include "downwash/report/picture.hpp"
 
 namespace downwash::test {
 
@@ -16,6 +17,9 @@ namespace downwash::test {
 [[nodiscard]] std::array<unsigned, 2> png_size(const std::string& picture);
 
 [[nodiscard]] bool holds(std::string_view text, std::string_view part);
+
+/// The area of a ring, positive where it runs counter-clockwise.
+[[nodiscard]] double area_of(const Ring& ring);
 
 /// Texts that would run a command, end a string, or break a line, if anything let them. Each would leave the file
 /// downwash-was-here in the current folder.

@@ -6,22 +6,13 @@
 
 #include "../support/random.hpp"
 #include "downwash/report/field_figure.hpp"
-#include "downwash/report/joined_rings.hpp"
+#include "downwash/report/planar_geometry.hpp"
+#include "pictures.hpp"
 
 using namespace downwash;
+using downwash::test::area_of;
 
 namespace {
-
-using Ring = std::vector<PlanePoint>;
-
-double area_of(const Ring& ring) {
-    double twice = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PlanePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        twice += a.x_m * b.z_m - a.z_m * b.x_m;
-    }
-    return twice / 2;
-}
 
 /// The square of column i and row k among squares of a side, turned by an angle about the origin.
 Ring square(int i, int k, double side_m, double angle_rad) {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "downwash/report/obstacle_outline.hpp"
+#include "pictures.hpp"
 
 using namespace downwash;
 
@@ -18,20 +19,10 @@ ObstacleOutline outline_of(const Shape& shape, const Vector3& center_m = {0, 0, 
     return obstacle_outlines(scene, plane, lateral_m).at(0);
 }
 
-/// Positive where the ring runs counter-clockwise.
-double area(const std::vector<PlanePoint>& ring) {
-    double twice = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PlanePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        twice += a.x_m * b.z_m - a.z_m * b.x_m;
-    }
-    return twice / 2;
-}
-
 double area(const ObstacleOutline& outline) {
     double sum = 0;
     for (const auto& ring : outline.rings) {
-        sum += area(ring);
+        sum += test::area_of(ring);
     }
     return sum;
 }

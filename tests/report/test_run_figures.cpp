@@ -9,16 +9,13 @@
 #include "pictures.hpp"
 
 using namespace downwash;
+using test::holds;
 using test::record;
 
 namespace {
 
 FieldFigure snapshots() {
     return snapshot_figure(record(), *make_flight_model(record().problem), nullptr);
-}
-
-bool holds(const std::string& text, const char* part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

@@ -55,6 +55,34 @@ TEST_CASE("a run is read back as it was written") {
     CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
 }
 
+TEST_CASE("the record of a run in memory is the one that is read from its files") {
+    const SolvedRun run;
+    const RunRecord read = read_run(run.folder());
+    const RunRecord record = run_record(run.problem, run.solution, *run.solution.execution);
+    CHECK(record.problem.name == read.problem.name);
+    CHECK(record.status == read.status);
+    CHECK(record.outcome == read.outcome);
+    CHECK(record.flight.names == read.flight.names);
+    CHECK(record.flight.columns == read.flight.columns);
+    CHECK(record.flight.lines == read.flight.lines);
+    CHECK(record.tree.names == read.tree.names);
+    REQUIRE(record.tree.rows() == read.tree.rows());
+    for (std::size_t row = 0; row < record.tree.rows(); ++row) {
+        for (std::size_t column = 0; column < record.tree.columns.size(); ++column) {
+            const double value = record.tree.columns[column][row];  // NaN, the parent of a root, equals nothing
+            REQUIRE((value == read.tree.columns[column][row] ||
+                     (std::isnan(value) && std::isnan(read.tree.columns[column][row]))));
+        }
+    }
+    REQUIRE(record.plan);
+    REQUIRE(read.plan);
+    REQUIRE(record.plan->reference.size() == read.plan->reference.size());
+    for (std::size_t i = 0; i < record.plan->reference.size(); ++i) {
+        CHECK(record.plan->reference[i].tick == read.plan->reference[i].tick);
+        CHECK(record.plan->reference[i].point == read.plan->reference[i].point);
+    }
+}
+
 TEST_CASE("files that no run left behind are refused with their place") {
     const SolvedRun run;
     SECTION("no folder") {

@@ -173,7 +173,7 @@ class Moving(page_test.BrowserTest):
         plain = {k: v.replace("\u202f", "").replace("\u00a0", " ") for k, v in figures.items()}
         self.assertEqual(plain["Cost, energy"], f"{execution['cost']:.0f} J")
         self.assertEqual(plain["Duration"], f"{execution['duration_s']:.2f} s")
-        self.assertEqual(plain["Least clearance"], f"{execution['min_clearance_m']:.3f} m")
+        self.assertEqual(plain["Minimum clearance"], f"{execution['min_clearance_m']:.3f} m")
         self.assertEqual(plain["Goal error"], f"{execution['goal_error_m']:.3f} m")
         self.assertEqual(plain["Iterations"], str(solution["planning"]["iterations"]))
 
@@ -184,7 +184,7 @@ class Verdicts(page_test.BrowserTest):
 
     def test_solved_and_flown(self):
         self.open("solved")
-        self.assertIn("Solved, and it flies", self.verdict())
+        self.assertIn("Solved, and the plan flies", self.verdict())
 
     def test_a_failed_flight_says_how_where_and_when(self):
         columns = self.open("collision")

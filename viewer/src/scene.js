@@ -228,7 +228,7 @@ function make_legend(model, forces) {
         cut ? entry("section", "obstacle, cut") : null,
         beside ? entry("projection", "obstacle beside the plane") : null, entry("goal", "goal region"),
         model.is_cut_short || (!model.data && model.solution.planning?.obstruction) ?
-            entry("trouble", model.data ? "where the flight breaks off" : "nearest way to the goal, refused here") :
+            entry("trouble", model.data ? "where the flight breaks off" : "nearest path to the goal, rejected here") :
             null,
         forces ? h("span", {class: "note"}, forces_note(model), ` ${quantity(10, "d", "N")} are `,
                    `${quantity(10 * forces.meters_per_n, ".2f", "m")} long.`) :

@@ -1,4 +1,4 @@
-// How the search went: cost over time, refusals, counts.
+// The search: cost over time, rejections, counts.
 
 import {scaleLinear, scaleLog} from "d3-scale";
 
@@ -97,12 +97,12 @@ function make_costs(model) {
     return card;
 }
 
-function make_refusals({solution}) {
+function make_rejections({solution}) {
     const entries = Object.entries(solution.planning.rejected ?? {}).sort((a, b) => b[1] - a[1]);
     const met = entries.filter(([, count]) => count > 0), never = entries.filter(([, count]) => count === 0);
     const most = met[0]?.[1] ?? 1;
     return h(
-        "div", {class: "card"}, h("h3", null, "Refusals by cause"),
+        "div", {class: "card"}, h("h3", null, "Rejections by cause"),
         met.length > 0 ?
             h("table", {class: "bars"},
               h("tbody", null,
@@ -112,7 +112,7 @@ function make_refusals({solution}) {
                           h("td", {class: "count"}, number(count, ",d")),
                           h("td", {class: "bar-cell", "aria-hidden": "true"},
                             h("span", {class: "bar", style: `width: ${((100 * count) / most).toFixed(2)}%`})))))) :
-            h("p", null, "Nothing was refused."),
+            h("p", null, "Nothing was rejected."),
         never.length > 0 ? h("p", {class: "muted"}, `Never: ${never.map(([cause]) => cause_text(cause)).join(", ")}.`) :
                            null);
 }
@@ -138,5 +138,5 @@ function make_counts({solution, tree}) {
 export function make_search(model) {
     return h(
         "section", {class: "search", "aria-labelledby": "search-title"}, h("h2", {id: "search-title"}, "Search"),
-        h("div", {class: "cards"}, make_costs(model), make_refusals(model), make_counts(model)));
+        h("div", {class: "cards"}, make_costs(model), make_rejections(model), make_counts(model)));
 }

@@ -1,4 +1,4 @@
-// The head of the page: what came of it, and the key figures.
+// The head of the page: the result and the key figures.
 
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
@@ -16,15 +16,15 @@ function failure_lines(model, how) {
         lines.push(
             `${how} breaks off after ${seconds(of("t_s"))}: the vehicle at ${point(of("x_m"), of("z_m"))}, ` +
             `the end effector at ${point(of("ee_x_m"), of("ee_z_m"))}, ` +
-            `with ${clearance}${meters(error_m)} off its reference.`);
+            `with ${clearance}a tracking error of ${meters(error_m)}.`);
     } else if (outcome === "goal_missed") {
         const error = `${meters(solution.execution.goal_error_m)}${tolerance_text(model)}`;
-        lines.push(`${how} ends with a goal error of ${error}, worst over the last second.`);
+        lines.push(`${how} ends with a goal error of ${error}, the maximum over the last second.`);
     } else {
         lines.push(`${how} ${outcome_text(outcome)}.`);
     }
     if (knowledge[solution.variant]) {
-        lines.push(`The search, ${solution.variant.toUpperCase()}, reckoned with ${knowledge[solution.variant]}.`);
+        lines.push(`The search, ${solution.variant.toUpperCase()}, considered ${knowledge[solution.variant]}.`);
     }
     return lines;
 }
@@ -38,29 +38,30 @@ function blocked_lines({solution, outcome}) {
         lines.push("The search was interrupted.");
     }
     if (status === "approximate") {
-        const flight = execution ? ` Flown, it ${outcome_text(outcome)}.` : "";
+        const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
         lines.push(
-            `What is shown is an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
+            `The page shows an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
     }
     if (Number.isFinite(nearest)) {
-        lines.push(`The vehicle was brought within ${meters(nearest)} of the goal region.`);
+        lines.push(`The vehicle came within ${meters(nearest)} of the goal region.`);
     }
     if (stop?.cause === "direct_flight") {
         lines.push(
-            "Every plan was discarded: flown with direct aerodynamics, the last one failed or came nearer than the margin, " +
+            "The planner discarded every plan: executed with direct aerodynamics, the last one failed or came nearer to an " +
+            "obstacle than the margin, " +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
     } else if (stop) {
         lines.push(
-            `Of the ways into the goal region the nearest was refused because it ${cause_text(stop.cause)}, ` +
+            `The planner rejected the nearest path into the goal region because it ${cause_text(stop.cause)}, ` +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ` +
-            `${place(stop.goal_distance_m)} before the goal region.`);
+            `${place(stop.goal_distance_m)} from the goal region.`);
     }
     if (lines.length === 0) {
         const [cause, count] = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0] ?? ["", 0];
         const times = `${number(count, ",d")} ${count === 1 ? "time" : "times"}`;
         lines.push(
-            count > 0 ? `What stopped most ways: one ${cause_text(cause)}, ${times}.` :
-                        "No way was refused: the search may have needed more time.");
+            count > 0 ? `The most frequent reason for rejection: the flight ${cause_text(cause)}, ${times}.` :
+                        "No flight was rejected: the search may need more time.");
     }
     return lines;
 }
@@ -75,15 +76,15 @@ export function verdict_of(model) {
     const stopped = solution.interrupted ? "Interrupted; the best so far. " : "";
     if (!execution) {
         const lines = stopped ? [stopped] : [];
-        return {kind: "none", mark: "?", title: "A plan was found, but it was not flown", lines};
+        return {kind: "none", mark: "?", title: "A plan was found, but it was not executed", lines};
     }
     const air = execution.aero === false ? "in free air" : "with aerodynamics evaluated directly";
     if (outcome === "ok") {
-        const line = `${stopped}Flown ${air}, the plan ${outcome_text(outcome)}.`;
-        return {kind: "good", mark: "✓", title: "Solved, and it flies", lines: [line]};
+        const line = `${stopped}Executed ${air}, the plan ${outcome_text(outcome)}.`;
+        return {kind: "good", mark: "✓", title: "Solved, and the plan flies", lines: [line]};
     }
     const title = `A plan was found, but its flight ${outcome_text(outcome)}`;
-    return {kind: "bad", mark: "✕", title, lines: failure_lines(model, `${stopped}Flown ${air}, it`)};
+    return {kind: "bad", mark: "✕", title, lines: failure_lines(model, `${stopped}Executed ${air}, it`)};
 }
 
 function tolerance_text({goals}) {
@@ -104,17 +105,17 @@ function figures_of(model) {
     if (solution.plan) {
         // Where the objective is one of the other figures, the cost alone says which.
         add(`Cost, ${model.objective}`, cost(execution ? execution.cost : solution.cost, cost_unit),
-            execution ? `flown; ${cost(solution.cost, cost_unit)} planned` : "planned");
+            execution ? `executed; ${cost(solution.cost, cost_unit)} planned` : "planned");
     }
     if (execution) {
         add("Duration", seconds(execution.duration_s),
             model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
         add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
-        add("Least clearance", meters(execution.min_clearance_m),
+        add("Minimum clearance", meters(execution.min_clearance_m),
             model.scene.obstacles.length === 0     ? "no obstacles" :
                 report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` :
                                                      "");
-        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "worst over the last second");
+        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "maximum over the last second");
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"),
             execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
@@ -126,7 +127,7 @@ function figures_of(model) {
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
         `search ${seconds(planning?.wall_s)}`);
     add("Iterations", number(planning?.iterations, ",d"),
-        planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges flown` : "");
+        planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges simulated` : "");
     return list;
 }
 

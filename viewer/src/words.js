@@ -1,21 +1,21 @@
-// The planner's names in plain words.
+// Plain words for the names of the planner.
 
 export const causes = {
     bounds: "leaves the bounds",
     collision: "touches an obstacle",
-    direct_flight: "fails when flown with direct aerodynamics",
+    direct_flight: "fails when executed with direct aerodynamics",
     flyable_area: "leaves the flyable area",
     goal_missed: "misses the goal",
-    saturation: "asks more than a limit allows",
+    saturation: "exceeds a limit of the actuators",
     too_long: "takes too long",
-    tracking: "strays from its reference",
+    tracking: "does not follow its reference",
     unstable: "becomes unstable",
 };
 
 export const cause_text = (cause) => causes[cause] ?? String(cause).replace(/_/g, " ");
 
 export const outcomes = {
-    ok: "reaches the goal and holds there",
+    ok: "reaches the goal and hovers there",
     collision: "ends in a collision",
     unstable: "becomes unstable",
     left_flyable_area: "leaves the flyable area",
@@ -24,7 +24,7 @@ export const outcomes = {
 
 export const outcome_text = (outcome) => outcomes[outcome] ?? String(outcome).replace(/_/g, " ");
 
-/** What the search reckoned with. */
+/** What the search considers. */
 export const knowledge = {
     "mp-arm": "geometry only",
     "mp-arm-da": "dynamics in free air, not aerodynamics",
@@ -32,10 +32,10 @@ export const knowledge = {
 };
 
 export const variants = {
-    "mp-arm": "the tree knows geometry only",
-    "mp-arm-da": "the tree flies, in free air",
-    "mp-arm-ada": "the tree flies, near surfaces too",
+    "mp-arm": "motion planner for aerial robotic manipulators, geometry only",
+    "mp-arm-da": "motion planner for aerial robotic manipulators, dynamics-aware: flights in free air",
+    "mp-arm-ada": "motion planner for aerial robotic manipulators, aerodynamics-aware: flights near surfaces",
 };
 
-/** Of the cost; sums of several have none. */
+/** The unit of the cost; weighted sums have none. */
 export const unit_of = (objective) => ({energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? "");

@@ -1,4 +1,4 @@
-#include "downwash/report/field_layout.hpp"
+#include "downwash/report/field_parts.hpp"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,7 @@
 namespace downwash {
 
 void require_drawable(const Bounds& extent) {
-    constexpr double longest_ratio = 40;
+    constexpr double max_ratio = 40;
     const double width_m = extent.x_high_m - extent.x_low_m;
     const double height_m = extent.z_high_m - extent.z_low_m;
     const std::string given = fmt::format("x from {} to {} and z from {} to {} m", to_text(extent.x_low_m),
@@ -19,20 +19,20 @@ void require_drawable(const Bounds& extent) {
     if (!(width_m > 0 && height_m > 0 && std::isfinite(width_m) && std::isfinite(height_m))) {
         throw InputError({{"extent", given + " hold no area: expected finite numbers, the lower ones first"}});
     }
-    if (width_m > longest_ratio * height_m || height_m > longest_ratio * width_m) {
+    if (width_m > max_ratio * height_m || height_m > max_ratio * width_m) {
         throw InputError({{"extent", fmt::format("{} cannot be drawn to scale: expected no side to be more than {} "
                                                  "times as long as the other",
-                                                 given, longest_ratio)}});
+                                                 given, max_ratio)}});
     }
 }
 
 FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend) {
     constexpr double left_px = 80, right_px = 24, below_axes_px = 128;
-    constexpr double tallest = 1.2;  // of the axes, in their widths
+    constexpr double max_height = 1.2;  // of the axes, in their widths
     const Bounds& extent = figure.extent;
     const double ratio = (extent.z_high_m - extent.z_low_m) / (extent.x_high_m - extent.x_low_m);
     const double room_px = picture_width_px - left_px - right_px;
-    const double width_px = ratio > tallest ? room_px * tallest / ratio : room_px;
+    const double width_px = ratio > max_height ? room_px * max_height / ratio : room_px;
     const double above_axes_px = (figure.subtitle.empty() ? 40 : 62) + legend.height_px(room_px) + 6;
     FieldLayout layout{};
     layout.left = left_px + (room_px - width_px) / 2;
@@ -44,6 +44,31 @@ FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Leg
     layout.bar_bottom = 48;
     layout.room = room_px;
     return layout;
+}
+
+std::string FieldSamples::source(bool is_surface) const {
+    return fmt::format("'-' binary array=({},{}) origin=({},{}{}) dx={} dy={} format='%float' using 1", columns, rows,
+                       x_m, z_m, is_surface ? ",0" : "", dx_m, dz_m);
+}
+
+FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners) {
+    FieldSamples samples;
+    const Bounds& extent = figure.extent;
+    samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);
+    samples.dz_m = (extent.z_high_m - extent.z_low_m) / static_cast<double>(rows);
+    samples.columns = columns + (at_corners ? 1 : 0);
+    samples.rows = rows + (at_corners ? 1 : 0);
+    samples.x_m = extent.x_low_m + (at_corners ? 0 : samples.dx_m / 2);
+    samples.z_m = extent.z_low_m + (at_corners ? 0 : samples.dz_m / 2);
+    samples.places.reserve(samples.columns * samples.rows);
+    for (std::size_t k = 0; k < samples.rows; ++k) {
+        const double z_m = samples.z_m + static_cast<double>(k) * samples.dz_m;
+        for (std::size_t i = 0; i < samples.columns; ++i) {
+            const double x_m = samples.x_m + static_cast<double>(i) * samples.dx_m;
+            samples.places.push_back(static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m))));
+        }
+    }
+    return samples;
 }
 
 }  // namespace downwash

@@ -1,9 +1,12 @@
 #include "measuring.hpp"
 
+#include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
+#include <exception>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -69,6 +72,21 @@ void empty_caches() {
     for (std::size_t i = 0; i < memory.size(); i += 64) {
         ++memory[i];
     }
+}
+
+void print_bound(const std::string& bound, const std::string& found, bool is_kept) {
+    fmt::print("| {} | {} | {} |\n", bound, found, is_kept ? "kept" : "**not kept**");
+}
+
+int run_program(CLI::App& program, int argc, char** argv, const std::function<void()>& work) {
+    CLI11_PARSE(program, argc, argv);
+    try {
+        work();
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 2;
+    }
+    return 0;
 }
 
 }  // namespace downwash::bench

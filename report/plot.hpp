@@ -3,13 +3,26 @@
 // Private: not installed.
 
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "downwash/report/gnuplot_script.hpp"
 #include "downwash/report/legend.hpp"
+#include "downwash/report/picture.hpp"
 
 namespace downwash {
 
-/// What is drawn, bottom first, as elements of a plot command; what has a name stands in the legend too.
+/// One line of text per point. @param is_closed whether the first point is repeated at the end
+[[nodiscard]] std::string points_text(const Ring& ring, bool is_closed);
+
+/// The same for several rings, each followed by an empty line.
+[[nodiscard]] std::string lines_text(const std::vector<Ring>& rings, bool is_closed);
+
+/// Defines the data block `name`, such as "$edge3".
+void add_data(GnuplotScript& script, const std::string& name, const std::string& text);
+
+/// The elements of a plot command, bottom first. An element with a name has an entry in the legend.
 class Plot {
  public:
     explicit Plot(Legend& legend) : legend_(legend) {}

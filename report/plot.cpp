@@ -1,4 +1,4 @@
-#include "downwash/report/plot_data.hpp"
+#include "downwash/report/plot.hpp"
 
 #include <fmt/core.h>
 

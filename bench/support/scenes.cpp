@@ -2,25 +2,23 @@
 
 #include <cmath>
 #include <memory>
-#include <random>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "../../tests/support/random.hpp"
+
 namespace downwash::bench {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 
 }  // namespace
 
-double uniform_between(std::mt19937_64& engine, double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine() >> 11U) * 0x1p-53);
-}
-
 Problem with_random_primitives(Problem problem, unsigned seed) {
-    std::mt19937_64 engine(seed);
-    const auto uniform = [&engine](double low, double high) { return uniform_between(engine, low, high); };
+    test::Random random(seed);
+    const auto uniform = [&random](double low, double high) { return random.uniform(low, high); };
     problem.obstacles.clear();
     for (int i = 0; i < 10; ++i) {
         Obstacle obstacle;

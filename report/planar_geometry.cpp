@@ -1,18 +1,17 @@
-#include "downwash/report/joined_rings.hpp"
+#include "downwash/report/planar_geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <utility>
 
 #include "downwash/report/chains.hpp"
-#include "downwash/report/planar_hull.hpp"
 
 namespace downwash {
 namespace {
 
-using Ring = std::vector<PlanePoint>;
-/// A corner's place, in steps in which rounding does not show.
+/// The position of a corner, in steps above the rounding error.
 using Corner = std::pair<long long, long long>;
 
 constexpr double step_m = 1e-7;
@@ -21,14 +20,14 @@ Corner corner_at(const PlanePoint& p) {
     return {std::llround(p.x_m / step_m), std::llround(p.z_m / step_m)};
 }
 
-/// Without the corners at which the outline does not turn.
+/// The ring without corners on straight lines.
 Ring straightened(const Ring& ring) {
     Ring kept;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const PlanePoint& before = ring[(i + ring.size() - 1) % ring.size()];
         const PlanePoint& after = ring[(i + 1) % ring.size()];
         const double length_m = std::hypot(after.x_m - before.x_m, after.z_m - before.z_m);
-        // Twice the area over the base is the corner's height.
+        // Twice the area over the base is the height of the corner.
         if (std::abs(turn(before, ring[i], after)) > 2 * step_m * length_m) {
             kept.push_back(ring[i]);
         }
@@ -38,9 +37,30 @@ Ring straightened(const Ring& ring) {
 
 }  // namespace
 
+// Andrew's monotone chain.
+Ring convex_hull(std::vector<PlanePoint> points) {
+    const auto is_before = [](const PlanePoint& a, const PlanePoint& b) {
+        return a.x_m < b.x_m || (a.x_m == b.x_m && a.z_m < b.z_m);
+    };
+    std::sort(points.begin(), points.end(), is_before);
+    Ring hull;
+    for (int pass = 0; pass < 2; ++pass) {
+        const std::size_t first = hull.size();
+        for (const PlanePoint& point : points) {
+            while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) {
+                hull.pop_back();
+            }
+            hull.push_back(point);
+        }
+        hull.pop_back();  // it begins the other half
+        std::reverse(points.begin(), points.end());
+    }
+    return hull;
+}
+
 std::vector<Ring> joined_rings(const std::vector<Ring>& rings) {
     std::map<Corner, PlanePoint> points;
-    std::map<std::pair<Corner, Corner>, std::size_t> edges;  // how often each is there
+    std::map<std::pair<Corner, Corner>, std::size_t> edges;  // and how often each occurs
     for (const Ring& ring : rings) {
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Corner from = corner_at(ring[i]), to = corner_at(ring[(i + 1) % ring.size()]);

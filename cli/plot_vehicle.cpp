@@ -1,5 +1,3 @@
-#include "downwash/cli/vehicle_figures.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,8 +7,10 @@
 #include <utility>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/vehicle_table.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/hold_map.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -19,10 +19,12 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, std::string title) {
+/// A figure of the whole vehicle, without a field.
+FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, std::string title,
+                           const std::string& attitude) {
     FieldFigure figure;
     figure.title = std::move(title);
-    figure.subtitle = fmt::format("{}, {}", problem.name, problem.robot.name);
+    figure.subtitle = fmt::format("{}, {}{}", problem.name, problem.robot.name, attitude);
     figure.x_label = "x of the centre of mass [m]";
     figure.z_label = "z of the centre of mass [m]";
     figure.extent = extent;
@@ -31,7 +33,23 @@ FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, con
     return figure;
 }
 
-/// What follows the vehicle's name.
+/// One of the effects on the vehicle at a pitch.
+std::function<double(double, double)> effect_at(const std::shared_ptr<const FlightModel>& model, double pitch_rad,
+                                                double VehicleEffect::*effect) {
+    return [=](double x_m, double z_m) {
+        const PlanarPose pose{x_m, z_m, pitch_rad, 0};
+        return is_flyable(*model, pose) ? vehicle_effect(*model, pose).*effect : undefined;
+    };
+}
+
+/// The maximum size of a field over its extent.
+double max_size(const FieldFigure& figure) {
+    constexpr int steps = 120;
+    const AxisRange range = value_range(figure.value, figure.extent, steps, 0);
+    return std::max(-range.low, range.high);
+}
+
+/// The attitude, to follow the vehicle's name.
 std::string attitude_text(double pitch_rad) {
     if (pitch_rad == 0) {
         return ", level";
@@ -40,22 +58,7 @@ std::string attitude_text(double pitch_rad) {
                        pitch_rad > 0 ? "down" : "up");
 }
 
-/// The greatest value of a field in size, looked for at some points of its extent.
-double reach_of(const FieldFigure& figure) {
-    constexpr int steps = 120;
-    double most = 0;
-    for (int i = 0; i <= steps; ++i) {
-        for (int k = 0; k <= steps; ++k) {
-            const Bounds& e = figure.extent;
-            const double value = figure.value(e.x_low_m + (e.x_high_m - e.x_low_m) * i / steps,
-                                              e.z_low_m + (e.z_high_m - e.z_low_m) * k / steps);
-            most = std::isnan(value) ? most : std::max(most, std::abs(value));
-        }
-    }
-    return most;
-}
-
-/// Where the problem lets the centre of mass be, cut to what is shown.
+/// The bounds of the centre of mass, cut to the shown part of the plane.
 FigureLines bounds_lines(const Bounds& bounds, const Bounds& shown) {
     FigureLines lines{"bounds of the problem", {}, {40, 40, 40}, 1.5, true, false};
     const double x_low_m = std::max(bounds.x_low_m, shown.x_low_m),
@@ -69,7 +72,7 @@ FigureLines bounds_lines(const Bounds& bounds, const Bounds& shown) {
     return lines;
 }
 
-/// The kinds of hold_figure, as its scale numbers them. Not flyable is not defined.
+/// The number of a verdict on the scale of hold_figure(); a place that is not flyable has none.
 double kind_of(HoldVerdict verdict) {
     return verdict == HoldVerdict::not_flyable
                ? undefined
@@ -97,47 +100,46 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 
 }  // namespace
 
-FieldFigure force_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double pitch_rad) {
-    FieldFigure figure = vehicle_figure(problem, model, extent, "Thrust of the whole vehicle at constant command");
-    figure.subtitle += attitude_text(pitch_rad);
-    figure.value = [&model, pitch_rad](double x_m, double z_m) {
-        const PlanarPose pose{x_m, z_m, pitch_rad, 0};
-        return is_flyable(model, pose) ? vehicle_effect(model, pose).force_factor : undefined;
-    };
-    figure.scale = factor_scale("force factor", 1, reach_of(figure));
+FieldFigure force_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
+    const double pitch_rad = pitch_option(request.pitch_deg);
+    const auto model = make_flight_model(problem);
+    FieldFigure figure = vehicle_figure(problem, *model, extent, "Thrust of the whole vehicle at constant command",
+                                        attitude_text(pitch_rad));
+    figure.value = effect_at(model, pitch_rad, &VehicleEffect::force_factor);
+    figure.scale = factor_scale("force factor", 1, max_size(figure));
     return figure;
 }
 
-FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double pitch_rad) {
+FieldFigure torque_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
+    const double pitch_rad = pitch_option(request.pitch_deg);
+    const auto model = make_flight_model(problem);
     FieldFigure figure =
-        vehicle_figure(problem, model, extent, "Parasitic pitch torque at hover commands, positive nose down");
-    figure.subtitle += attitude_text(pitch_rad) +
-                       fmt::format("; its factor is that over m g R = {:.4g} Nm", weight_times_radius_nm(model));
-    figure.value = [&model, pitch_rad](double x_m, double z_m) {
-        const PlanarPose pose{x_m, z_m, pitch_rad, 0};
-        return is_flyable(model, pose) ? vehicle_effect(model, pose).pitch_torque_nm : undefined;
-    };
-    figure.scale = signed_scale("pitch torque [Nm]", std::max(reach_of(figure), 1e-3));
+        vehicle_figure(problem, *model, extent, "Parasitic pitch torque at hover commands, positive nose down",
+                       attitude_text(pitch_rad) +
+                           fmt::format("; its factor is that over m g R = {:.4g} Nm", weight_times_radius_nm(*model)));
+    figure.value = effect_at(model, pitch_rad, &VehicleEffect::pitch_torque_nm);
+    figure.scale = signed_scale("pitch torque [Nm]", std::max(max_size(figure), 1e-3));
     return figure;
 }
 
-FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double arm_rad,
-                        int threads) {
+FieldFigure hold_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     constexpr double cells_across = 240;
-    FieldFigure figure = vehicle_figure(
-        problem, model, extent, fmt::format("Can it hold here? Arm at {:.6g} degrees", arm_rad * degrees_per_radian));
+    const double arm_rad = request.arm_deg / degrees_per_radian;
+    const auto model = make_flight_model(problem);
+    FieldFigure figure = vehicle_figure(problem, *model, extent,
+                                        fmt::format("Can it hold here? Arm at {:.6g} degrees", request.arm_deg), "");
     const double width_m = std::max(extent.x_high_m - extent.x_low_m, extent.z_high_m - extent.z_low_m);
     const auto map = std::make_shared<const HoldMap>(
-        make_hold_map(model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m}, width_m / cells_across,
-                      arm_rad, threads));
-    figure.value = [&model, map](double x_m, double z_m) { return kind_of(verdict_at(model, *map, x_m, z_m)); };
+        make_hold_map(*model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m},
+                      width_m / cells_across, arm_rad, default_threads()));
+    figure.value = [model, map](double x_m, double z_m) { return kind_of(verdict_at(*model, *map, x_m, z_m)); };
     figure.scale =
         scale_of_kinds("hover", {"in collision", "no equilibrium", "unstable", "unknown: beyond the model", "stable"},
                        {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {250, 222, 140}, {196, 226, 190}});
     figure.has_contour_lines = false;
     figure.lines.push_back(bounds_lines(problem.bounds, extent));
     FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, false, false};
-    for (const std::vector<HoldPoint>& line : stability_boundary(model, *map)) {
+    for (const std::vector<HoldPoint>& line : stability_boundary(*model, *map)) {
         std::vector<PlanePoint>& piece = boundary.pieces.emplace_back();
         std::transform(line.begin(), line.end(), std::back_inserter(piece), [](const HoldPoint& at) {
             return PlanePoint{at.x_m, at.z_m};

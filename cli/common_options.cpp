@@ -1,0 +1,113 @@
+#include "downwash/cli/common_options.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+constexpr int max_threads = 256;
+
+/// The absolute path in an environment variable; empty without one.
+std::filesystem::path path_in(const char* variable) {
+    const char* text = std::getenv(variable);
+    std::filesystem::path path = text == nullptr ? "" : text;
+    return path.is_absolute() ? path : std::filesystem::path();
+}
+
+}  // namespace
+
+void add_problem(CLI::App& command, std::string& file) {
+    command.add_option("PROBLEM", file, "problem file")->required();
+}
+
+void add_json(CLI::App& command, bool& as_json, const std::string& what) {
+    command.add_flag("--json", as_json, what);
+}
+
+void add_quiet(CLI::App& command, bool& is_quiet) {
+    command.add_flag("--quiet", is_quiet, "print only errors on standard error, no progress");
+}
+
+void add_no_cache(CLI::App& command, bool& no_cache) {
+    command.add_flag("--no-cache", no_cache,
+                     "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
+}
+
+void add_threads(CLI::App& command, int& threads) {
+    command
+        .add_option("--threads", threads,
+                    fmt::format("number of threads, 1 to {}; the result does not depend on it; default: one per "
+                                "processor",
+                                max_threads))
+        ->type_name("N")
+        ->check(CLI::Range(1, max_threads));
+}
+
+void add_width(CLI::App& command, std::optional<int>& width_px) {
+    command
+        .add_option("--width", width_px,
+                    fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
+                                max_picture_width_px, PictureSettings{}.width_px))
+        ->type_name("PX")
+        ->check(CLI::Range(min_picture_width_px, max_picture_width_px));
+}
+
+void require_coordinate(double coordinate_m, const std::string& where) {
+    constexpr double max_m = 1e6;
+    if (!(std::abs(coordinate_m) <= max_m)) {
+        throw UsageError(fmt::format("{} {}: expected finite coordinates in m, at most {:g} either way", where,
+                                     coordinate_m, max_m));
+    }
+}
+
+int default_threads() {
+    return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+}
+
+std::filesystem::path cache_folder(bool no_cache) {
+    if (no_cache) {
+        return {};
+    }
+    if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty()) {
+        return cache / "downwash";
+    }
+    const auto home = path_in("HOME");
+    return home.empty() ? std::filesystem::path() : home / ".cache" / "downwash";
+}
+
+int rotor_option(const std::optional<int>& number, int rotors) {
+    const int rotor = number.value_or(1);
+    if (rotor < 1 || rotor > rotors) {
+        throw UsageError(fmt::format("--rotor {}: expected a number from 1 to {}", rotor, rotors));
+    }
+    return rotor - 1;
+}
+
+double pitch_option(double pitch_deg) {
+    constexpr double max_deg = 80;  // beyond it a multirotor is lost: unstable_pitch_rad
+    if (!(std::abs(pitch_deg) <= max_deg)) {
+        throw UsageError(fmt::format("--pitch-deg {}: expected degrees, at most {} either way, positive nose down",
+                                     pitch_deg, max_deg));
+    }
+    return pitch_deg / degrees_per_radian;
+}
+
+PictureFormat picture_format(const std::string& option, const std::string& file) {
+    const std::optional<PictureFormat> format = picture_format_of(file);
+    if (!format) {
+        throw UsageError(
+            fmt::format("{} '{}': expected a name that ends in .svg, .png or .pdf", option, excerpt(file)));
+    }
+    return *format;
+}
+
+}  // namespace downwash::cli

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/commands.hpp"
+#include "downwash/report/picture.hpp"
+
+namespace downwash::cli {
+
+/// Adds a command. `Arguments` holds the values of its options; it adds them by `add_to(CLI::App&)` and does what the
+/// command is for by `ExitCode run() const`.
+template <class Arguments>
+void add_command(CLI::App& parent, Action& action, const std::string& name, const std::string& description) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = parent.add_subcommand(name, description);
+    arguments->add_to(*command);
+    command->callback([arguments, &action] { action = [arguments] { return arguments->run(); }; });
+}
+
+// Options that several commands have, each with the same name and meaning everywhere.
+
+void add_problem(CLI::App& command, std::string& file);
+void add_json(CLI::App& command, bool& as_json, const std::string& what = "print JSON");
+void add_quiet(CLI::App& command, bool& is_quiet);
+void add_no_cache(CLI::App& command, bool& no_cache);
+void add_threads(CLI::App& command, int& threads);
+void add_width(CLI::App& command, std::optional<int>& width_px);
+
+/// --at with so many coordinates, as often as wanted.
+template <std::size_t size>
+CLI::Option* add_points(CLI::App& command, std::vector<std::array<double, size>>& points,
+                        const std::string& description) {
+    return command.add_option("--at", points, description)
+        ->type_name(size == 2 ? "X Z" : "X Y Z")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+/// Checks a coordinate that a user gave [m]. @param where it was given, for the message
+/// @throws UsageError unless it is finite and at most 1e6 either way
+void require_coordinate(double coordinate_m, const std::string& where);
+
+/// The number of threads that a command uses unless told otherwise: one per processor, 64 at most.
+[[nodiscard]] int default_threads();
+
+/// The folder that keeps the user's aero maps between runs: $XDG_CACHE_HOME/downwash, or $HOME/.cache/downwash without
+/// an absolute path in that variable. Empty when there is no home either, or no cache is wanted.
+[[nodiscard]] std::filesystem::path cache_folder(bool no_cache = false);
+
+/// The index of the rotor that --rotor N names, counted from 0; that of the first rotor without a number.
+/// @throws UsageError when the vehicle has no such rotor
+[[nodiscard]] int rotor_option(const std::optional<int>& number, int rotors);
+
+/// The pitch that --pitch-deg gives [rad]. @throws UsageError for one at which no vehicle flies
+[[nodiscard]] double pitch_option(double pitch_deg);
+
+/// The format that the name of a picture's file asks for. @throws UsageError when it is none
+[[nodiscard]] PictureFormat picture_format(const std::string& option, const std::string& file);
+
+}  // namespace downwash::cli

@@ -1,0 +1,64 @@
+#include "downwash/cli/output.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "downwash/base/files.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Runs work on a file; a FileError becomes a UsageError that names the option and the file.
+template <class Work>
+void with_usage_errors(const fs::path& file, std::string_view option, const Work& work) {
+    try {
+        work();
+    } catch (const FileError& error) {
+        throw UsageError(fmt::format("{}{}{} {}", option, option.empty() ? "" : " ", file.string(), error.what()));
+    }
+}
+
+}  // namespace
+
+void print_error(std::string_view text) noexcept {
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+    static_cast<void>(std::fflush(stderr));
+}
+
+void print_json(const nlohmann::ordered_json& document) {
+    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+nlohmann::ordered_json json_of(const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+void write_result(const fs::path& file, std::string_view content, std::string_view option) {
+    with_usage_errors(file, option, [&] { write_file(file, content); });
+}
+
+void require_writable_result(const fs::path& file, std::string_view option) {
+    with_usage_errors(file, option, [&] { require_writable(file); });
+}
+
+OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (!fs::is_directory(path_)) {
+        throw UsageError(fmt::format("--out {} cannot be made a folder: {}", path_.string(),
+                                     error ? error.message() : "it is a file"));
+    }
+    const fs::path trial = path_ / "solution.json";
+    try {
+        require_writable(trial);
+    } catch (const FileError& failure) {
+        throw UsageError(fmt::format("{} {}; choose another folder with --out", trial.string(), failure.what()));
+    }
+}
+
+}  // namespace downwash::cli

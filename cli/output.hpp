@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace downwash::cli {
+
+/// Writes text to standard error. If that fails, nothing is said and the exit code still tells.
+void print_error(std::string_view text) noexcept;
+
+/// Prints a document as commands do with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
+void print_json(const nlohmann::ordered_json& document);
+
+/// The number, or null without one.
+[[nodiscard]] nlohmann::ordered_json json_of(const std::optional<double>& value);
+
+/// Writes a file that an option names, whole or not at all. @throws UsageError when that fails
+/// @param option its name, for messages; empty: none
+void write_result(const std::filesystem::path& file, std::string_view content, std::string_view option = {});
+
+/// Checks that write_result() can begin, before anything is computed. @throws UsageError when it cannot
+void require_writable_result(const std::filesystem::path& file, std::string_view option);
+
+/// The folder for the results of a command. Files in it appear whole or not at all.
+class OutputFolder {
+ public:
+    /// Makes the folder and checks that files can be written there. @throws UsageError when they cannot
+    explicit OutputFolder(std::filesystem::path path);
+
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+    /// Writes a file in the folder; see write_result().
+    void write(const std::string& name, std::string_view content) const { write_result(path_ / name, content); }
+
+ private:
+    std::filesystem::path path_;
+};
+
+}  // namespace downwash::cli
