@@ -79,7 +79,7 @@ void SolveArguments::add_to(CLI::App& command) {
 void add_solve(CLI::App& program, Action& action) {
     add_command<SolveArguments>(
         program, action, "solve",
-        "Plan with MP-ARM, the motion planner for aerial robots with long-reach manipulators, or its dynamics-aware "
+        "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
         "(MP-ARM-DA) or aerodynamics-aware (MP-ARM-ADA) variant; execute the plan with direct aerodynamics; write "
         "solution.json, trajectory.csv, tree.csv, effective.yaml and report.html");
 }
