@@ -108,7 +108,8 @@ TEST_CASE("cross sections move with scene and plane") {
     for (int i = 0; i < 50; ++i) {
         const Vector3 center{coordinate(generator), 0.1 * coordinate(generator), coordinate(generator)};
         const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
-        const Shape shape = i % 2 == 0 ? Shape(Box{{1, 2, 3}}) : Shape(Cylinder{0.7, 2, {1, 2, 3}});
+        const std::vector<Shape> shapes{Box{{1, 2, 3}}, Cylinder{0.7, 2, {1, 2, 3}}};
+        const Shape& shape = shapes[static_cast<std::size_t>(i % 2)];
         const PlaneOfMotion moved({5, -7, 2}, angle(generator));
         const ObstacleOutline here = outline_of(shape, center, rpy);
         const Vector3 there_m = moved.to_world(center[0], center[1], center[2]);
