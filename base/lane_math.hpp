@@ -21,6 +21,28 @@ inline double sqrt(double x) {
 inline double abs(double x) {
     return std::fabs(x);
 }
+/// Lanes of a lane type.
+template <class T>
+inline constexpr int width = sizeof(T) / sizeof(double);
+/// The number of one lane.
+inline double number_in(double x, int /*lane*/) {
+    return x;
+}
+/// Replaces the number of one lane.
+inline void set_number(double& x, int /*lane*/, double number) {
+    x = number;
+}
+/// The lanes in which a condition holds, as bits; the first lane is the lowest.
+inline unsigned int bits_of(bool condition) {
+    return condition ? 1 : 0;
+}
+/// The numbers of all lanes, one after the other.
+template <class T>
+T load(const double* from) {
+    T all;
+    __builtin_memcpy(&all, from, sizeof all);
+    return all;
+}
 /// The lesser; a when either is NaN.
 template <class T>
 T min(T a, T b) {

@@ -122,16 +122,15 @@ struct Pack {
             doubles = all - Doubles{};  // not +, which would lose the sign of -0
         }
     }
-    double operator[](int lane) const { return part[lane / register_width][lane % register_width]; }
-    void set(int lane, double value) { part[lane / register_width][lane % register_width] = value; }
-
-    static Pack load(const double* from) {
-        Pack pack;
-        __builtin_memcpy(&pack, from, sizeof pack);
-        return pack;
-    }
     void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
 };
+
+inline double number_in(const Pack& pack, int lane) {
+    return pack.part[lane / register_width][lane % register_width];
+}
+inline void set_number(Pack& pack, int lane, double number) {
+    pack.part[lane / register_width][lane % register_width] = number;
+}
 
 /// One truth value per lane.
 struct PackMask {

@@ -1,161 +1,234 @@
 #pragma once
 
+#include <cmath>
+
 #include "downwash/base/lane_math.hpp"
-#include "downwash/controllers/gains.hpp"
-#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/base/numbers.hpp"
+#include "downwash/controllers/actuation.hpp"
+#include "downwash/controllers/pid.hpp"
+#include "downwash/controllers/reference_point.hpp"
+#include "downwash/controllers/rest.hpp"
 
-// Model-inversion PID of the multirotor and the arm (docs/model.md 5.1, 5.2; thesis figure C.2), one template over the
-// lane type. A control step is a pure function: what the controller remembers is a plain value beside the plant's
-// state.
+namespace downwash {
 
-namespace downwash::controllers {
+/// Model-inversion PID of the multirotor and the arm (docs/model.md 5.1, 5.2; thesis figure C.2): its gains and its law, one
+/// template over the lane type. Acceleration of an axis: v = acc_ref + kd e' + kp e + ki integral e.
+struct ModelInversion {
+    static constexpr const char* name = "model-inversion";
 
-/// What the controller should follow, per axis (x, z, arm).
-template <class T>
-struct Setpoint {
-    T position[3], velocity[3], acceleration[3];
+    double position_kp = 0;                     ///< [1/s2]
+    double position_kd = 0;                     ///< [1/s]
+    double position_ki = 0;                     ///< [1/s3]
+    double position_integral_limit_m_s2 = 2.0;  ///< greatest ki * integral, per axis
+
+    double attitude_k5 = 0;    ///< pitch angle to pitch rate [1/s]
+    double attitude_ku5 = 0;   ///< pitch rate to pitch acceleration [1/s]
+    double attitude_kiu5 = 0;  ///< integral of the pitch rate error [1/s2]
+    double attitude_integral_limit_rad_s2 = 5.0;
+    double pitch_rate_filter_s = 0.1;  ///< time constant of the filtered derivative of the pitch reference
+    bool rate_feed_forward = false;    ///< adds d(u5_ref)/dt to the pitch acceleration
+
+    double arm_kp = 0;  ///< [1/s2]
+    double arm_kd = 0;  ///< [1/s]
+    double arm_ki = 0;  ///< [1/s3]
+    double arm_integral_limit_rad_s2 = 5.0;
+
+    double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
+    double min_vertical_force_ratio = 0.2;     ///< f_min of the inversion as a share of the weight
+
+    /// What the law remembers between ticks.
+    template <class T>
+    struct Memory {
+        T position_integral[2];  ///< of the position error, x and z [m s]
+        T pitch_rate_integral;   ///< of the pitch rate error [rad]
+        T arm_integral;          ///< of the arm error [rad s]
+        T pitch_reference_rad;   ///< of the previous tick
+        T pitch_reference_rate;  ///< filtered derivative [rad/s]
+        T rate_reference;        ///< u5_ref of the previous tick [rad/s]
+    };
+
+    /// What comes of one control step before any limit.
+    template <class T>
+    struct Step {
+        controllers::Demand<T> demand;
+        Memory<T> integrated;  ///< next memory when the demand can be met; a clipped tilt stops x and z already
+        Memory<T> frozen;      ///< next memory when it was clipped: integrators stand still (anti-windup)
+    };
+
+    /// The memory at a pitch angle with nothing to correct.
+    template <class T>
+    [[nodiscard]] static Memory<T> rested(T pitch_rad) {
+        return {{T(0), T(0)}, T(0), T(0), pitch_rad, T(0), T(0)};
+    }
+
+    /// One control step: a pure function. See docs/extending/controller.md for what every law has.
+    /// @param nominal plant as the law knows it   @param seen state as the law knows it
+    /// @param motion nominal motion of that state   @param tick_s control period [s], > 0
+    /// @param[out] given the commands   @return the memory at the end of the tick
+    template <class T>
+    Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
+                      const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
+                      controllers::Actuation<T>& given) const {
+        const Step<T> step = demanded(nominal, seen, motion, memory, reference, T(tick_s));
+        controllers::actuate(nominal, seen, motion, step.demand, tick_s, given);
+        return select_each(given.saturation > T(1), step.frozen, step.integrated);
+    }
+
+    /// What the law demands, and both memories that may follow.
+    template <class T>
+    [[nodiscard]] Step<T> demanded(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
+                                   const dynamics::Motion<T>& motion, const Memory<T>& memory,
+                                   const BasicReferencePoint<T>& reference, T dt_s) const {
+        const T* q = seen.q;
+        const T* u = seen.u;
+        const dynamics::Attitude<T>& a = motion.attitude;
+        const dynamics::EquationsOfMotion<T>& e = motion.equations;
+        Step<T> step;
+        step.frozen = memory;
+
+        // Position and arm PID: the accelerations to impose.
+        T v[2];
+        T error[2];
+        for (int i = 0; i < 2; ++i) {
+            error[i] = reference.position[i] - q[i];
+            v[i] = reference.acceleration[i] + T(position_kd) * (reference.velocity[i] - u[i]) +
+                   T(position_kp) * error[i] +
+                   controllers::integral_action(position_ki, position_integral_limit_m_s2, memory.position_integral[i]);
+        }
+        const T arm_error = reference.position[2] - q[3];
+        const T v7 = reference.acceleration[2] + T(arm_kd) * (reference.velocity[2] - u[3]) +
+                     T(arm_kp) * arm_error +
+                     controllers::integral_action(arm_ki, arm_integral_limit_rad_s2, memory.arm_integral);
+
+        // D13^-1: the force that gives these accelerations, its direction as pitch reference.
+        const T mass(nominal.total_mass_kg);
+        const T arm_mass(nominal.arm_mass_kg);
+        const T force_x = mass * v[0] + arm_mass * e.arm_x * v7 + e.bias[0];
+        const T force_z = mass * v[1] + arm_mass * e.arm_z * v7 + e.bias[1];
+        const T least_force_z(min_vertical_force_ratio * nominal.total_mass_kg * standard_gravity_m_s2);
+        const T wanted_pitch = lane::atan2(force_x, lane::max(force_z, least_force_z));
+        const T pitch_reference = lane::clamp(wanted_pitch, T(-max_tilt_rad), T(max_tilt_rad));
+        const auto is_force_clipped = lane::max(lane::abs(wanted_pitch - pitch_reference), least_force_z - force_z) > T(0);
+        step.demand.thrust_n = force_x * a.sin_pitch + force_z * a.cos_pitch;
+
+        // K5^-1: pitch rate reference, from a filtered backward difference of the pitch reference.
+        const T raw_rate = (pitch_reference - memory.pitch_reference_rad) / dt_s;
+        const T blend = dt_s / (T(pitch_rate_filter_s) + dt_s);
+        step.frozen.pitch_reference_rad = pitch_reference;
+        step.frozen.pitch_reference_rate = memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
+        const T rate_reference = step.frozen.pitch_reference_rate + T(attitude_k5) * (pitch_reference - q[2]);
+        step.frozen.rate_reference = rate_reference;
+
+        // D5^-1: the pitch torque for the pitch acceleration, with the accelerations that this thrust will really give.
+        const T rate_error = rate_reference - u[2];
+        T v5 = T(attitude_ku5) * rate_error +
+               controllers::integral_action(attitude_kiu5, attitude_integral_limit_rad_s2, memory.pitch_rate_integral);
+        if (rate_feed_forward) {
+            v5 = v5 + (rate_reference - memory.rate_reference) / dt_s;
+        }
+        const T thrust = step.demand.thrust_n;
+        const T inverse_mass(nominal.inverse_mass_1_kg);
+        const T acceleration[4] = {
+            (thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) * inverse_mass,
+            (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) * inverse_mass, v5, v7};
+        T force[4];
+        dynamics::inverse_dynamics(nominal, e, acceleration, force);
+        step.demand.pitch_torque_nm = force[2];
+        step.demand.arm_acceleration = v7;
+
+        step.integrated = step.frozen;
+        for (int i = 0; i < 2; ++i) {
+            const T integral = controllers::integrate(position_ki, position_integral_limit_m_s2, memory.position_integral[i],
+                                         error[i], dt_s);
+            step.integrated.position_integral[i] = lane::select(is_force_clipped, memory.position_integral[i], integral);
+        }
+        step.integrated.pitch_rate_integral = controllers::integrate(attitude_kiu5, attitude_integral_limit_rad_s2,
+                                                        memory.pitch_rate_integral, rate_error, dt_s);
+        step.integrated.arm_integral =
+            controllers::integrate(arm_ki, arm_integral_limit_rad_s2, memory.arm_integral, arm_error, dt_s);
+        return step;
+    }
+
+    /// How the law asks for the same commands for ever, worked out from the last block of figure C.2 to the first. It
+    /// knows nothing of surfaces, and asks for accelerations that never come.
+    /// @param equations of the level vehicle at rest
+    [[nodiscard]] controllers::Rest<Memory> rest(const PlantModel& nominal,
+                                                 const dynamics::EquationsOfMotion<double>& equations,
+                                                 const controllers::RestingCommand& command) const {
+        const double thrust_n = command.wrench.thrust_n;
+        const double force[3] = {0, thrust_n, command.wrench.pitch_torque_nm};
+        const double torque_at_rest_nm = dynamics::joint_torque_for(nominal, equations, force, 0.0);
+        const double torque_per_v7 = dynamics::joint_torque_for(nominal, equations, force, 1.0) - torque_at_rest_nm;
+        const double v7 = (command.joint_torque_nm - torque_at_rest_nm) / torque_per_v7;
+        const dynamics::RotationalSystem<double> s = dynamics::rotational_system(nominal, equations, force);
+        const double v5 = (s.g5 - s.s57 * v7) / s.s55;
+        const auto rate =
+            controllers::settled_pid(v5, attitude_ku5, attitude_kiu5, attitude_integral_limit_rad_s2);
+        controllers::Rest<Memory> rest;
+        rest.pitch_reference_rad = controllers::error_for(rate.error, attitude_k5);
+        double sine = 0;
+        double cosine = 1;
+        lane::sin_cos(rest.pitch_reference_rad, sine, cosine);
+        const double mass_kg = nominal.total_mass_kg;
+        const double vx = (sine / cosine * thrust_n - nominal.arm_mass_kg * equations.arm_x * v7) / mass_kg;
+        const double vz = (thrust_n - equations.bias[1] - nominal.arm_mass_kg * equations.arm_z * v7) / mass_kg;
+        const auto x = controllers::settled_pid(vx, position_kp, position_ki, position_integral_limit_m_s2);
+        const auto z = controllers::settled_pid(vz, position_kp, position_ki, position_integral_limit_m_s2);
+        const auto arm = controllers::settled_pid(v7, arm_kp, arm_ki, arm_integral_limit_rad_s2);
+        rest.error[0] = x.error;
+        rest.error[1] = z.error;
+        rest.error[2] = arm.error;
+        rest.memory = {{x.integral, z.integral}, rate.integral, arm.integral, rest.pitch_reference_rad, 0, rate.error};
+        rest.feeds_back = {{x.feeds_back, z.feeds_back}, rate.feeds_back, arm.feeds_back, true, true,
+                           rate_feed_forward};
+        rest.height_gain_1_s2 = position_kp;
+        rest.pitch_gain_1_s2 = attitude_k5 * attitude_ku5;
+        if (!(std::abs(rest.pitch_reference_rad) < max_tilt_rad)) {
+            rest.limit = HoldLimit::tilt;
+        } else if (!(thrust_n > min_vertical_force_ratio * equations.bias[1])) {
+            rest.limit = HoldLimit::vertical;
+        } else if (!std::isfinite(x.error + z.error + arm.error)) {
+            rest.limit = HoldLimit::gain;
+        }
+        return rest;
+    }
+
+    /// The law's keys in a robot file, below `controller`.
+    template <class Rows>
+    static void describe(Rows& rows) {
+        using Law = ModelInversion;
+        rows.group("position", "position of the multirotor to acceleration");
+        rows.add(rows.gain("position.kp", "[1/s2]", &Law::position_kp).is_required());
+        rows.add(rows.gain("position.kd", "[1/s]", &Law::position_kd).is_required());
+        rows.add(rows.gain("position.ki", "[1/s3]", &Law::position_ki));
+        rows.add(rows.gain("position.integral_limit_m_s2", "most that the integral may ask for, per axis",
+                           &Law::position_integral_limit_m_s2));
+        rows.group("attitude", "pitch of the multirotor to angular acceleration");
+        rows.add(rows.gain("attitude.k5", "pitch error to pitch rate [1/s]", &Law::attitude_k5).is_required());
+        rows.add(rows.gain("attitude.ku5", "pitch rate error to angular acceleration [1/s]", &Law::attitude_ku5)
+                     .is_required());
+        rows.add(rows.gain("attitude.kiu5", "integral of the pitch rate error [1/s2]", &Law::attitude_kiu5));
+        rows.add(rows.gain("attitude.integral_limit_rad_s2", "most that the integral may ask for",
+                           &Law::attitude_integral_limit_rad_s2));
+        rows.add(rows.gain("attitude.pitch_rate_filter_s", "time constant of the derivative of the pitch reference",
+                           &Law::pitch_rate_filter_s)
+                     .at_most(10));
+        rows.add(rows.flag("attitude.rate_feed_forward", "adds the derivative of the pitch rate reference",
+                           &Law::rate_feed_forward));
+        rows.group("arm", "arm angle to angular acceleration");
+        rows.add(rows.gain("arm.kp", "[1/s2]", &Law::arm_kp).is_required());
+        rows.add(rows.gain("arm.kd", "[1/s]", &Law::arm_kd).is_required());
+        rows.add(rows.gain("arm.ki", "[1/s3]", &Law::arm_ki));
+        rows.add(rows.gain("arm.integral_limit_rad_s2", "most that the integral may ask for",
+                           &Law::arm_integral_limit_rad_s2));
+        rows.add(rows.number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
+                     .above(0)
+                     .below(90));
+        rows.add(rows.number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
+                             &Law::min_vertical_force_ratio)
+                     .above(0)
+                     .at_most(1));
+    }
 };
 
-/// What the controller remembers between ticks.
-template <class T>
-struct ControllerState {
-    T position_integral[2];  ///< of the position error, x and z [m s]
-    T pitch_rate_integral;   ///< of the pitch rate error [rad]
-    T arm_integral;          ///< of the arm error [rad s]
-    T pitch_reference_rad;   ///< of the previous tick
-    T pitch_reference_rate;  ///< filtered derivative [rad/s]
-    T rate_reference;        ///< u5_ref of the previous tick [rad/s]
-};
-
-/// The memory of a controller that starts at a pitch angle with nothing to correct.
-template <class T>
-ControllerState<T> rested_controller(T pitch_rad) {
-    return {{T(0), T(0)}, T(0), T(0), pitch_rad, T(0), T(0)};
-}
-
-/// What the controller asks for, before allocation and any limit.
-template <class T>
-struct Demand {
-    T thrust_n;          ///< F3
-    T pitch_torque_nm;   ///< T2
-    T arm_acceleration;  ///< v7 [rad/s2]; the joint torque follows from it and from what the rotors really give
-};
-
-/// Demand and next memory of one control step.
-template <class T>
-struct ControlStep {
-    Demand<T> demand;
-    ControllerState<T> integrated;  ///< next memory when the demand can be met; a clipped tilt stops x and z already
-    ControllerState<T> frozen;      ///< next memory when it was clipped: integrators stand still (anti-windup)
-};
-
-/// D7^-1: the joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give.
-/// Where they give what was demanded this is row 4 with the accelerations of the inversion (docs/model.md 5.2). Where
-/// they lag or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip
-/// the vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
-template <class T>
-T joint_torque(const PlantModel& model, const dynamics::Motion<T>& motion, T arm_acceleration, T thrust_n,
-               T pitch_torque_nm) {
-    const T force[3] = {thrust_n * motion.attitude.sin_pitch, thrust_n * motion.attitude.cos_pitch, pitch_torque_nm};
-    return dynamics::joint_torque_for(model, motion.equations, force, arm_acceleration);
-}
-
-/// ki * integral, within its limit.
-template <class T>
-T integral_action(double ki, double limit, T integral) {
-    return lane::clamp(T(ki) * integral, T(-limit), T(limit));
-}
-
-/// Adds error * dt; an integral never grows beyond what its limit can use.
-template <class T>
-T integrate(double ki, double limit, T integral, T error, T dt_s) {
-    if (!(ki > 0)) {
-        return integral;
-    }
-    const T most(limit / ki);
-    return lane::clamp(integral + error * dt_s, -most, most);
-}
-
-/// One control step.
-/// @param q,u plant coordinates and speeds   @param motion theirs   @param tick_s control period [s], > 0
-template <class T>
-ControlStep<T> model_inversion_control(const PlantModel& model, const ControllerGains& gains, const T q[4],
-                                       const T u[4], const dynamics::Motion<T>& motion,
-                                       const ControllerState<T>& memory, const Setpoint<T>& reference, T tick_s) {
-    const dynamics::Attitude<T>& a = motion.attitude;
-    const dynamics::EquationsOfMotion<T>& e = motion.equations;
-    ControlStep<T> step;
-    step.frozen = memory;
-
-    // Position and arm PID: the accelerations to impose.
-    T v[2];
-    T error[2];
-    for (int i = 0; i < 2; ++i) {
-        error[i] = reference.position[i] - q[i];
-        v[i] = reference.acceleration[i] + T(gains.position_kd) * (reference.velocity[i] - u[i]) +
-               T(gains.position_kp) * error[i] +
-               integral_action(gains.position_ki, gains.position_integral_limit_m_s2, memory.position_integral[i]);
-    }
-    const T arm_error = reference.position[2] - q[3];
-    const T v7 = reference.acceleration[2] + T(gains.arm_kd) * (reference.velocity[2] - u[3]) +
-                 T(gains.arm_kp) * arm_error +
-                 integral_action(gains.arm_ki, gains.arm_integral_limit_rad_s2, memory.arm_integral);
-
-    // D13^-1: the force that gives these accelerations, its direction as pitch reference.
-    const T mass(model.total_mass_kg);
-    const T arm_mass(model.arm_mass_kg);
-    const T force_x = mass * v[0] + arm_mass * e.arm_x * v7 + e.bias[0];
-    const T force_z = mass * v[1] + arm_mass * e.arm_z * v7 + e.bias[1];
-    const T least_force_z(gains.min_vertical_force_ratio * model.total_mass_kg * standard_gravity_m_s2);
-    const T wanted_pitch = lane::atan2(force_x, lane::max(force_z, least_force_z));
-    const T pitch_reference = lane::clamp(wanted_pitch, T(-gains.max_tilt_rad), T(gains.max_tilt_rad));
-    const auto is_force_clipped = lane::max(lane::abs(wanted_pitch - pitch_reference), least_force_z - force_z) > T(0);
-    step.demand.thrust_n = force_x * a.sin_pitch + force_z * a.cos_pitch;
-
-    // K5^-1: pitch rate reference, from a filtered backward difference of the pitch reference.
-    const T raw_rate = (pitch_reference - memory.pitch_reference_rad) / tick_s;
-    const T blend = tick_s / (T(gains.pitch_rate_filter_s) + tick_s);
-    step.frozen.pitch_reference_rad = pitch_reference;
-    step.frozen.pitch_reference_rate = memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
-    const T rate_reference = step.frozen.pitch_reference_rate + T(gains.attitude_k5) * (pitch_reference - q[2]);
-    step.frozen.rate_reference = rate_reference;
-
-    // D5^-1: the pitch torque for the pitch acceleration, with the accelerations that this thrust will really give.
-    const T rate_error = rate_reference - u[2];
-    T v5 = T(gains.attitude_ku5) * rate_error +
-           integral_action(gains.attitude_kiu5, gains.attitude_integral_limit_rad_s2, memory.pitch_rate_integral);
-    if (gains.rate_feed_forward) {
-        v5 = v5 + (rate_reference - memory.rate_reference) / tick_s;
-    }
-    const T thrust = step.demand.thrust_n;
-    const T inverse_mass(model.inverse_mass_1_kg);
-    const T acceleration[4] = {
-        (thrust * a.sin_pitch - e.bias[0] - arm_mass * (e.pitch_x * v5 + e.arm_x * v7)) * inverse_mass,
-        (thrust * a.cos_pitch - e.bias[1] - arm_mass * (e.pitch_z * v5 + e.arm_z * v7)) * inverse_mass, v5, v7};
-    T force[4];
-    dynamics::inverse_dynamics(model, e, acceleration, force);
-    step.demand.pitch_torque_nm = force[2];
-    step.demand.arm_acceleration = v7;
-
-    step.integrated = step.frozen;
-    for (int i = 0; i < 2; ++i) {
-        const T integral = integrate(gains.position_ki, gains.position_integral_limit_m_s2, memory.position_integral[i],
-                                     error[i], tick_s);
-        step.integrated.position_integral[i] = lane::select(is_force_clipped, memory.position_integral[i], integral);
-    }
-    step.integrated.pitch_rate_integral = integrate(gains.attitude_kiu5, gains.attitude_integral_limit_rad_s2,
-                                                    memory.pitch_rate_integral, rate_error, tick_s);
-    step.integrated.arm_integral =
-        integrate(gains.arm_ki, gains.arm_integral_limit_rad_s2, memory.arm_integral, arm_error, tick_s);
-    return step;
-}
-
-/// The same where the motion at q and u is not known yet.
-template <class T>
-ControlStep<T> model_inversion_control(const PlantModel& model, const ControllerGains& gains, const T q[4],
-                                       const T u[4], const ControllerState<T>& memory, const Setpoint<T>& reference,
-                                       T tick_s) {
-    return model_inversion_control(model, gains, q, u, dynamics::motion_at(model, q, u), memory, reference, tick_s);
-}
-
-}  // namespace downwash::controllers
+}  // namespace downwash

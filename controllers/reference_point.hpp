@@ -3,13 +3,24 @@
 namespace downwash {
 
 /// Where the vehicle and the arm should be at one instant: (x, z, arm) with first and second time derivatives
-/// [m, m, rad; per s; per s2], plane coordinates, the arm angle relative to the multirotor and unwrapped.
-struct ReferencePoint {
-    double position[3] = {0, 0, 0};
-    double velocity[3] = {0, 0, 0};
-    double acceleration[3] = {0, 0, 0};
+/// [m, m, rad; per s; per s2], plane coordinates, the arm angle relative to the multirotor and unwrapped. One template
+/// over the lane type.
+template <class T>
+struct BasicReferencePoint {
+    T position[3]{};
+    T velocity[3]{};
+    T acceleration[3]{};
 
-    friend bool operator==(const ReferencePoint&, const ReferencePoint&) = default;
+    friend bool operator==(const BasicReferencePoint&, const BasicReferencePoint&) = default;
 };
+
+/// That of one vehicle.
+using ReferencePoint = BasicReferencePoint<double>;
+
+/// Whether the reference stands still there.
+[[nodiscard]] inline bool is_at_rest(const ReferencePoint& point) noexcept {
+    const auto is_zero = [](const double(&axis)[3]) { return axis[0] == 0 && axis[1] == 0 && axis[2] == 0; };
+    return is_zero(point.velocity) && is_zero(point.acceleration);
+}
 
 }  // namespace downwash

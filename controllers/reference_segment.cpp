@@ -10,14 +10,6 @@
 namespace downwash {
 namespace {
 
-bool is_zero(const double axis[3]) {
-    return axis[0] == 0 && axis[1] == 0 && axis[2] == 0;
-}
-
-bool is_at_rest(const ReferencePoint& point) {
-    return is_zero(point.velocity) && is_zero(point.acceleration);
-}
-
 double translation(const double axis[3]) {
     return std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
 }

@@ -23,8 +23,8 @@ struct PlantCommand {
 };
 
 /// Shares total thrust F3 [N] and pitch torque T2 [N m] among the rotors: the least-squares commands, not yet clipped.
-template <class T>
-void allocate(const PlantModel& model, T total_thrust_n, T pitch_torque_nm, T thrust_n[max_rotors]) {
+template <class T, class P>
+void allocate(const BasicPlantModel<P>& model, T total_thrust_n, T pitch_torque_nm, T thrust_n[max_rotors]) {
     for (int i = 0; i < model.rotor_count; ++i) {
         thrust_n[i] = T(model.force_share[i]) * total_thrust_n + T(model.torque_share_1_m[i]) * pitch_torque_nm;
     }
@@ -37,8 +37,8 @@ struct RotorWrench {
     T pitch_torque_nm;
 };
 
-/// The earlier rotor, or the rotor itself, whose K is known to be that of rotor i: a factor says so, if it can, by
-/// `same_as(rotor)`.
+/// The earliest rotor that is known to have the same thrust ratio K as rotor i, perhaps rotor i itself. A factor that
+/// knows says so by `same_as(rotor)`.
 template <class Factor>
 int rotor_with_factor_of(const Factor& factor, int rotor) {
     if constexpr (requires { factor.same_as(rotor); }) {
@@ -51,9 +51,9 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
 /// centre between them (docs/model.md 4.3).
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body()
-template <class T, class Factor>
-RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
-                            const Factor& factor) {
+template <class T, class Factor, class P>
+RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
+                            Factor&& factor) {
     RotorWrench<T> wrench{T(0), T(0)};
     T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
@@ -82,8 +82,8 @@ RotorWrench<T> rotor_wrench(const PlantModel& model, const Attitude<T>& a, T x_m
 }
 
 /// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (docs/model.md 3; thesis (4.2)).
-template <class T>
-T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
+template <class T, class P>
+T rotor_power(const BasicPlantModel<P>& model, const T thrust_n[max_rotors]) {
     T sum(0);
     for (int i = 0; i < model.rotor_count; ++i) {
         // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.
@@ -96,9 +96,9 @@ T rotor_power(const PlantModel& model, const T thrust_n[max_rotors]) {
 /// @param q coordinates [m, m, rad, rad]   @param motion at q and the speeds u: motion_at(model, q, u)
 /// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench()
 /// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
-template <class T, class Factor>
-void accelerations(const PlantModel& model, const T q[4], const Motion<T>& motion, const T thrust_n[max_rotors],
-                   T joint_torque_nm, const Factor& factor, T du[4]) {
+template <class T, class Factor, class P>
+void accelerations(const BasicPlantModel<P>& model, const T q[4], const Motion<T>& motion, const T thrust_n[max_rotors],
+                   T joint_torque_nm, Factor&& factor, T du[4]) {
     const Attitude<T>& a = motion.attitude;
     const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
     const T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
@@ -109,13 +109,13 @@ void accelerations(const PlantModel& model, const T q[4], const Motion<T>& motio
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surface effect
 /// is evaluated at the rotor positions of every stage.
 /// @param motion that of the state   @param dt_s > 0   @param factor as for rotor_wrench()
-template <class T, class Factor>
-PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
-                          const PlantCommand<T>& command, T dt_s, const Factor& factor) {
+template <class T, class Factor, class P>
+PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
+                          const PlantCommand<T>& command, T dt_s, Factor&& factor) {
     // A loop over the stages, not four copies of their code: it has to stay in the processor's instruction cache.
     constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1, 2, 2, 1};
-    const bool has_lag = model.rotor_time_constant_s > 0;
+    const bool has_lag = model.has_rotor_lag;
     const int rotors = model.rotor_count;
     T q[4], u[4], thrust_n[max_rotors];     // at the stage
     T du[4] = {}, thrust_rate[max_rotors];  // there
@@ -178,18 +178,18 @@ PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, c
 }
 
 /// The same where the motion of the state is not known yet.
-template <class T, class Factor>
-PlantState<T> flight_step(const PlantModel& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
-                          const Factor& factor) {
+template <class T, class Factor, class P>
+PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
+                          Factor&& factor) {
     return flight_step(model, state, motion_at(model, state.q, state.u), command, dt_s, factor);
 }
 
 /// The tick as one Runge-Kutta step; for planning.
 struct OneStep {
     /// The state after `dt_s`; see flight_step().
-    template <class T, class Factor>
-    PlantState<T> operator()(const PlantModel& model, const PlantState<T>& state, const Motion<T>& motion,
-                             const PlantCommand<T>& command, T dt_s, const Factor& factor) const {
+    template <class T, class P, class Factor>
+    PlantState<T> operator()(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
+                             const PlantCommand<T>& command, T dt_s, Factor&& factor) const {
         return flight_step(model, state, motion, command, dt_s, factor);
     }
 };
@@ -205,7 +205,7 @@ struct RefinedStep {
     template <class Factor>
     PlantState<double> operator()(const PlantModel& model, const PlantState<double>& state,
                                   const Motion<double>& motion, const PlantCommand<double>& command, double dt_s,
-                                  const Factor& factor) const {
+                                  Factor&& factor) const {
         return refined(model, state, command, dt_s, factor, flight_step(model, state, motion, command, dt_s, factor),
                        most_halvings);
     }
@@ -213,7 +213,7 @@ struct RefinedStep {
  private:
     template <class Factor>
     PlantState<double> refined(const PlantModel& model, const PlantState<double>& state,
-                               const PlantCommand<double>& command, double dt_s, const Factor& factor,
+                               const PlantCommand<double>& command, double dt_s, Factor&& factor,
                                const PlantState<double>& whole, int halvings) const {
         const double half_s = 0.5 * dt_s;
         const PlantState<double> middle = flight_step(model, state, command, half_s, factor);

@@ -35,6 +35,7 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
     model.multirotor_mass_kg = multirotor.mass_kg;
     model.arm_mass_kg = arm.mass_kg;
     model.total_mass_kg = multirotor.mass_kg + arm.mass_kg;
+    model.weight_n = model.total_mass_kg * standard_gravity_m_s2;
     model.inverse_mass_1_kg = 1 / model.total_mass_kg;
     model.reduced_mass_kg = multirotor.mass_kg * arm.mass_kg / model.total_mass_kg;
     model.arm_mass_ratio = arm.mass_kg / model.total_mass_kg;
@@ -64,6 +65,7 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
     }
     model.min_thrust_n = rotors.min_thrust_n;
     model.max_thrust_n = rotors.max_thrust_n;
+    model.has_rotor_lag = rotors.time_constant_s > 0;
     model.rotor_time_constant_s = rotors.time_constant_s;
     model.power_coefficient_w_n1p5 = rotors.power_coefficient_w_n1p5;
     return model;

@@ -8,32 +8,45 @@ namespace downwash {
 /// Standard gravity [m/s2].
 inline constexpr double standard_gravity_m_s2 = 9.80665;
 
-/// The plant as plain numbers, ready for the tick. Immutable once made.
-struct PlantModel {
-    double multirotor_mass_kg, arm_mass_kg, total_mass_kg;
-    double inverse_mass_1_kg;    ///< 1 / (mA + mB)
-    double reduced_mass_kg;      ///< mA mB / (mA + mB)
-    double arm_mass_ratio;       ///< mB / (mA + mB)
-    double pitch_inertia_kg_m2;  ///< IA
-    double arm_inertia_kg_m2;    ///< IB
-    double joint_x_m, joint_z_m;
-    double arm_center_of_mass_m;  ///< lB
-    double arm_length_m;          ///< L
-    double max_joint_torque_nm;
-
+/// What all lanes of a plant have in common.
+struct PlantStructure {
     int rotor_count;
-    /// The number under which the body stands behind the rotors: its hub is the centre between all of theirs.
-    [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
-    /// Hubs in the body frame, body() included.
-    double rotor_x_m[max_rotors + 1], rotor_z_m[max_rotors + 1];
-    /// Near the ground the air that rises between the rotors pushes the body at that centre (thesis (2.17)).
+    /// Near the ground the air that rises between the rotors pushes the body at their centre (thesis (2.17)).
     bool has_fountain;
-    double force_share[max_rotors];       ///< thrust of rotor i per newton of F3
-    double torque_share_1_m[max_rotors];  ///< thrust of rotor i per newton metre of T2
-    double min_thrust_n, max_thrust_n;
-    double rotor_time_constant_s;  ///< 0: thrust follows the command at once
-    double power_coefficient_w_n1p5;
+    bool has_rotor_lag;  ///< without it thrust follows the command at once
+    /// The number of the body, behind those of the rotors: its hub is the centre between all of theirs.
+    [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
 };
+
+/// What may differ from lane to lane. Nothing but T: see base/numbers.hpp.
+template <class T>
+struct PlantNumbers {
+    T multirotor_mass_kg, arm_mass_kg, total_mass_kg;
+    T weight_n;             ///< total mass times gravity
+    T inverse_mass_1_kg;    ///< 1 / (mA + mB)
+    T reduced_mass_kg;      ///< mA mB / (mA + mB)
+    T arm_mass_ratio;       ///< mB / (mA + mB)
+    T pitch_inertia_kg_m2;  ///< IA
+    T arm_inertia_kg_m2;    ///< IB
+    T joint_x_m, joint_z_m;
+    T arm_center_of_mass_m;  ///< lB
+    T arm_length_m;          ///< L
+    T max_joint_torque_nm;
+    T rotor_x_m[max_rotors + 1], rotor_z_m[max_rotors + 1];  ///< hubs in the body frame, then that of the body
+    T force_share[max_rotors];                               ///< thrust of rotor i per newton of F3
+    T torque_share_1_m[max_rotors];                          ///< thrust of rotor i per newton metre of T2
+    T min_thrust_n, max_thrust_n;
+    T rotor_time_constant_s;  ///< > 0 in every lane where the plant has a lag
+    T power_coefficient_w_n1p5;
+};
+
+/// The plant as plain numbers, ready for the tick. With T = double one model serves all lanes of a tick; with a pack
+/// every lane flies a vehicle of its own.
+template <class T>
+struct BasicPlantModel : PlantStructure, PlantNumbers<T> {};
+
+/// The plant that all lanes share, and that controllers know. Immutable once made.
+using PlantModel = BasicPlantModel<double>;
 
 /// Prepares a plant.
 /// @pre the parameters are sound (robot_errors() finds nothing) and no more than max_rotors rotors are given

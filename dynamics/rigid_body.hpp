@@ -17,8 +17,8 @@ struct Attitude {
 };
 
 /// The attitude at a pitch and at an arm angle relative to the multirotor. @pre both together at most 1e5 rad
-template <class T>
-Attitude<T> attitude(const PlantModel& model, T pitch_rad, T arm_rad) {
+template <class T, class P>
+Attitude<T> attitude(const BasicPlantModel<P>& model, T pitch_rad, T arm_rad) {
     Attitude<T> a;
     lane::sin_cos(pitch_rad, a.sin_pitch, a.cos_pitch);
     T sin_arm, cos_arm;
@@ -40,8 +40,8 @@ struct EquationsOfMotion {
 };
 
 /// The equations at an attitude and at speeds u [m/s, m/s, rad/s, rad/s].
-template <class T>
-EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude<T>& a, const T u[4]) {
+template <class T, class P>
+EquationsOfMotion<T> equations_of_motion(const BasicPlantModel<P>& model, const Attitude<T>& a, const T u[4]) {
     EquationsOfMotion<T> e;
     const T arm_mass(model.arm_mass_kg);
     const T reach(model.arm_center_of_mass_m);
@@ -62,7 +62,7 @@ EquationsOfMotion<T> equations_of_motion(const PlantModel& model, const Attitude
     const T force_x = arm_mass * acceleration_x;
     const T force_z = arm_mass * (acceleration_z + T(standard_gravity_m_s2));
     e.bias[0] = force_x;
-    e.bias[1] = arm_mass * acceleration_z + T(model.total_mass_kg * standard_gravity_m_s2);
+    e.bias[1] = arm_mass * acceleration_z + T(model.weight_n);
     e.bias[2] = e.pitch_x * force_x + e.pitch_z * force_z;
     e.bias[3] = e.arm_x * force_x + e.arm_z * force_z;
     return e;
@@ -76,8 +76,8 @@ struct Motion {
 };
 
 /// The motion at coordinates q [m, m, rad, rad] with speeds u [m/s, m/s, rad/s, rad/s].
-template <class T>
-Motion<T> motion_at(const PlantModel& model, const T q[4], const T u[4]) {
+template <class T, class P>
+Motion<T> motion_at(const BasicPlantModel<P>& model, const T q[4], const T u[4]) {
     const Attitude<T> a = attitude(model, q[2], q[3]);
     return {a, equations_of_motion(model, a, u)};
 }
@@ -93,8 +93,8 @@ struct RotationalSystem {
 };
 
 /// The system under the generalised forces Q of x, z and pitch [N, N, N m].
-template <class T>
-RotationalSystem<T> rotational_system(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3]) {
+template <class T, class P>
+RotationalSystem<T> rotational_system(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[3]) {
     RotationalSystem<T> s;
     const T reduced_mass(model.reduced_mass_kg);
     const T ratio(model.arm_mass_ratio);
@@ -111,8 +111,8 @@ RotationalSystem<T> rotational_system(const PlantModel& model, const EquationsOf
 }
 
 /// du/dt under the generalised forces Q [N, N, N m, N m].
-template <class T>
-void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
+template <class T, class P>
+void forward_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
     const RotationalSystem<T> s = rotational_system(model, e, force);
     const T g7 = force[3] - e.bias[3] - s.arm_coupling;
     const T inverse_determinant = T(1) / (s.s55 * s.s77 - s.s57 * s.s57);
@@ -125,8 +125,8 @@ void forward_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
 }
 
 /// The generalised forces Q [N, N, N m, N m] that produce du/dt.
-template <class T>
-void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, const T acceleration[4], T force[4]) {
+template <class T, class P>
+void inverse_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T acceleration[4], T force[4]) {
     const T mass(model.total_mass_kg);
     const T arm_mass(model.arm_mass_kg);
     const T* du = acceleration;
@@ -138,16 +138,16 @@ void inverse_dynamics(const PlantModel& model, const EquationsOfMotion<T>& e, co
 
 /// The joint torque [N m] that gives the arm the acceleration `arm_acceleration` [rad/s2] while the other generalised
 /// forces are `force` [N, N, N m]: forward dynamics with du7 given.
-template <class T>
-T joint_torque_for(const PlantModel& model, const EquationsOfMotion<T>& e, const T force[3], T arm_acceleration) {
+template <class T, class P>
+T joint_torque_for(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[3], T arm_acceleration) {
     const RotationalSystem<T> s = rotational_system(model, e, force);
     const T pitch_acceleration = (s.g5 - s.s57 * arm_acceleration) / s.s55;
     return s.s57 * pitch_acceleration + s.s77 * arm_acceleration + s.arm_coupling + e.bias[3];
 }
 
 /// Kinetic energy of both bodies [J].
-template <class T>
-T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T u[4]) {
+template <class T, class P>
+T kinetic_energy(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T u[4]) {
     const T translation = T(model.total_mass_kg) * (u[0] * u[0] + u[1] * u[1]);
     const T coupling = T(model.arm_mass_kg) *
                        (u[0] * (e.pitch_x * u[2] + e.arm_x * u[3]) + u[1] * (e.pitch_z * u[2] + e.arm_z * u[3]));
@@ -156,8 +156,8 @@ T kinetic_energy(const PlantModel& model, const EquationsOfMotion<T>& e, const T
 }
 
 /// Potential energy of both bodies over z = 0 [J].
-template <class T>
-T potential_energy(const PlantModel& model, const Attitude<T>& a, T z_m) {
+template <class T, class P>
+T potential_energy(const BasicPlantModel<P>& model, const Attitude<T>& a, T z_m) {
     const T arm_height = z_m + a.joint_z + T(model.arm_center_of_mass_m) * a.arm_z;
     return T(standard_gravity_m_s2) * (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
 }
@@ -169,15 +169,15 @@ struct PlanePoint {
 };
 
 /// The end effector in the plane [m].
-template <class T>
-PlanePoint<T> end_effector_position(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m) {
+template <class T, class P>
+PlanePoint<T> end_effector_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m) {
     const T length(model.arm_length_m);
     return {x_m + a.joint_x + length * a.arm_x, z_m + a.joint_z + length * a.arm_z};
 }
 
 /// The hub of rotor i in the plane [m]; its lateral offset does not change.
-template <class T>
-PlanePoint<T> rotor_position(const PlantModel& model, const Attitude<T>& a, T x_m, T z_m, int rotor) {
+template <class T, class P>
+PlanePoint<T> rotor_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m, int rotor) {
     const T bx(model.rotor_x_m[rotor]);
     const T bz(model.rotor_z_m[rotor]);
     return {x_m + a.cos_pitch * bx + a.sin_pitch * bz, z_m - a.sin_pitch * bx + a.cos_pitch * bz};

@@ -100,7 +100,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
                     {"goal_order", goal_order(problem)},
                     {"limits",
                      {{"safety_margin_m", problem.planner.safety_margin_m},
-                      {"max_tilt_rad", problem.robot.controller.max_tilt_rad},
+                      {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
                       {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
                     {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
                     {"flight", flight_json(run.flight)},

@@ -32,15 +32,16 @@ double min_clearance_m(const FlightModel& model, const PlanarPose& from, double 
 
 }  // namespace
 
-double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept {
+MotionReach motion_reach(const FlightModel& model) noexcept {
     const PlantModel& plant = model.tick().plant;
-    const double dx = to.x_m - from.x_m;
-    const double dz = to.z_m - from.z_m;
-    const double pitch = std::abs(to.pitch_rad - from.pitch_rad);
-    const double arm = std::abs(to.pitch_rad + to.arm_rad - (from.pitch_rad + from.arm_rad));
-    const double joint_reach_m = std::sqrt(plant.joint_x_m * plant.joint_x_m + plant.joint_z_m * plant.joint_z_m);
-    return std::sqrt(dx * dx + dz * dz) +
-           std::max(model.collisions().body_reach_m() * pitch, joint_reach_m * pitch + plant.arm_length_m * arm);
+    return {model.collisions().body_reach_m(),
+            std::sqrt(plant.joint_x_m * plant.joint_x_m + plant.joint_z_m * plant.joint_z_m), plant.arm_length_m};
+}
+
+double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept {
+    const double a[4] = {from.x_m, from.z_m, from.pitch_rad, from.arm_rad};
+    const double b[4] = {to.x_m, to.z_m, to.pitch_rad, to.arm_rad};
+    return motion_m(motion_reach(model), a, b);
 }
 
 bool comes_nearer_between(const FlightModel& model, const PlanarPose& from, const PlanarPose& to, double margin_m) {

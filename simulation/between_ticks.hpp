@@ -4,8 +4,12 @@
 // Private: not installed.
 
 #include "downwash/simulation/flight_model.hpp"
+#include "downwash/simulation/motion_reach.hpp"
 
 namespace downwash::simulation {
+
+/// The reach of what can touch an obstacle.
+[[nodiscard]] MotionReach motion_reach(const FlightModel& model) noexcept;
 
 /// No point of the robot's surface moves farther between two poses whose coordinates all change evenly [m].
 [[nodiscard]] double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept;

@@ -13,7 +13,7 @@
 namespace downwash {
 namespace {
 
-using simulation::TickRecord;
+using Given = controllers::Actuation<double>;
 
 constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
 
@@ -37,7 +37,7 @@ class Recorder {
     Recorder(const FlightModel& model, const Factor& factor, Execution& execution)
         : model_(model), plant_(model.tick().plant), factor_(factor), execution_(execution) {}
 
-    void add_row(const FlightState& state, const ReferencePoint& reference, const TickRecord<double>& record) {
+    void add_row(const FlightState& state, const ReferencePoint& reference, const Given& given) {
         FlightRow row;
         row.t_s = static_cast<double>(tick_++) * model_.tick().tick_s;
         row.reference = reference;
@@ -45,10 +45,10 @@ class Recorder {
         std::copy(std::begin(state.plant.u), std::end(state.plant.u), row.u);
         const auto attitude = dynamics::attitude(plant_, row.q[2], row.q[3]);
         const bool has_lag = plant_.rotor_time_constant_s > 0;
-        const double* thrust_n = has_lag ? state.plant.thrust_n : record.command.thrust_n;
+        const double* thrust_n = has_lag ? state.plant.thrust_n : given.command.thrust_n;
         for (int i = 0; i < plant_.rotor_count; ++i) {
             const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
-            row.rotor_command_n[i] = record.command.thrust_n[i];
+            row.rotor_command_n[i] = given.command.thrust_n[i];
             row.rotor_lag_n[i] = state.plant.thrust_n[i];
             row.rotor_factor[i] = factor_(i, hub.x, hub.z);
             row.thrust_command_n += row.rotor_command_n[i];
@@ -56,7 +56,7 @@ class Recorder {
             row.thrust_n += row.rotor_factor[i] * thrust_n[i];
             row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * thrust_n[i];
         }
-        row.arm_torque_nm = record.command.joint_torque_nm;
+        row.arm_torque_nm = given.command.joint_torque_nm;
         row.clearance_m = clearance_m_;
         const auto tip = dynamics::end_effector_position(plant_, attitude, row.q[0], row.q[1]);
         row.end_effector_x_m = tip.x;
@@ -64,7 +64,7 @@ class Recorder {
         row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
         row.energy_j = state.plant.energy_j;
         execution_.rows.push_back(row);
-        execution_.max_saturation = std::max(execution_.max_saturation, record.saturation);
+        execution_.max_saturation = std::max(execution_.max_saturation, given.saturation);
     }
 
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
@@ -94,9 +94,9 @@ class Recorder {
         return Rejection::none;
     }
 
-    Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const TickRecord<double>& record,
-                         const FlightState& next, const ReferencePoint& next_reference) {
-        add_row(before, reference, record);
+    Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
+                           const FlightState& next, const ReferencePoint& next_reference) {
+        add_row(before, reference, given);
         execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
         const Rejection rejection = judge(next, next_reference, &before);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
@@ -137,11 +137,6 @@ std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot
     return segments;
 }
 
-bool is_standing(const ReferencePoint& point) {
-    const auto is_zero = [](const double(&v)[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
-    return is_zero(point.velocity) && is_zero(point.acceleration);
-}
-
 /// The ticks at which the holds of the goals end, in their order; fewer when the reference does not come to all of
 /// them. The last one is that of the last goal, which is held after the last knot.
 std::vector<std::int64_t> hold_ends(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
@@ -150,7 +145,7 @@ std::vector<std::int64_t> hold_ends(const FlightModel& model, const std::vector<
     for (std::size_t i = 1; i < knots.size() && ends.size() + 1 < goals.size(); ++i) {
         const Goal& goal = goals[ends.size()];
         const ReferencePoint& point = knots[i].point;
-        if (point == knots[i - 1].point && is_standing(point) &&
+        if (point == knots[i - 1].point && is_at_rest(point) &&
             knots[i].tick - knots[i - 1].tick >= hold_ticks(goal, model, point) &&
             is_met(goal_error(goal, model.tick().plant, level_at(point).q))) {
             ends.push_back(knots[i].tick);
@@ -212,17 +207,17 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         }
         rejection = simulation::fly_ticks(
             model.tick(), segment, factor, dynamics::RefinedStep{}, state,
-            [&](const FlightState& before, const ReferencePoint& at, const TickRecord<double>& record,
+            [&](const FlightState& before, const ReferencePoint& at, const Given& given,
                 const FlightState& next, const ReferencePoint& next_reference) {
                 reference = next_reference;
-                return recorder.after_tick(before, at, record, next, next_reference);
+                return recorder.after_tick(before, at, given, next, next_reference);
             });
     }
-    TickRecord<double> record{};
-    static_cast<void>(simulation::control(model.tick(), state,
-                                          dynamics::motion_at(model.tick().plant, state.plant.q, state.plant.u),
-                                          simulation::setpoint(reference), record));
-    recorder.add_row(state, reference, record);
+    // What the controller commands at the end is part of the last row; nothing is flown with it.
+    Given given{};
+    static_cast<void>(
+        simulation::tick(model.tick(), state, reference, factor, given));
+    recorder.add_row(state, reference, given);
 
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;

@@ -9,7 +9,7 @@
 namespace downwash {
 namespace {
 
-using simulation::TickRecord;
+using Given = controllers::Actuation<double>;
 
 constexpr std::int64_t ticks_between_questions = 4096;
 
@@ -21,9 +21,9 @@ bool is_flyable(const FlightModel& model, const AeroMap& map, const FlightState&
 
 /// The rules, cheapest first.
 Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                      const simulation::RuleLimits& limits, const TickRecord<double>& record, const FlightState& before,
-                      const FlightState& state, const ReferencePoint& reference) {
-    const double broken = simulation::broken_rule(limits, record.saturation, state, simulation::setpoint(reference));
+                        const simulation::RuleLimits& limits, const Given& given,
+                        const FlightState& before, const FlightState& state, const ReferencePoint& reference) {
+    const double broken = simulation::broken_rule(limits, given.saturation, state, reference);
     if (broken > 0) {
         return static_cast<Rejection>(static_cast<int>(broken));
     }
@@ -39,19 +39,19 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
 
 template <class Factor>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, const Factor& factor) {
+                       const ReferenceSegment& segment, FlightState& state, Factor&& factor) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     SegmentFlight flight;
     flight.rejection = simulation::fly_ticks(
         model.tick(), segment, factor, dynamics::OneStep{}, state,
-        [&](const FlightState& before, const ReferencePoint&, const TickRecord<double>& record, const FlightState& next,
+        [&](const FlightState& before, const ReferencePoint&, const Given& given, const FlightState& next,
             const ReferencePoint& next_reference) {
             ++flight.ticks;
             if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
                 return Rejection::interrupted;
             }
             flight.length_m += std::sqrt(simulation::squared_step_m2(model.tick().plant, before, next));
-            const Rejection rejection = broken_rule(model, map, rules, limits, record, before, next, next_reference);
+            const Rejection rejection = broken_rule(model, map, rules, limits, given, before, next, next_reference);
             if (rejection == Rejection::none && rules.measures_clearance) {
                 flight.clearance_integral +=
                     model.tick().tick_s * simulation::clearance_density(model.collisions().clearance_m(pose_of(next)));
@@ -64,7 +64,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
 }  // namespace
 
 double tracking_error_m(const FlightState& state, const ReferencePoint& reference) {
-    return simulation::tracking_error(state, simulation::setpoint(reference));
+    return simulation::tracking_error(state, reference);
 }
 
 bool is_stable(const FlightState& state, const ReferencePoint& reference) {
@@ -76,7 +76,7 @@ SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRule
     if (map == nullptr) {
         return fly_with(model, map, rules, segment, state, simulation::NoEffect{});
     }
-    return fly_with(model, map, rules, segment, state, simulation::MapEffect{model, *map});
+    return fly_with(model, map, rules, segment, state, simulation::MapEffect<double>(simulation::rotor_maps(model, *map)));
 }
 
 }  // namespace downwash

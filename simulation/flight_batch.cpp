@@ -31,29 +31,18 @@ struct Kernels {
 
 constexpr int few_lanes = lane_count / 2;
 
-Kernels kernels_for(Instructions instructions) {
+Kernels kernels_for(Instructions instructions, std::size_t law) {
 #ifdef DOWNWASH_HAS_AVX_KERNELS
     if (instructions == Instructions::avx2) {
-        return {simulation::fly_lanes_avx2, simulation::fly_lanes_avx2};
+        return {simulation::avx2_kernel(law), simulation::avx2_kernel(law)};
     }
     if (instructions == Instructions::avx512) {
-        return {simulation::fly_lanes_avx512, simulation::fly_lanes_avx2};
+        return {simulation::avx512_kernel(law), simulation::avx2_kernel(law)};
     }
 #endif
     assert(instructions == Instructions::baseline);
     static_cast<void>(instructions);
-    return {simulation::fly_lanes_baseline, simulation::fly_lanes_baseline};
-}
-
-double reach_m(const Vector3& half_size_m, const Vector3& center_m) {
-    const double x = std::abs(center_m[0]) + half_size_m[0];
-    const double z = std::abs(center_m[2]) + half_size_m[2];
-    return std::sqrt(x * x + z * z);
-}
-
-double factor_outside(const void* context, int rotor, double x_m, double z_m) {
-    const auto& world = *static_cast<const FlightWorld*>(context);
-    return world.map->factor(world.model.rotor_layer(rotor), x_m, z_m);
+    return {simulation::baseline_kernel(law), simulation::baseline_kernel(law)};
 }
 
 FlightKernelModel make_kernel_model(const FlightWorld& world) {
@@ -61,25 +50,16 @@ FlightKernelModel make_kernel_model(const FlightWorld& world) {
     const PlantModel& plant = tick.plant;
     FlightKernelModel kernel{};
     kernel.tick = &tick;
+    kernel.law = std::visit([](const auto& law) { return static_cast<const void*>(&law); }, tick.law);
     kernel.limits = simulation::rule_limits(world.rules, world.model.robot().arm);
-    kernel.joint_reach_m = std::sqrt(plant.joint_x_m * plant.joint_x_m + plant.joint_z_m * plant.joint_z_m);
-    kernel.arm_length_m = plant.arm_length_m;
-    kernel.body_reach_m = world.model.collisions().body_reach_m();
+    kernel.reach = simulation::motion_reach(world.model);
     for (int i = 0; i < plant.rotor_count; ++i) {
-        kernel.body_reach_m =
-            std::max(kernel.body_reach_m, reach_m({0, 0, 0}, {plant.rotor_x_m[i], 0, plant.rotor_z_m[i]}));
+        const double hub_m = std::sqrt(plant.rotor_x_m[i] * plant.rotor_x_m[i] + plant.rotor_z_m[i] * plant.rotor_z_m[i]);
+        kernel.reach.body_m = std::max(kernel.reach.body_m, hub_m);
     }
     kernel.has_map = world.map != nullptr;
     if (kernel.has_map) {
-        const simulation::MapEffect effect(world.model, *world.map);
-        for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
-            kernel.view[i] = world.map->view(world.model.rotor_layer(i));
-        }
-        for (int i = 0; i < plant.rotor_count; ++i) {
-            kernel.same_as[i] = effect.same_as(i);
-        }
-        kernel.factor_outside = factor_outside;
-        kernel.context = &world;
+        kernel.maps = simulation::rotor_maps(world.model, *world.map);
     }
     return kernel;
 }
@@ -109,7 +89,7 @@ struct FlightCrew::Impl {
         : rules(std::move(the_rules)),
           world{model, map, rules, goal},
           kernel_model(make_kernel_model(world)),
-          kernels(kernels_for(instructions)) {}
+          kernels(kernels_for(instructions, model.tick().law.index())) {}
 
     /// Flies jobs until none is left; several threads may do so at once.
     void work() {

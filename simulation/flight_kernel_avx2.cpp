@@ -4,8 +4,8 @@
 
 namespace downwash::simulation {
 
-void fly_lanes_avx2(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
-    fly_lanes(model, lanes, most_ticks);
+FlightKernel avx2_kernel(std::size_t law) {
+    return kernel_of(law);
 }
 
 }  // namespace downwash::simulation

@@ -2,8 +2,8 @@
 
 namespace downwash::simulation {
 
-void fly_lanes_baseline(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
-    fly_lanes(model, lanes, most_ticks);
+FlightKernel baseline_kernel(std::size_t law) {
+    return kernel_of(law);
 }
 
 }  // namespace downwash::simulation

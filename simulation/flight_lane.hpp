@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "downwash/simulation/between_ticks.hpp"
@@ -42,7 +43,7 @@ class FlightLane {
     void begin(FlightJob& job) {
         job_ = &job;
         leg_ = 0;
-        put_state(job.start);
+        write(job.start, lanes_->state);
         lanes_->is_active[number_] = 1;
         level_ = 0;
         look_after_every_tick();
@@ -87,27 +88,36 @@ class FlightLane {
 
  private:
     void copy_numbers(const FlightLane& other) {
-        static_assert(sizeof(FlightLanes) % (lane_count * sizeof(double)) == 0);
-        double* const first = &lanes_->q[0][0];
-        for (std::size_t row = 0; row < sizeof(FlightLanes) / (lane_count * sizeof(double)); ++row) {
-            first[row * lane_count + static_cast<std::size_t>(number_)] =
-                first[row * lane_count + static_cast<std::size_t>(other.number_)];
+        using Row = double[lane_count];
+        static_assert(sizeof(FlightLanes) % sizeof(Row) == 0);
+        for (Row& row : std::span(reinterpret_cast<Row*>(lanes_), sizeof(FlightLanes) / sizeof(Row))) {
+            row[number_] = row[other.number_];
         }
     }
+
+    /// This lane's part of a struct.
+    template <class Struct>
+    [[nodiscard]] Struct read(const LaneRows<Struct>& rows) const noexcept {
+        Struct all;
+        for (int i = 0; i < number_count<double, Struct>; ++i) {
+            set_number_at(all, i, rows[i][number_]);
+        }
+        return all;
+    }
+    template <class Struct>
+    void write(const Struct& from, LaneRows<Struct>& rows) const noexcept {
+        for (int i = 0; i < number_count<double, Struct>; ++i) {
+            rows[i][number_] = number_at<double>(from, i);
+        }
+    }
+    [[nodiscard]] FlightState state() const noexcept { return read<FlightState>(lanes_->state); }
 
     [[nodiscard]] const PlantModel& plant() const noexcept { return world_->model.tick().plant; }
 
     void begin_leg() {
         const ReferenceSegment& segment = job_->legs[leg_].segment;
-        const auto write = [&](double(&rows)[3][3][lane_count], const ReferencePoint& point) {
-            for (int axis = 0; axis < 3; ++axis) {
-                rows[0][axis][number_] = point.position[axis];
-                rows[1][axis][number_] = point.velocity[axis];
-                rows[2][axis][number_] = point.acceleration[axis];
-            }
-        };
-        write(lanes_->reference, segment.from());
-        write(lanes_->end, segment.to());
+        write(segment.from(), lanes_->reference);
+        write(segment.to(), lanes_->end);
         for (int axis = 0; axis < 3; ++axis) {
             for (int power = 0; power < 6; ++power) {
                 lanes_->coefficient[axis][power][number_] = segment.coefficients()[axis][power];
@@ -165,7 +175,7 @@ class FlightLane {
         const PlanarPose pose = pose_of(now);
         const CollisionChecker& collisions = world_->model.collisions();
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
-        if (comes_nearer_between(world_->model, pose_before(), pose, world_->rules.margin_m)) {
+        if (comes_nearer_between(world_->model, read<PlanarPose>(lanes_->before), pose, world_->rules.margin_m)) {
             return Rejection::collision;
         }
         if (world_->rules.measures_clearance || !find_free_motion(pose)) {
@@ -185,21 +195,13 @@ class FlightLane {
         for (int level = std::max(0, level_ - 1); level < no_free_motion; ++level) {
             if (!world_->model.collisions().is_nearer_than(pose, world_->rules.margin_m + free_motions_m[level])) {
                 level_ = level;
-                const double at[] = {pose.x_m, pose.z_m, pose.pitch_rad, pose.arm_rad};
-                for (int i = 0; i < 4; ++i) {
-                    lanes_->anchor[i][number_] = at[i];
-                }
+                write(pose, lanes_->anchor);
                 lanes_->free_motion_m[number_] = free_motions_m[level] - clearance_error_m;
                 return true;
             }
         }
         level_ = no_free_motion;
         return false;
-    }
-
-    [[nodiscard]] PlanarPose pose_before() const noexcept {
-        const auto& before = lanes_->before;
-        return {before[0][number_], before[1][number_], before[2][number_], before[3][number_]};
     }
 
     void end_with(Rejection rejection) {
@@ -212,43 +214,6 @@ class FlightLane {
         }
         job_ = nullptr;
         lanes_->is_active[number_] = 0;
-    }
-
-    [[nodiscard]] FlightState state() const noexcept {
-        FlightState s{};
-        for (int i = 0; i < 4; ++i) {
-            s.plant.q[i] = lanes_->q[i][number_];
-            s.plant.u[i] = lanes_->u[i][number_];
-        }
-        for (int i = 0; i < max_rotors; ++i) {
-            s.plant.thrust_n[i] = lanes_->thrust_n[i][number_];
-        }
-        s.plant.energy_j = lanes_->energy_j[number_];
-        s.controller = {{lanes_->position_integral[0][number_], lanes_->position_integral[1][number_]},
-                        lanes_->pitch_rate_integral[number_],
-                        lanes_->arm_integral[number_],
-                        lanes_->pitch_reference_rad[number_],
-                        lanes_->pitch_reference_rate[number_],
-                        lanes_->rate_reference[number_]};
-        return s;
-    }
-
-    void put_state(const FlightState& s) noexcept {
-        for (int i = 0; i < 4; ++i) {
-            lanes_->q[i][number_] = s.plant.q[i];
-            lanes_->u[i][number_] = s.plant.u[i];
-        }
-        for (int i = 0; i < max_rotors; ++i) {
-            lanes_->thrust_n[i][number_] = s.plant.thrust_n[i];
-        }
-        lanes_->energy_j[number_] = s.plant.energy_j;
-        lanes_->position_integral[0][number_] = s.controller.position_integral[0];
-        lanes_->position_integral[1][number_] = s.controller.position_integral[1];
-        lanes_->pitch_rate_integral[number_] = s.controller.pitch_rate_integral;
-        lanes_->arm_integral[number_] = s.controller.arm_integral;
-        lanes_->pitch_reference_rad[number_] = s.controller.pitch_reference_rad;
-        lanes_->pitch_reference_rate[number_] = s.controller.pitch_reference_rate;
-        lanes_->rate_reference[number_] = s.controller.rate_reference;
     }
 
     const FlightWorld* world_;

@@ -27,7 +27,7 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
                          const AeroSettings& aero)
     : robot_(robot),
       plane_(plane),
-      tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)), robot.controller,
+      tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)), robot.controller.law,
             1 / robot.controller.rate_hz},
       collisions_(scene, plane, robot.shape()) {
     EffectLayers effects = effect_layers(robot.rotors, scene, aero);
@@ -90,7 +90,7 @@ FlightState FlightModel::state_at(const double q[4], const double u[4]) const no
     FlightState state{};
     std::copy(q, q + 4, state.plant.q);
     std::copy(u, u + 4, state.plant.u);
-    state.controller = controllers::rested_controller(q[2]);
+    state.memory = std::visit([&](const auto& law) { return controllers::remembered(law.rested(q[2])); }, tick_.law);
     // Rotors that lag begin with the thrust that carries the weight.
     const PlantModel& plant = tick_.plant;
     for (int i = 0; i < plant.rotor_count; ++i) {

@@ -32,7 +32,7 @@ inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm
 
 /// Distance of the vehicle from its reference in (x, z) [m].
 template <class T>
-T tracking_error(const State<T>& state, const controllers::Setpoint<T>& reference) {
+T tracking_error(const State<T>& state, const BasicReferencePoint<T>& reference) {
     const T dx = reference.position[0] - state.plant.q[0];
     const T dz = reference.position[1] - state.plant.q[1];
     return lane::sqrt(dx * dx + dz * dz);
@@ -55,7 +55,7 @@ T instability(const State<T>& state, T tracking_error_m) {
 /// @param saturation of the tick   @param state,reference at its end
 template <class T>
 T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
-              const controllers::Setpoint<T>& reference) {
+              const BasicReferencePoint<T>& reference) {
     const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);

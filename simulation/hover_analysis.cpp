@@ -24,49 +24,7 @@ constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "r
 /// Nearer to 1 than this a spectral radius is not known to be below: rounding and differences.
 constexpr double radius_slack = 1e-9;
 
-constexpr int most_coordinates = 8 + 7 + max_rotors;
-
-/// Those numbers of a state that later ticks depend on.
-class Coordinates {
- public:
-    Coordinates(const TickModel& model, const HoverTrim& trim, FlightState& state) {
-        for (double& coordinate : state.plant.q) {
-            add(coordinate);
-        }
-        for (double& rate : state.plant.u) {
-            add(rate);
-        }
-        if (model.plant.rotor_time_constant_s > 0) {
-            for (int i = 0; i < model.plant.rotor_count; ++i) {
-                add(state.plant.thrust_n[i]);
-            }
-        }
-        const ControllerGains& gains = model.gains;
-        auto& memory = state.controller;
-        const bool* at_limit = trim.is_integral_at_limit;
-        add_if(gains.position_ki > 0 && !at_limit[0], memory.position_integral[0]);
-        add_if(gains.position_ki > 0 && !at_limit[1], memory.position_integral[1]);
-        add_if(gains.attitude_kiu5 > 0 && !at_limit[2], memory.pitch_rate_integral);
-        add_if(gains.arm_ki > 0 && !at_limit[3], memory.arm_integral);
-        add(memory.pitch_reference_rad);
-        add(memory.pitch_reference_rate);
-        add_if(gains.rate_feed_forward, memory.rate_reference);
-    }
-
-    [[nodiscard]] int count() const noexcept { return count_; }
-    [[nodiscard]] double& operator[](int i) const noexcept { return *entries_[static_cast<std::size_t>(i)]; }
-
- private:
-    void add(double& entry) { entries_[static_cast<std::size_t>(count_++)] = &entry; }
-    void add_if(bool feeds_back, double& entry) {
-        if (feeds_back) {
-            add(entry);
-        }
-    }
-
-    std::array<double*, most_coordinates> entries_{};
-    int count_ = 0;
-};
+constexpr int state_numbers = number_count<double, FlightState>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -88,30 +46,36 @@ double natural_log(double x) {
     return 2 * halvings * t * sum;
 }
 
-using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_coordinates, most_coordinates>;
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_numbers, state_numbers>;
 
-/// Of one tick at its fixed point, by central differences. The effect is linear already, so that the step may be
-/// small: 1e-6 leaves an error of some 1e-10.
+/// Of one tick at its fixed point, by central differences of those numbers of the state that feed back. The effect is
+/// linear already, so that the step may be small: 1e-6 leaves an error of some 1e-10.
 Jacobian jacobian(const TickModel& model, const HoverTrim& trim, const LinearEffect& effect) {
     constexpr double step = 1e-6;
-    const auto reference = simulation::setpoint(trim.reference);
-    FlightState state = trim.state;
-    const Coordinates from(model, trim, state);
-    Jacobian result(from.count(), from.count());
-    for (int column = 0; column < from.count(); ++column) {
-        const double here = from[column];
-        simulation::TickRecord<double> record{};
-        from[column] = here + step;
-        FlightState above = simulation::tick(model, state, reference, effect, record);
-        from[column] = here - step;
-        FlightState below = simulation::tick(model, state, reference, effect, record);
-        from[column] = here;
-        const Coordinates to_above(model, trim, above);
-        const Coordinates to_below(model, trim, below);
-        for (int row = 0; row < from.count(); ++row) {
-            result(row, column) = (to_above[row] - to_below[row]) / (2 * step);
+    const auto feeds_back = [&](int i) { return number_at<bool>(trim.feeds_back, i); };
+    const auto after_change = [&](int i, double change) {
+        FlightState state = trim.state;
+        set_number_at(state, i, number_at<double>(state, i) + change);
+        controllers::Actuation<double> given{};
+        return simulation::tick(model, state, trim.reference, effect, given);
+    };
+    Jacobian result(state_numbers, state_numbers);
+    int columns = 0;
+    for (int i = 0; i < state_numbers; ++i) {
+        if (!feeds_back(i)) {
+            continue;
         }
+        const FlightState above = after_change(i, step);
+        const FlightState below = after_change(i, -step);
+        int rows = 0;
+        for (int k = 0; k < state_numbers; ++k) {
+            if (feeds_back(k)) {
+                result(rows++, columns) = (number_at<double>(above, k) - number_at<double>(below, k)) / (2 * step);
+            }
+        }
+        ++columns;
     }
+    result.conservativeResize(columns, columns);
     return result;
 }
 
@@ -160,14 +124,14 @@ void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearE
 
     double unit_n[max_rotors];
     dynamics::allocate(plant, 1.0, 0.0, unit_n);
-    stability.force_gain_n_m = plant.total_mass_kg * model.gains.position_kp * wrench(q[1], 0, unit_n).thrust_n;
+    stability.force_gain_n_m = plant.total_mass_kg * trim.height_gain_1_s2 * wrench(q[1], 0, unit_n).thrust_n;
     dynamics::allocate(plant, 0.0, 1.0, unit_n);
     const auto equations =
         dynamics::equations_of_motion(plant, dynamics::attitude(plant, 0.0, q[3]), trim.state.plant.u);
     const double nothing[3] = {};
     const double inertia_kg_m2 = dynamics::rotational_system(plant, equations, nothing).s55;
     stability.torque_gain_nm_rad =
-        inertia_kg_m2 * model.gains.attitude_k5 * model.gains.attitude_ku5 * wrench(q[1], 0, unit_n).pitch_torque_nm;
+        inertia_kg_m2 * trim.pitch_gain_1_s2 * wrench(q[1], 0, unit_n).pitch_torque_nm;
 }
 
 /// Whether what is above a rotor pulls it in a way that K does not tell: some of it is so near that its part of K is

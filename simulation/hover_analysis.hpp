@@ -5,6 +5,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/reference_point.hpp"
+#include "downwash/controllers/rest.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash {
@@ -17,17 +18,6 @@ enum class HoldVerdict : std::uint8_t {
     unstable,        ///< balanced, but the smallest disturbance grows
     unknown,         ///< balanced, and stable but for a ceiling whose pull is beyond the model: capped, or not measured
     stable,          ///< balanced, and small disturbances decay
-};
-
-/// What stands in the way of an equilibrium.
-enum class HoldLimit : std::uint8_t {
-    none,
-    arm_angle,     ///< beyond the limits of the arm
-    rotor_thrust,  ///< a rotor would have to give more than its greatest or less than its least thrust
-    joint_torque,  ///< the joint is too weak to carry the arm
-    tilt,          ///< countering the surfaces' torque takes a pitch reference beyond max_tilt
-    vertical,      ///< the vertical force would fall below the controller's least (min_vertical_force_ratio)
-    gain,          ///< a loop without gain cannot ask for what is needed
 };
 
 /// Name in files: "no_equilibrium".
@@ -46,8 +36,10 @@ struct HoverTrim {
     double joint_torque_nm = 0;
     double saturation = 0;           ///< greatest demand over its limit, as in a tick
     double pitch_reference_rad = 0;  ///< that the controller asks for in vain, to counter the surfaces' torque
-    /// Integrators at their limit do not feed back: x, z, pitch rate, arm.
-    bool is_integral_at_limit[4] = {};
+    double height_gain_1_s2 = 0;     ///< vertical acceleration that the controller sets against a metre of error
+    double pitch_gain_1_s2 = 0;      ///< pitch acceleration that it sets against a radian of error
+    /// The numbers of the state on which later ticks depend: an integrator at its limit is none of them.
+    simulation::State<bool> feeds_back{};
 };
 
 /// How a small disturbance of a hover develops, and what competes there.

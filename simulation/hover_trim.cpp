@@ -25,34 +25,11 @@ RotorWrench<double> command_for(const PlantModel& plant, const FlightState& at, 
             (a.thrust_n * wanted.pitch_torque_nm - wanted.thrust_n * a.pitch_torque_nm) / determinant};
 }
 
-/// The error that makes a gain give an action; infinite where there is no gain.
-double error_for(double action, double gain) {
-    return action == 0 ? 0 : action / gain;
-}
-
-/// What a PID settles at when it has to give `action` for ever.
-struct SettledPid {
-    double error, integral;
-    bool is_at_limit;
-};
-
-SettledPid settled_pid(double action, double kp, double ki, double limit) {
-    if (!(ki > 0)) {
-        return {error_for(action, kp), 0, false};
-    }
-    if (std::abs(action) < limit) {
-        return {0, action / ki, false};
-    }
-    const double most = action > 0 ? limit : -limit;
-    return {error_for(action - most, kp), most / ki, true};
-}
-
 }  // namespace
 
 HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEffect& effect,
                      const FlightState& resting) {
     const PlantModel& plant = model.plant;
-    const ControllerGains& gains = model.gains;
     HoverTrim trim;
     trim.state = resting;
     const double arm_rad = resting.plant.q[3];
@@ -63,63 +40,43 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
     const RotorWrench<double> command = command_for(plant, resting, effect, {e.bias[1], e.bias[2]});
     dynamics::allocate(plant, command.thrust_n, command.pitch_torque_nm, trim.rotor_command_n);
     trim.joint_torque_nm = e.bias[3];
-
-    // The controller's side, from the last block of figure C.2 to the first. It knows nothing of surfaces, and asks
-    // for accelerations that never come.
-    const double force[3] = {0, command.thrust_n, command.pitch_torque_nm};
-    const double torque_at_rest_nm = dynamics::joint_torque_for(plant, e, force, 0.0);
-    const double torque_per_v7 = dynamics::joint_torque_for(plant, e, force, 1.0) - torque_at_rest_nm;
-    const double v7 = (trim.joint_torque_nm - torque_at_rest_nm) / torque_per_v7;
-    const dynamics::RotationalSystem<double> s = dynamics::rotational_system(plant, e, force);
-    const double v5 = (s.g5 - s.s57 * v7) / s.s55;
-    const SettledPid rate =
-        settled_pid(v5, gains.attitude_ku5, gains.attitude_kiu5, gains.attitude_integral_limit_rad_s2);
-    trim.pitch_reference_rad = error_for(rate.error, gains.attitude_k5);
-    double sine = 0;
-    double cosine = 1;
-    lane::sin_cos(trim.pitch_reference_rad, sine, cosine);
-    const double vx = (sine / cosine * command.thrust_n - plant.arm_mass_kg * e.arm_x * v7) / plant.total_mass_kg;
-    const double vz = (command.thrust_n - e.bias[1] - plant.arm_mass_kg * e.arm_z * v7) / plant.total_mass_kg;
-    const double position_limit = gains.position_integral_limit_m_s2;
-    const SettledPid x = settled_pid(vx, gains.position_kp, gains.position_ki, position_limit);
-    const SettledPid z = settled_pid(vz, gains.position_kp, gains.position_ki, position_limit);
-    const SettledPid arm = settled_pid(v7, gains.arm_kp, gains.arm_ki, gains.arm_integral_limit_rad_s2);
-
-    trim.reference.position[0] = resting.plant.q[0] + x.error;
-    trim.reference.position[1] = resting.plant.q[1] + z.error;
-    trim.reference.position[2] = arm_rad + arm.error;
-    trim.is_integral_at_limit[0] = x.is_at_limit;
-    trim.is_integral_at_limit[1] = z.is_at_limit;
-    trim.is_integral_at_limit[2] = rate.is_at_limit;
-    trim.is_integral_at_limit[3] = arm.is_at_limit;
+    for (bool& is_used : trim.feeds_back.plant.q) {
+        is_used = true;
+    }
+    for (bool& is_used : trim.feeds_back.plant.u) {
+        is_used = true;
+    }
     for (int i = 0; i < plant.rotor_count; ++i) {
         trim.state.plant.thrust_n[i] = trim.rotor_command_n[i];
+        trim.feeds_back.plant.thrust_n[i] = plant.has_rotor_lag;
     }
-    trim.state.controller.position_integral[0] = x.integral;
-    trim.state.controller.position_integral[1] = z.integral;
-    trim.state.controller.pitch_rate_integral = rate.integral;
-    trim.state.controller.arm_integral = arm.integral;
-    trim.state.controller.pitch_reference_rad = trim.pitch_reference_rad;
-    trim.state.controller.pitch_reference_rate = 0;
-    trim.state.controller.rate_reference = rate.error;
 
-    // Its limits.
+    // The controller's side.
+    std::visit(
+        [&](const auto& law) {
+            const auto rest = law.rest(plant, e, {command, trim.joint_torque_nm});
+            trim.state.memory = controllers::remembered(rest.memory);
+            trim.feeds_back.memory = controllers::remembered(rest.feeds_back);
+            trim.reference.position[0] = resting.plant.q[0] + rest.error[0];
+            trim.reference.position[1] = resting.plant.q[1] + rest.error[1];
+            trim.reference.position[2] = arm_rad + rest.error[2];
+            trim.pitch_reference_rad = rest.pitch_reference_rad;
+            trim.height_gain_1_s2 = rest.height_gain_1_s2;
+            trim.pitch_gain_1_s2 = rest.pitch_gain_1_s2;
+            trim.limit = rest.limit;
+        },
+        model.law);
+
+    // The plant's limits come first.
     const double joint_saturation = std::abs(trim.joint_torque_nm) / plant.max_joint_torque_nm;
-    const double rotor_saturation = thrust_saturation(plant, trim.rotor_command_n);
+    const double rotor_saturation = controllers::thrust_saturation(plant, trim.rotor_command_n);
     trim.saturation = lane::max(joint_saturation, rotor_saturation);
-    const double least_force_n = gains.min_vertical_force_ratio * e.bias[1];
     if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {
         trim.limit = HoldLimit::arm_angle;
     } else if (!(rotor_saturation < 1) || !std::isfinite(command.thrust_n + command.pitch_torque_nm)) {
         trim.limit = HoldLimit::rotor_thrust;
     } else if (!(joint_saturation < 1)) {
         trim.limit = HoldLimit::joint_torque;
-    } else if (!(std::abs(trim.pitch_reference_rad) < gains.max_tilt_rad)) {
-        trim.limit = HoldLimit::tilt;
-    } else if (!(command.thrust_n > least_force_n)) {
-        trim.limit = HoldLimit::vertical;
-    } else if (!std::isfinite(x.error + z.error + arm.error)) {
-        trim.limit = HoldLimit::gain;
     }
     return trim;
 }

@@ -5,7 +5,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
-#include "downwash/controllers/gains.hpp"
+#include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/scene/shapes.hpp"
 
@@ -18,7 +18,7 @@ struct Robot {
     std::vector<BodyShape> body;
     RotorParameters rotors;
     ArmParameters arm;
-    ControllerGains controller;
+    Controller controller;
 
     /// Total mass [kg].
     [[nodiscard]] double mass_kg() const noexcept { return multirotor.mass_kg + arm.mass_kg; }

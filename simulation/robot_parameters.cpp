@@ -150,74 +150,83 @@ void add_arm(Rows& rows) {
             .at_most(1e5));
 }
 
-/// A gain or a limit of a controller: never negative.
-template <class Member>
-Parameter<Robot> gain(std::string_view path, std::string_view description, Member member) {
-    return number("controller." + std::string(path), description, member).at_least(0).at_most(1e4);
+/// Collects the keys that a control law describes.
+template <class Law>
+class LawRows {
+ public:
+    explicit LawRows(Rows& rows) : rows_(rows) {}
+
+    void add(Parameter<Robot> row) {
+        if constexpr (std::variant_size_v<ControlLaw> > 1) {
+            row = std::move(row).only(std::string("controller.type is ") + Law::name, is_flown);
+        }
+        rows_.push_back(std::move(row));
+    }
+    void group(std::string_view path, std::string_view description) { add(downwash::group(below(path), description)); }
+    /// Never negative.
+    Parameter<Robot> gain(std::string_view path, std::string_view description, double Law::*member) const {
+        return number(path, description, member).at_least(0).at_most(1e4);
+    }
+    Parameter<Robot> number(std::string_view path, std::string_view description, double Law::*member) const {
+        return parameters::number<Robot>(below(path), description, place(member));
+    }
+    Parameter<Robot> flag(std::string_view path, std::string_view description, bool Law::*member) const {
+        return parameters::flag<Robot>(below(path), description, place(member));
+    }
+
+ private:
+    static std::string below(std::string_view path) { return "controller." + std::string(path); }
+    static bool is_flown(const Robot& robot, std::size_t /*index*/) {
+        return std::holds_alternative<Law>(robot.controller.law);
+    }
+    template <class Number>
+    static auto place(Number Law::*member) {
+        return [member](auto& robot) -> auto& { return std::get<Law>(robot.controller.law).*member; };
+    }
+
+    Rows& rows_;
+};
+
+/// The key that says which law flies the robot, once there is a choice.
+template <class... Laws>
+void add_law_type(Rows& rows, const std::variant<Laws...>* /*laws*/) {
+    auto row = parameters::choice<Robot>(
+        "controller.type", "law of the controller", {std::string_view(Laws::name)...},
+        [](auto& /*robot*/) -> auto& { static std::string none; return none; });
+    row.get = [](const Robot& robot, std::size_t) {
+        return Value(std::visit([](const auto& law) { return std::string(law.name); }, robot.controller.law));
+    };
+    row.set = [](Robot& robot, std::size_t, const Value& value) {
+        const auto take = [&]<class Law>(Law law) {
+            if (std::get<std::string>(value) == Law::name) {
+                robot.controller.law = law;
+            }
+        };
+        (take(Laws{}), ...);
+    };
+    rows.push_back(std::move(row));
+}
+
+template <class... Laws>
+void add_laws(Rows& rows, const std::variant<Laws...>* laws) {
+    if constexpr (sizeof...(Laws) > 1) {
+        add_law_type(rows, laws);
+    }
+    const auto describe = [&rows]<class Law>(const Law* /*law*/) {
+        LawRows<Law> of_law(rows);
+        Law::describe(of_law);
+    };
+    (describe(static_cast<const Laws*>(nullptr)), ...);
 }
 
 void add_controller(Rows& rows) {
     rows.push_back(group("controller", "the model-inversion controllers of multirotor and arm"));
-    rows.push_back(gain(
-                       "rate_hz", "control ticks per second", [](auto& r) -> auto& { return r.controller.rate_hz; })
+    rows.push_back(number(
+                       "controller.rate_hz", "control ticks per second",
+                       [](auto& r) -> auto& { return r.controller.rate_hz; })
                        .at_least(10)
                        .at_most(1000));
-    rows.push_back(group("controller.position", "position of the multirotor to acceleration"));
-    rows.push_back(gain(
-                       "position.kp", "[1/s2]", [](auto& r) -> auto& { return r.controller.position_kp; })
-                       .is_required());
-    rows.push_back(gain(
-                       "position.kd", "[1/s]", [](auto& r) -> auto& { return r.controller.position_kd; })
-                       .is_required());
-    rows.push_back(gain(
-        "position.ki", "[1/s3]", [](auto& r) -> auto& { return r.controller.position_ki; }));
-    rows.push_back(gain(
-        "position.integral_limit_m_s2", "most that the integral may ask for, per axis",
-        [](auto& r) -> auto& { return r.controller.position_integral_limit_m_s2; }));
-    rows.push_back(group("controller.attitude", "pitch of the multirotor to angular acceleration"));
-    rows.push_back(
-        gain(
-            "attitude.k5", "pitch error to pitch rate [1/s]", [](auto& r) -> auto& { return r.controller.attitude_k5; })
-            .is_required());
-    rows.push_back(gain(
-                       "attitude.ku5", "pitch rate error to angular acceleration [1/s]",
-                       [](auto& r) -> auto& { return r.controller.attitude_ku5; })
-                       .is_required());
-    rows.push_back(gain(
-        "attitude.kiu5", "integral of the pitch rate error [1/s2]",
-        [](auto& r) -> auto& { return r.controller.attitude_kiu5; }));
-    rows.push_back(gain(
-        "attitude.integral_limit_rad_s2", "most that the integral may ask for",
-        [](auto& r) -> auto& { return r.controller.attitude_integral_limit_rad_s2; }));
-    rows.push_back(gain(
-                       "attitude.pitch_rate_filter_s", "time constant of the derivative of the pitch reference",
-                       [](auto& r) -> auto& { return r.controller.pitch_rate_filter_s; })
-                       .at_most(10));
-    rows.push_back(parameters::flag<Robot>(
-        "controller.attitude.rate_feed_forward", "adds the derivative of the pitch rate reference",
-        [](auto& r) -> auto& { return r.controller.rate_feed_forward; }));
-    rows.push_back(group("controller.arm", "arm angle to angular acceleration"));
-    rows.push_back(gain(
-                       "arm.kp", "[1/s2]", [](auto& r) -> auto& { return r.controller.arm_kp; })
-                       .is_required());
-    rows.push_back(gain(
-                       "arm.kd", "[1/s]", [](auto& r) -> auto& { return r.controller.arm_kd; })
-                       .is_required());
-    rows.push_back(gain(
-        "arm.ki", "[1/s3]", [](auto& r) -> auto& { return r.controller.arm_ki; }));
-    rows.push_back(gain(
-        "arm.integral_limit_rad_s2", "most that the integral may ask for",
-        [](auto& r) -> auto& { return r.controller.arm_integral_limit_rad_s2; }));
-    rows.push_back(number(
-                       "controller.max_tilt_deg", "the pitch reference is clipped to this",
-                       [](auto& r) -> auto& { return r.controller.max_tilt_rad; })
-                       .above(0)
-                       .below(90));
-    rows.push_back(number(
-                       "controller.min_vertical_force_ratio", "least vertical force of the inversion over the weight",
-                       [](auto& r) -> auto& { return r.controller.min_vertical_force_ratio; })
-                       .above(0)
-                       .at_most(1));
+    add_laws(rows, static_cast<const ControlLaw*>(nullptr));
 }
 
 Rows all_rows() {

@@ -77,9 +77,9 @@ bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& d
     double before = 0;
     double in_the_end = 0;
     for (int i = 0; i < ticks; ++i) {
-        simulation::TickRecord<double> record{};
-        state = simulation::tick(model.tick(), state, simulation::setpoint(trim.reference),
-                                 simulation::DirectFactor{model}, record);
+        controllers::Actuation<double> given{};
+        state = simulation::tick(model.tick(), state, trim.reference,
+                                 simulation::DirectFactor{model}, given);
         const double d = distance(state, trim.state);
         if (!(d < disturbance.leaving)) {
             return true;

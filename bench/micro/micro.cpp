@@ -44,7 +44,7 @@ FlightState slot_start(const Bridge& bridge) {
 }
 
 template <class Factor>
-void fly_ticks(benchmark::State& state, const Factor& factor) {
+void fly_ticks(benchmark::State& state, Factor&& factor) {
     const Bridge& bridge = Bridge::get();
     std::int64_t ticks = 0;
     for ([[maybe_unused]] auto _ : state) {
@@ -64,7 +64,7 @@ BENCHMARK(tick_without_effect);
 
 void tick_with_map(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    fly_ticks(state, simulation::MapEffect{*bridge.model, *bridge.map});
+    fly_ticks(state, simulation::MapEffect<double>(simulation::rotor_maps(*bridge.model, *bridge.map)));
 }
 BENCHMARK(tick_with_map);
 

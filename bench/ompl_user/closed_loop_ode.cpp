@@ -48,7 +48,7 @@ double limited(double value, double limit) {
 void ClosedLoopOde::operator()(const std::vector<double>& s, const double velocity[3],
                                std::vector<double>& rates) const {
     const PlantModel& p = model_.tick().plant;
-    const ControllerGains& g = model_.tick().gains;
+    const auto& g = std::get<ModelInversion>(model_.tick().law);
     const double* q = &s[x];
     const double* u = &s[vx];
     const Bodies b = bodies(p, q, u);

@@ -47,15 +47,16 @@ double worst_difference(const FlightModel& model, const AeroMap* map, const Conf
     double worst = 0;
     greatest_factor = 1;
     for (int i = 0; i < 300; ++i) {
-        controllers::Setpoint<double> reference{};
+        ReferencePoint reference;
         for (int axis = 0; axis < 3; ++axis) {
             reference.position[axis] = state[Ode::reference_x + static_cast<std::size_t>(axis)];
             reference.velocity[axis] = velocity[axis];
         }
-        simulation::TickRecord<double> record{};
+        controllers::Actuation<double> given{};
         vehicle = map != nullptr
-                      ? simulation::tick(model.tick(), vehicle, reference, simulation::MapEffect{model, *map}, record)
-                      : simulation::tick(model.tick(), vehicle, reference, simulation::NoEffect{}, record);
+                      ? simulation::tick(model.tick(), vehicle, reference,
+                                         simulation::MapEffect<double>(simulation::rotor_maps(model, *map)), given)
+                      : simulation::tick(model.tick(), vehicle, reference, simulation::NoEffect{}, given);
         step(ode, velocity, model.tick().tick_s, state);
         for (std::size_t k = 0; k < 4; ++k) {
             worst = std::max(worst, std::abs(vehicle.plant.q[k] - state[k]));

@@ -8,16 +8,17 @@
 
 namespace {
 
-using downwash::ControllerGains;
+using downwash::ModelInversion;
 using downwash::PlantModel;
+using downwash::ReferencePoint;
+using downwash::test::gains_of;
 using downwash::test::plant_of;
 using downwash::test::Random;
 using downwash::test::test_robot;
 namespace controllers = downwash::controllers;
 namespace dynamics = downwash::dynamics;
-using Memory = controllers::ControllerState<double>;
-using Setpoint = controllers::Setpoint<double>;
-using Step = controllers::ControlStep<double>;
+using Memory = ModelInversion::Memory<double>;
+using Step = ModelInversion::Step<double>;
 
 constexpr double tick_s = 0.01;
 constexpr double quarter_turn = 1.57079632679489661923;
@@ -27,9 +28,18 @@ downwash::Robot offset_robot() {
     auto robot = test_robot();
     robot.arm.joint_x_m = 0.1;
     robot.arm.joint_z_m = -0.07;
-    robot.controller.attitude_kiu5 = 3;
-    robot.controller.arm_ki = 5;
+    gains_of(robot).attitude_kiu5 = 3;
+    gains_of(robot).arm_ki = 5;
     return robot;
+}
+
+/// One control step before any limit.
+Step demanded(const ModelInversion& law, const PlantModel& model, const double (&q)[4], const double (&u)[4],
+              const Memory& memory, const ReferencePoint& reference) {
+    dynamics::PlantState<double> seen{};
+    std::copy(q, q + 4, seen.q);
+    std::copy(u, u + 4, seen.u);
+    return law.demanded(model, seen, dynamics::motion_at(model, q, u), memory, reference, tick_s);
 }
 
 /// Somewhere in a lively flight.
@@ -37,7 +47,7 @@ struct Case {
     double q[4];
     double u[4];
     Memory memory;
-    Setpoint reference;
+    ReferencePoint reference;
     explicit Case(Random& random) {
         for (int i = 0; i < 4; ++i) {
             q[i] = random.uniform(-0.6, 0.6);
@@ -55,8 +65,8 @@ struct Case {
             reference.acceleration[i] = random.uniform(-1, 1);
         }
     }
-    [[nodiscard]] Step step(const PlantModel& model, const ControllerGains& gains) const {
-        return controllers::model_inversion_control(model, gains, q, u, memory, reference, tick_s);
+    [[nodiscard]] Step step(const PlantModel& model, const ModelInversion& law) const {
+        return demanded(law, model, q, u, memory, reference);
     }
 };
 
@@ -75,19 +85,19 @@ double limited(double value, double limit) {
     return std::clamp(value, -limit, limit);
 }
 
-double wanted_arm_acceleration(const ControllerGains& g, const Case& c) {
+double wanted_arm_acceleration(const ModelInversion& g, const Case& c) {
     return c.reference.acceleration[2] + g.arm_kd * (c.reference.velocity[2] - c.u[3]) +
            g.arm_kp * (c.reference.position[2] - c.q[3]) +
            limited(g.arm_ki * c.memory.arm_integral, g.arm_integral_limit_rad_s2);
 }
 
-double wanted_acceleration(const ControllerGains& g, const Case& c, int axis) {
+double wanted_acceleration(const ModelInversion& g, const Case& c, int axis) {
     return c.reference.acceleration[axis] + g.position_kd * (c.reference.velocity[axis] - c.u[axis]) +
            g.position_kp * (c.reference.position[axis] - c.q[axis]) +
            limited(g.position_ki * c.memory.position_integral[axis], g.position_integral_limit_m_s2);
 }
 
-Setpoint hold(double x_m, double z_m, double arm_rad) {
+ReferencePoint hold(double x_m, double z_m, double arm_rad) {
     return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
 }
 
@@ -99,8 +109,7 @@ TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and n
     for (const double arm : {0.0, 0.7, quarter_turn, -2.0}) {
         const double q[4] = {1, 2, 0, arm};
         const double u[4] = {0, 0, 0, 0};
-        const Step step = controllers::model_inversion_control(
-            model, robot.controller, q, u, controllers::rested_controller(0.0), hold(1, 2, arm), tick_s);
+        const Step step = demanded(gains_of(robot), model, q, u, ModelInversion::rested(0.0), hold(1, 2, arm));
         const double gravity_torque_nm = -0.45 * 9.80665 * 0.72 * std::cos(arm);
         CHECK(step.demand.thrust_n == Approx(4.95 * 9.80665).epsilon(1e-14));
         CHECK(controllers::joint_torque(model, dynamics::motion_at(model, q, u), step.demand.arm_acceleration,
@@ -121,8 +130,8 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
     const PlantModel model = plant_of(robot);
     double worst = 0;
     for (int i = 0; i < 20'000; ++i) {
-        robot.controller.rate_feed_forward = i % 2 == 0;
-        const ControllerGains& g = robot.controller;
+        gains_of(robot).rate_feed_forward = i % 2 == 0;
+        const ModelInversion& g = gains_of(robot);
         const Case c(random);
         const Step step = c.step(model, g);
 
@@ -149,26 +158,26 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
 TEST_CASE("Once the vehicle has the pitch that is asked for, it accelerates exactly as wanted") {
     Random random(2);
     auto robot = offset_robot();
-    robot.controller.attitude_ku5 = 0;  // the force is worked out for a pitch that does not accelerate
-    robot.controller.attitude_kiu5 = 0;
+    gains_of(robot).attitude_ku5 = 0;  // the force is worked out for a pitch that does not accelerate
+    gains_of(robot).attitude_kiu5 = 0;
     const PlantModel model = plant_of(robot);
     double worst = 0;
     int reached = 0;
     for (int i = 0; i < 2000; ++i) {
         Case c(random);
-        Step step = c.step(model, robot.controller);
+        Step step = c.step(model, gains_of(robot));
         for (int k = 0; k < 200; ++k) {
             c.q[2] = step.integrated.pitch_reference_rad;
-            step = c.step(model, robot.controller);
+            step = c.step(model, gains_of(robot));
         }
-        if (std::abs(c.q[2]) > 0.99 * robot.controller.max_tilt_rad) {
+        if (std::abs(c.q[2]) > 0.99 * gains_of(robot).max_tilt_rad) {
             continue;  // clipped
         }
         ++reached;
         double du[4];
         accelerations(model, c.q, c.u, step, du);
         for (int axis = 0; axis < 2; ++axis) {
-            worst = std::max(worst, std::abs(du[axis] - wanted_acceleration(robot.controller, c, axis)));
+            worst = std::max(worst, std::abs(du[axis] - wanted_acceleration(gains_of(robot), c, axis)));
         }
     }
     CHECK(reached > 1000);
@@ -181,32 +190,32 @@ TEST_CASE("The pitch reference leans towards the target and never beyond the gre
     const double q[4] = {0, 2, 0, quarter_turn};
     const double u[4] = {0, 0, 0, 0};
     const auto pitch_reference = [&](double x_m, double z_m) {
-        return controllers::model_inversion_control(model, robot.controller, q, u, controllers::rested_controller(0.0),
+        return controllers::model_inversion_control(model, gains_of(robot), q, u, ModelInversion::rested(0.0),
                                                     hold(x_m, z_m, quarter_turn), tick_s)
             .integrated.pitch_reference_rad;
     };
     CHECK(pitch_reference(0.1, 2) == Approx(std::atan2(0.1 * 2.0, 9.80665)));
     CHECK(pitch_reference(-0.1, 2) == Approx(-std::atan2(0.1 * 2.0, 9.80665)));
-    CHECK(pitch_reference(100, 2) == robot.controller.max_tilt_rad);
-    CHECK(pitch_reference(-100, 2) == -robot.controller.max_tilt_rad);
+    CHECK(pitch_reference(100, 2) == gains_of(robot).max_tilt_rad);
+    CHECK(pitch_reference(-100, 2) == -gains_of(robot).max_tilt_rad);
     // Asked to dive faster than it can fall, it keeps its head up: f_min stands in for the downward force.
     CHECK(pitch_reference(0.1, -100) == Approx(std::atan2(0.1 * 2.0, 0.2 * 9.80665)));
 }
 
 TEST_CASE("Integrators add error over time and stop where their limit can use no more") {
     auto robot = offset_robot();
-    const ControllerGains& g = robot.controller;
+    const ModelInversion& g = gains_of(robot);
     const PlantModel model = plant_of(robot);
     const double q[4] = {0, 2, 0, 0.5};
     const double u[4] = {0, 0, 0, 0};
-    const Setpoint far = hold(0.4, 1.7, 0.8);
-    Memory memory = controllers::rested_controller(0.0);
-    memory = controllers::model_inversion_control(model, g, q, u, memory, far, tick_s).integrated;
+    const ReferencePoint far = hold(0.4, 1.7, 0.8);
+    Memory memory = ModelInversion::rested(0.0);
+    memory = demanded(g, model, q, u, memory, far).integrated;
     CHECK(memory.position_integral[0] == Approx(0.4 * tick_s));
     CHECK(memory.position_integral[1] == Approx(-0.3 * tick_s));
     CHECK(memory.arm_integral == Approx(0.3 * tick_s));
     for (int i = 0; i < 10'000; ++i) {
-        memory = controllers::model_inversion_control(model, g, q, u, memory, far, tick_s).integrated;
+        memory = demanded(g, model, q, u, memory, far).integrated;
     }
     CHECK(memory.position_integral[0] == g.position_integral_limit_m_s2 / g.position_ki);
     CHECK(memory.position_integral[1] == -g.position_integral_limit_m_s2 / g.position_ki);
@@ -214,7 +223,7 @@ TEST_CASE("Integrators add error over time and stop where their limit can use no
     CHECK(std::abs(memory.pitch_rate_integral) <= g.attitude_integral_limit_rad_s2 / g.attitude_kiu5);
 
     // Wound up to the limit, the integral leaves it with the first error of the other sign.
-    const auto back = controllers::model_inversion_control(model, g, q, u, memory, hold(-0.4, 2, 0.5), tick_s);
+    const auto back = demanded(g, model, q, u, memory, hold(-0.4, 2, 0.5));
     CHECK(back.integrated.position_integral[0] ==
           Approx(g.position_integral_limit_m_s2 / g.position_ki - 0.4 * tick_s));
 }
@@ -224,7 +233,7 @@ TEST_CASE("An integrator without gain stays where it is") {
     const PlantModel model = plant_of(robot);
     Random random(3);
     const Case c(random);
-    const Step step = c.step(model, robot.controller);
+    const Step step = c.step(model, gains_of(robot));
     CHECK(step.integrated.arm_integral == c.memory.arm_integral);
     CHECK(step.integrated.pitch_rate_integral == c.memory.pitch_rate_integral);
     CHECK(step.integrated.position_integral[0] != c.memory.position_integral[0]);
@@ -236,7 +245,7 @@ TEST_CASE("A frozen step keeps all integrals but goes on following the pitch ref
     Random random(4);
     for (int i = 0; i < 100; ++i) {
         const Case c(random);
-        const Step step = c.step(model, robot.controller);
+        const Step step = c.step(model, gains_of(robot));
         CHECK(step.frozen.position_integral[0] == c.memory.position_integral[0]);
         CHECK(step.frozen.position_integral[1] == c.memory.position_integral[1]);
         CHECK(step.frozen.pitch_rate_integral == c.memory.pitch_rate_integral);
@@ -252,12 +261,11 @@ TEST_CASE("A clipped tilt stops the integrals of x and z, and of nothing else") 
     const PlantModel model = plant_of(robot);
     const double q[4] = {0, 2, 0, 0.5};
     const double u[4] = {0, 0, 0, 0};
-    Memory memory = controllers::rested_controller(0.0);
+    Memory memory = ModelInversion::rested(0.0);
     memory.position_integral[0] = 0.2;
     memory.position_integral[1] = -0.1;
     const auto integrated = [&](double x_m, double z_m) {
-        return controllers::model_inversion_control(model, robot.controller, q, u, memory, hold(x_m, z_m, 0.8), tick_s)
-            .integrated;
+        return demanded(gains_of(robot), model, q, u, memory, hold(x_m, z_m, 0.8)).integrated;
     };
     // Sideways beyond the greatest tilt; down faster than it can fall.
     for (const Memory& clipped : {integrated(100, 1.7), integrated(-100, 1.7), integrated(0.1, -100)}) {

@@ -21,7 +21,7 @@ TEST_CASE("a problem is read as it is written, angles in radians") {
     CHECK(problem.robot.name == "tester");
     CHECK(problem.robot.rotors.positions_m.size() == 4);
     CHECK(problem.robot.rotors.positions_m[1] == Vector3{0.3, -0.3, 0});
-    CHECK(problem.robot.controller.max_tilt_rad == 0.6108652381980153);
+    CHECK(test::gains_of(problem.robot).max_tilt_rad == 0.6108652381980153);
     CHECK(problem.bounds.x_low_m == -6);
     CHECK(problem.bounds.z_high_m == 5);
     REQUIRE(problem.obstacles.size() == 2);

@@ -36,8 +36,8 @@ class ProblemMaker {
         ball.center_world_m = {0, 30 + uniform(), 2};
         problem.obstacles.push_back(ball);
         problem.description = "two\nlines: {and} \"more\"";
-        problem.robot.controller.max_tilt_rad = 0.1 + uniform();
-        problem.robot.controller.position_kp = std::exp(uniform());
+        test::gains_of(problem.robot).max_tilt_rad = 0.1 + uniform();
+        test::gains_of(problem.robot).position_kp = std::exp(uniform());
         problem.robot.rotors.time_constant_s = coin() ? 0 : 0.06 + 1e-3 * uniform();
         problem.robot.rotors.positions_m[0][1] += 1e-7 * uniform();
         problem.robot.arm.is_limited = coin();

@@ -22,10 +22,10 @@ constexpr std::int64_t rising_ticks = 8;
 Robot slow_robot(double rate_hz = 10) {
     Robot robot = test::test_robot();
     robot.controller.rate_hz = rate_hz;
-    robot.controller.attitude_k5 = 3;
-    robot.controller.attitude_ku5 = 6;
-    robot.controller.arm_kp = 9;
-    robot.controller.arm_kd = 6;
+    test::gains_of(robot).attitude_k5 = 3;
+    test::gains_of(robot).attitude_ku5 = 6;
+    test::gains_of(robot).arm_kp = 9;
+    test::gains_of(robot).arm_kd = 6;
     return robot;
 }
 

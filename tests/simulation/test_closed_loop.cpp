@@ -12,26 +12,31 @@
 
 namespace {
 
-using downwash::ControllerGains;
+using downwash::ModelInversion;
+using downwash::ReferencePoint;
 using downwash::Robot;
+using downwash::test::gains_of;
 using downwash::test::plant_of;
 using downwash::test::test_robot;
+using downwash::number_at;
+using downwash::number_count;
+using downwash::set_number_at;
 namespace controllers = downwash::controllers;
 namespace simulation = downwash::simulation;
-using Setpoint = controllers::Setpoint<double>;
 using State = simulation::State<double>;
-using Record = simulation::TickRecord<double>;
+using Given = controllers::Actuation<double>;
 
 constexpr double quarter_turn = 1.57079632679489661923;
 constexpr double degree = quarter_turn / 90;
 constexpr double gravity = 9.80665;
+constexpr double tick_s = 0.01;
 
 struct FreeAir {
     double operator()(int, double, double) const { return 1; }
 };
 
 simulation::TickModel model_of(const Robot& robot) {
-    return {plant_of(robot), robot.controller, 1 / robot.controller.rate_hz};
+    return {plant_of(robot), robot.controller.law, 1 / robot.controller.rate_hz};
 }
 
 State resting_at(double x_m, double z_m, double arm_rad) {
@@ -40,20 +45,24 @@ State resting_at(double x_m, double z_m, double arm_rad) {
     state.plant.q[1] = z_m;
     state.plant.q[3] = arm_rad;
     std::fill(state.plant.thrust_n, state.plant.thrust_n + 4, 4.95 * gravity / 4);
-    state.controller = controllers::rested_controller(0.0);
+    state.memory = controllers::remembered(ModelInversion::rested(0.0));
     return state;
 }
 
-Setpoint hold(double x_m, double z_m, double arm_rad) {
+ReferencePoint hold(double x_m, double z_m, double arm_rad) {
     return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
 }
 
-State flown(const simulation::TickModel& model, State state, const Setpoint& reference, int ticks) {
+State flown(const simulation::TickModel& model, State state, const ReferencePoint& reference, int ticks) {
     for (int i = 0; i < ticks; ++i) {
-        Record record{};
-        state = simulation::tick(model, state, reference, FreeAir{}, record);
+        Given given{};
+        state = simulation::tick(model, state, reference, FreeAir{}, given);
     }
     return state;
+}
+
+ModelInversion::Memory<double> memory_of(const State& state) {
+    return controllers::recalled<ModelInversion>(state.memory);
 }
 
 bool same_bytes(const State& a, const State& b) {
@@ -70,8 +79,8 @@ int settling_tick(const std::vector<double>& response, double final, double band
 }
 
 /// The linear loops that the gains were chosen for, sampled and held like the real ones. A step of 1 from rest.
-std::vector<double> ideal_height(const ControllerGains& g, int ticks) {
-    const double h = 1 / g.rate_hz;
+std::vector<double> ideal_height(const ModelInversion& g, int ticks) {
+    const double h = tick_s;
     double z = 0;
     double u = 0;
     double integral = 0;
@@ -87,8 +96,8 @@ std::vector<double> ideal_height(const ControllerGains& g, int ticks) {
 }
 
 /// Sideways the acceleration is g times the pitch, which follows its reference with poles of its own.
-std::vector<double> ideal_sideways(const ControllerGains& g, int ticks) {
-    const double h = 1 / g.rate_hz;
+std::vector<double> ideal_sideways(const ModelInversion& g, int ticks) {
+    const double h = tick_s;
     double x = 0;
     double u = 0;
     double integral = 0;
@@ -114,8 +123,8 @@ std::vector<double> ideal_sideways(const ControllerGains& g, int ticks) {
     return response;
 }
 
-std::vector<double> ideal_arm(const ControllerGains& g, int ticks) {
-    const double h = 1 / g.rate_hz;
+std::vector<double> ideal_arm(const ModelInversion& g, int ticks) {
+    const double h = tick_s;
     double q = 0;
     double u = 0;
     std::vector<double> response;
@@ -129,7 +138,7 @@ std::vector<double> ideal_arm(const ControllerGains& g, int ticks) {
 }
 
 /// One coordinate over a flight.
-std::vector<double> response_of(const simulation::TickModel& model, State state, const Setpoint& reference, int ticks,
+std::vector<double> response_of(const simulation::TickModel& model, State state, const ReferencePoint& reference, int ticks,
                                 int coordinate) {
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
@@ -159,8 +168,8 @@ TEST_CASE("From 5 cm beside its place the vehicle returns as the gains foretell 
     const Robot robot = test_robot();
     const auto model = model_of(robot);
     const double arm = 0.6;
-    const int expected = std::max(settling_tick(ideal_height(robot.controller, 6000), 1, 0.001 / 0.05),
-                                  settling_tick(ideal_sideways(robot.controller, 6000), 1, 0.001 / 0.05));
+    const int expected = std::max(settling_tick(ideal_height(gains_of(robot), 6000), 1, 0.001 / 0.05),
+                                  settling_tick(ideal_sideways(gains_of(robot), 6000), 1, 0.001 / 0.05));
     INFO("expected to be back after ticks: " << expected);
     State state = flown(model, resting_at(0.95, 2.05, arm), hold(1, 2, arm), expected * 11 / 10);
     double worst_m = 0;
@@ -178,7 +187,7 @@ TEST_CASE("A step of a metre upward follows the linear loop of the gains") {
     const Robot robot = test_robot();
     const auto model = model_of(robot);
     constexpr int ticks = 3000;
-    const auto ideal = ideal_height(robot.controller, ticks);
+    const auto ideal = ideal_height(gains_of(robot), ticks);
     const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(0, 3, quarter_turn), ticks, 1);
     double worst = 0;
     for (std::size_t i = 0; i < response.size(); ++i) {
@@ -194,7 +203,7 @@ TEST_CASE("A step of a metre sideways settles when the linear loop of the gains 
     const Robot robot = test_robot();
     const auto model = model_of(robot);
     constexpr int ticks = 3000;
-    const int expected = settling_tick(ideal_sideways(robot.controller, ticks), 1, 0.02);
+    const int expected = settling_tick(ideal_sideways(gains_of(robot), ticks), 1, 0.02);
     const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(1, 2, quarter_turn), ticks, 0);
     const int settled = settling_tick(response, 1, 0.02);
     INFO("settles after ticks: " << settled << ", expected: " << expected);
@@ -205,7 +214,7 @@ TEST_CASE("A step of 60 degrees of the arm settles when the linear loop of the g
     const Robot robot = test_robot();
     const auto model = model_of(robot);
     constexpr int ticks = 1000;
-    const int expected = settling_tick(ideal_arm(robot.controller, ticks), 1, 0.02);
+    const int expected = settling_tick(ideal_arm(gains_of(robot), ticks), 1, 0.02);
     const double from = 30 * degree;
     const double to = 90 * degree;
     const auto response = response_of(model, resting_at(0, 2, from), hold(0, 2, to), ticks, 3);
@@ -235,12 +244,12 @@ TEST_CASE("A tick hides nothing: the same arguments give the same bytes") {
     const auto model = model_of(robot);
     State state = resting_at(0, 2, 0.3);
     for (int i = 0; i < 100; ++i) {
-        Record first_record{};
-        Record second_record{};
-        const State first = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, first_record);
-        const State second = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, second_record);
+        Given first_given{};
+        Given second_given{};
+        const State first = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, first_given);
+        const State second = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, second_given);
         REQUIRE(same_bytes(first, second));
-        REQUIRE(std::memcmp(&first_record, &second_record, sizeof(Record)) == 0);
+        REQUIRE(std::memcmp(&first_given, &second_given, sizeof(Given)) == 0);
         state = first;
     }
 }
@@ -249,9 +258,9 @@ TEST_CASE("A flight that is split and resumed from a copied state ends in the sa
     for (const double lag_s : {0.0, 0.012}) {
         Robot robot = test_robot();
         robot.rotors.time_constant_s = lag_s;
-        robot.controller.attitude_kiu5 = 2;
-        robot.controller.arm_ki = 4;
-        robot.controller.rate_feed_forward = true;
+        gains_of(robot).attitude_kiu5 = 2;
+        gains_of(robot).arm_ki = 4;
+        gains_of(robot).rate_feed_forward = true;
         const auto model = model_of(robot);
         const Setpoint reference = hold(0.2, 2.2, 0.1);
         const State start = resting_at(0, 2, 0.3);
@@ -270,63 +279,61 @@ TEST_CASE("Every number of the state matters to what follows") {
     // If one did not, it would be dead weight; if something else did, the flight above could not be resumed.
     Robot robot = test_robot();
     robot.rotors.time_constant_s = 0.012;
-    robot.controller.attitude_kiu5 = 2;
-    robot.controller.arm_ki = 4;
-    robot.controller.rate_feed_forward = true;
+    gains_of(robot).attitude_kiu5 = 2;
+    gains_of(robot).arm_ki = 4;
+    gains_of(robot).rate_feed_forward = true;
     const auto model = model_of(robot);
     const Setpoint reference = hold(0.2, 2.2, 0.1);
     const State state = flown(model, resting_at(0, 2, 0.3), reference, 50);
     const State next = flown(model, state, reference, 2);
-    constexpr std::size_t numbers = sizeof(State) / sizeof(double);
-    for (std::size_t i = 0; i < numbers; ++i) {
-        const bool is_missing_rotor = i >= 12 && i < 16;
-        std::array<double, numbers> all{};
-        std::memcpy(all.data(), &state, sizeof(State));
-        all[i] += 1e-3;
-        State changed;
-        std::memcpy(&changed, all.data(), sizeof(State));
+    simulation::State<bool> is_missing{};
+    std::fill(is_missing.plant.thrust_n + model.plant.rotor_count, std::end(is_missing.plant.thrust_n), true);
+    for (int i = 0; i < number_count<double, State>; ++i) {
+        State changed = state;
+        set_number_at(changed, i, number_at<double>(state, i) + 1e-3);
         changed = flown(model, changed, reference, 2);
-        if (is_missing_rotor) {
-            changed.plant.thrust_n[i - 8] = next.plant.thrust_n[i - 8];
+        const bool is_of_missing_rotor = number_at<bool>(is_missing, i);
+        if (is_of_missing_rotor) {
+            set_number_at(changed, i, number_at<double>(next, i));  // it is kept as it is
         }
         INFO("number " << i);
-        CHECK(same_bytes(changed, next) == is_missing_rotor);
+        CHECK(same_bytes(changed, next) == is_of_missing_rotor);
     }
 }
 
 TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the integrators") {
     Robot robot = test_robot();
-    robot.controller.attitude_kiu5 = 2;
-    robot.controller.arm_ki = 4;
+    gains_of(robot).attitude_kiu5 = 2;
+    gains_of(robot).arm_ki = 4;
     const auto model = model_of(robot);
     const State state = resting_at(0, 2, 0);
-    Record record{};
+    Given given{};
 
-    const State calm = simulation::tick(model, state, hold(0, 2.05, 0), FreeAir{}, record);
-    CHECK(record.saturation < 1);
-    CHECK(calm.controller.position_integral[1] == Approx(0.05 * 0.01));
+    const State calm = simulation::tick(model, state, hold(0, 2.05, 0), FreeAir{}, given);
+    CHECK(given.saturation < 1);
+    CHECK(memory_of(calm).position_integral[1] == Approx(0.05 * 0.01));
 
-    const State lifted = simulation::tick(model, state, hold(0, 50, 0), FreeAir{}, record);
-    CHECK(record.saturation > 1);
-    CHECK(*std::max_element(record.command.thrust_n, record.command.thrust_n + 4) == 28);
-    CHECK(lifted.controller.position_integral[1] == 0);
+    const State lifted = simulation::tick(model, state, hold(0, 50, 0), FreeAir{}, given);
+    CHECK(given.saturation > 1);
+    CHECK(*std::max_element(given.command.thrust_n, given.command.thrust_n + 4) == 28);
+    CHECK(memory_of(lifted).position_integral[1] == 0);
 
-    const State dropped = simulation::tick(model, state, hold(0, -50, 0), FreeAir{}, record);
-    CHECK(record.saturation > 1);
-    CHECK(*std::min_element(record.command.thrust_n, record.command.thrust_n + 4) == 0);
-    CHECK(dropped.controller.position_integral[1] == 0);
+    const State dropped = simulation::tick(model, state, hold(0, -50, 0), FreeAir{}, given);
+    CHECK(given.saturation > 1);
+    CHECK(*std::min_element(given.command.thrust_n, given.command.thrust_n + 4) == 0);
+    CHECK(memory_of(dropped).position_integral[1] == 0);
 
-    const State swung = simulation::tick(model, state, hold(0, 2, 3), FreeAir{}, record);
-    CHECK(record.saturation > 1);
-    CHECK(record.command.joint_torque_nm == 12);
-    CHECK(swung.controller.arm_integral == 0);
-    CHECK(swung.controller.pitch_rate_integral == 0);
+    const State swung = simulation::tick(model, state, hold(0, 2, 3), FreeAir{}, given);
+    CHECK(given.saturation > 1);
+    CHECK(given.command.joint_torque_nm == 12);
+    CHECK(memory_of(swung).arm_integral == 0);
+    CHECK(memory_of(swung).pitch_rate_integral == 0);
 }
 
 TEST_CASE("Saturation is the demand over the greatest thrust, and above one beyond either limit of a rotor") {
     const auto plant = plant_of(test_robot());
     const auto saturation = [&plant](std::array<double, downwash::max_rotors> demand_n) {
-        return simulation::thrust_saturation(plant, demand_n.data());
+        return controllers::thrust_saturation(plant, demand_n.data());
     };
     CHECK(saturation({28.0, 28.0, 28.0, 28.0}) == 1);
     CHECK(saturation({}) == 0);
@@ -344,18 +351,18 @@ TEST_CASE("hover holds with rotor lag up to 30 ms, whatever the arm's direction"
             auto robot = downwash::test::test_robot();
             robot.rotors.time_constant_s = lag_s;
             const simulation::TickModel model{make_plant_model(robot.multirotor, robot.arm, robot.rotors),
-                                              robot.controller, 0.01};
+                                              robot.controller.law, 0.01};
             simulation::State<double> state{};
             state.plant.q[3] = arm;
-            state.controller = controllers::rested_controller(0.0);
+            state.memory = controllers::remembered(ModelInversion::rested(0.0));
             for (int i = 0; i < model.plant.rotor_count; ++i) {
                 state.plant.thrust_n[i] = model.plant.force_share[i] * 4.95 * 9.80665;
             }
-            const controllers::Setpoint<double> reference{{0.2, 0.1, arm + 0.2}, {0, 0, 0}, {0, 0, 0}};
-            simulation::TickRecord<double> record{};
+            const ReferencePoint reference{{0.2, 0.1, arm + 0.2}, {0, 0, 0}, {0, 0, 0}};
+            Given given{};
             for (int i = 0; i < 1000; ++i) {
                 state = simulation::tick(
-                    model, state, reference, [](int, double, double) { return 1.0; }, record);
+                    model, state, reference, [](int, double, double) { return 1.0; }, given);
             }
             CHECK(std::abs(state.plant.q[0] - 0.2) < 0.02);
             CHECK(std::abs(state.plant.q[1] - 0.1) < 0.02);
@@ -375,14 +382,14 @@ TEST_CASE("The joint torque balances the thrust that lagging rotors give in the 
     State state = resting_at(0, 2, arm_rad);
     state.plant.thrust_n[0] *= 0.5;  // far from what will be commanded
     state.plant.thrust_n[3] *= 0.7;
-    Record record{};
-    static_cast<void>(simulation::tick(model, state, hold(0, 2, arm_rad), FreeAir{}, record));
+    Given given{};
+    static_cast<void>(simulation::tick(model, state, hold(0, 2, arm_rad), FreeAir{}, given));
     double thrust_n = 0;
     double pitch_torque_nm = 0;
     for (int i = 0; i < 4; ++i) {
         // One implicit step of half a tick, 5 ms, towards the command: 5 / (5 + 40) of the way.
         const double reached_n =
-            state.plant.thrust_n[i] + (record.command.thrust_n[i] - state.plant.thrust_n[i]) * 5 / 45;
+            state.plant.thrust_n[i] + (given.command.thrust_n[i] - state.plant.thrust_n[i]) * 5 / 45;
         thrust_n += reached_n;
         pitch_torque_nm -= robot.rotors.positions_m[static_cast<std::size_t>(i)][0] * reached_n;
     }
@@ -390,5 +397,5 @@ TEST_CASE("The joint torque balances the thrust that lagging rotors give in the 
     const double inertia_kg_m2 = 0.06 + reduced_mass_kg * 0.72 * 0.72;
     const double lift_nm = -0.45 * 0.72 * std::cos(arm_rad) * thrust_n / 4.95;
     const double expected_nm = (inertia_kg_m2 * pitch_torque_nm / 0.20 + lift_nm) / (1 + inertia_kg_m2 / 0.20);
-    CHECK(record.command.joint_torque_nm == Approx(expected_nm).epsilon(1e-9));
+    CHECK(given.command.joint_torque_nm == Approx(expected_nm).epsilon(1e-9));
 }

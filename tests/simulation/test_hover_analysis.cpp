@@ -96,9 +96,8 @@ double distance(const FlightState& a, const FlightState& b) {
 }
 
 FlightState flown(const FlightModel& model, const HoverTrim& trim, const FlightState& from) {
-    simulation::TickRecord<double> record{};
-    return simulation::tick(model.tick(), from, simulation::setpoint(trim.reference), simulation::DirectFactor{model},
-                            record);
+    controllers::Actuation<double> given{};
+    return simulation::tick(model.tick(), from, trim.reference, simulation::DirectFactor{model}, given);
 }
 
 FlightState disturbed(const HoverTrim& trim, double size, test::Random& random) {
@@ -134,9 +133,9 @@ bool grows(const FlightModel& model, const HoverTrim& trim, int ticks, test::Ran
 Robot robot_with_memory() {
     Robot robot = test::test_robot();
     robot.rotors.time_constant_s = 0.02;
-    robot.controller.attitude_kiu5 = 3;
-    robot.controller.arm_ki = 15;
-    robot.controller.rate_feed_forward = true;
+    test::gains_of(robot).attitude_kiu5 = 3;
+    test::gains_of(robot).arm_ki = 15;
+    test::gains_of(robot).rate_feed_forward = true;
     robot.arm.joint_x_m = 0.05;
     robot.arm.joint_z_m = -0.08;
     return robot;
@@ -176,9 +175,9 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
             problem.aero.ground = EffectModel::multirotor_body;
         }
         if (kind == 2) {  // without integrators, and with limits that are soon reached
-            problem.robot.controller.position_ki = 0;
-            problem.robot.controller.arm_integral_limit_rad_s2 = 0.1;
-            problem.robot.controller.attitude_integral_limit_rad_s2 = 0.1;
+            test::gains_of(problem.robot).position_ki = 0;
+            test::gains_of(problem.robot).arm_integral_limit_rad_s2 = 0.1;
+            test::gains_of(problem.robot).attitude_integral_limit_rad_s2 = 0.1;
         }
         const auto model = make_flight_model(problem);
         for (int i = 0; i < 300; ++i) {
@@ -188,18 +187,17 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
                 continue;
             }
             ++found;
-            simulation::TickRecord<double> record{};
-            const FlightState next =
-                simulation::tick(model->tick(), a.trim.state, simulation::setpoint(a.trim.reference),
-                                 simulation::DirectFactor{*model}, record);
+            controllers::Actuation<double> given{};
+            const FlightState next = simulation::tick(model->tick(), a.trim.state, a.trim.reference,
+                                                      simulation::DirectFactor{*model}, given);
             CHECK(distance(next, a.trim.state) < 1e-12);
             for (int j = 0; j < 4; ++j) {
                 CHECK(std::abs(next.plant.u[j]) < 1e-12);
-                CHECK(record.command.thrust_n[j] == Approx(a.trim.rotor_command_n[j]).epsilon(1e-9));
+                CHECK(given.command.thrust_n[j] == Approx(a.trim.rotor_command_n[j]).epsilon(1e-9));
                 CHECK(next.plant.thrust_n[j] == Approx(a.trim.state.plant.thrust_n[j]).epsilon(1e-9));
             }
-            CHECK(record.command.joint_torque_nm == Approx(a.trim.joint_torque_nm).margin(1e-9));
-            CHECK(record.saturation == Approx(a.trim.saturation).epsilon(1e-9));
+            CHECK(given.command.joint_torque_nm == Approx(a.trim.joint_torque_nm).margin(1e-9));
+            CHECK(given.saturation == Approx(a.trim.saturation).epsilon(1e-9));
             const auto& memory = a.trim.state.controller;
             CHECK(next.controller.position_integral[0] == Approx(memory.position_integral[0]).margin(1e-9));
             CHECK(next.controller.position_integral[1] == Approx(memory.position_integral[1]).margin(1e-9));
@@ -318,11 +316,13 @@ TEST_CASE("where the integral is at its limit the reference has to stay below th
     const double action_m_s2 = gravity * (1 - 1 / k.factor);
     REQUIRE(action_m_s2 > 2.5);
     const HoverTrim trim = below_ceiling(*model, gap_m).trim;
-    CHECK(trim.is_integral_at_limit[1]);
-    CHECK_FALSE(trim.is_integral_at_limit[0]);
+    const auto memory = controllers::recalled<ModelInversion>(trim.state.memory);
+    const auto feeds_back = controllers::recalled<ModelInversion>(trim.feeds_back.memory);
+    CHECK_FALSE(feeds_back.position_integral[1]);
+    CHECK(feeds_back.position_integral[0]);
     const double offset_m = (action_m_s2 - 2.0) / 2.0;  // integral_limit_m_s2 and kp
     CHECK(trim.reference.position[1] == Approx(ceiling_m - gap_m - hub_height_m - offset_m).epsilon(1e-9));
-    CHECK(trim.state.controller.position_integral[1] == Approx(-2.0 / 0.4).epsilon(1e-12));
+    CHECK(memory.position_integral[1] == Approx(-2.0 / 0.4).epsilon(1e-12));
 }
 
 TEST_CASE("where a vehicle cannot hover the analysis says why") {
@@ -356,22 +356,22 @@ TEST_CASE("where a vehicle cannot hover the analysis says why") {
 
     Problem soft = plain;  // half a ceiling turns the vehicle, and the attitude loop hardly answers
     soft.obstacles = {test::box("slab", {4, 4, 1}, {2, 0, 3.5})};
-    soft.robot.controller.attitude_k5 = 1;
-    soft.robot.controller.attitude_ku5 = 2;
+    test::gains_of(soft.robot).attitude_k5 = 1;
+    test::gains_of(soft.robot).attitude_ku5 = 2;
     CHECK(verdict_of(soft, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit == HoldLimit::tilt);
 
     Problem loose = soft;  // nothing leans the vehicle against that turn
     loose.robot.controller = plain.robot.controller;
-    loose.robot.controller.position_kp = 0;
-    loose.robot.controller.position_ki = 0;
+    test::gains_of(loose.robot).position_kp = 0;
+    test::gains_of(loose.robot).position_ki = 0;
     CHECK(verdict_of(loose, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit == HoldLimit::gain);
 }
 
 TEST_CASE("a loop that neither grows nor decays does not hold") {
     Problem problem = test::ceiling_problem();
     problem.obstacles.clear();
-    problem.robot.controller.position_kp = 0;
-    problem.robot.controller.position_ki = 0;
+    test::gains_of(problem.robot).position_kp = 0;
+    test::gains_of(problem.robot).position_ki = 0;
     const HoverAnalysis a = analyse_hover(*make_flight_model(problem), 0, 2, quarter_turn);
     CHECK(a.verdict == HoldVerdict::unstable);
     CHECK(a.stability.spectral_radius == Approx(1).epsilon(1e-7));

@@ -36,14 +36,24 @@ inline Robot test_robot() {
     robot.arm.max_torque_nm = 12;
 
     robot.controller.rate_hz = 100;
-    robot.controller.position_kp = 2.0;
-    robot.controller.position_kd = 2.6;
-    robot.controller.position_ki = 0.4;
-    robot.controller.attitude_k5 = 8;
-    robot.controller.attitude_ku5 = 20;
-    robot.controller.arm_kp = 30;
-    robot.controller.arm_kd = 11;
+    ModelInversion gains;
+    gains.position_kp = 2.0;
+    gains.position_kd = 2.6;
+    gains.position_ki = 0.4;
+    gains.attitude_k5 = 8;
+    gains.attitude_ku5 = 20;
+    gains.arm_kp = 30;
+    gains.arm_kd = 11;
+    robot.controller.law = gains;
     return robot;
+}
+
+/// The gains of a robot that model inversion flies.
+inline ModelInversion& gains_of(Robot& robot) {
+    return std::get<ModelInversion>(robot.controller.law);
+}
+inline const ModelInversion& gains_of(const Robot& robot) {
+    return std::get<ModelInversion>(robot.controller.law);
 }
 
 /// Its plant.

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <limits>
+
+#include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/flight_step.hpp"
+
+// From what a control law demands to what rotors and joint are commanded. One template over the lane type.
+
+namespace downwash::controllers {
+
+/// What a control law asks for, before allocation and any limit.
+template <class T>
+struct Demand {
+    T thrust_n;          ///< F3
+    T pitch_torque_nm;   ///< T2
+    T arm_acceleration;  ///< v7 [rad/s2]; the joint torque follows from it and from what the rotors really give
+};
+
+/// What a control law commands for one tick.
+template <class T>
+struct Actuation {
+    dynamics::PlantCommand<T> command;  ///< held over the tick, within the limits
+    T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped
+};
+
+/// The joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give. Where
+/// they give what was demanded this is row 4 with the accelerations of the inversion (docs/model.md 5.2). Where they lag or are
+/// clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the vehicle the
+/// wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
+template <class T>
+T joint_torque(const PlantModel& nominal, const dynamics::Motion<T>& motion, T arm_acceleration, T thrust_n,
+               T pitch_torque_nm) {
+    const T force[3] = {thrust_n * motion.attitude.sin_pitch, thrust_n * motion.attitude.cos_pitch, pitch_torque_nm};
+    return dynamics::joint_torque_for(nominal, motion.equations, force, arm_acceleration);
+}
+
+/// The saturation of the worst rotor: the demanded thrust over the greatest one. Below the least thrust it is more than
+/// 1, by the share of the range that is missing.
+template <class T>
+T thrust_saturation(const PlantModel& plant, const T demand_n[max_rotors]) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    T least_n(infinity);
+    T most_n(-infinity);
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        least_n = lane::min(least_n, demand_n[i]);
+        most_n = lane::max(most_n, demand_n[i]);
+    }
+    const T below = T(plant.min_thrust_n) - least_n;
+    const T missed = T(1) + below / T(plant.max_thrust_n - plant.min_thrust_n);
+    return lane::max(most_n / T(plant.max_thrust_n), lane::select(below > T(0), missed, T(0)));
+}
+
+/// What a controller expects of the rotors in the middle of the tick: the commands, or where a lag will have brought
+/// the thrust by then (one implicit step of half a tick). It does not know surface effects.
+template <class T>
+dynamics::RotorWrench<T> expected_wrench(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
+                                         const T command_n[max_rotors], double tick_s) {
+    const double half_tick_s = 0.5 * tick_s;
+    const T reached(half_tick_s / (half_tick_s + nominal.rotor_time_constant_s));  // 1 without lag
+    dynamics::RotorWrench<T> wrench{T(0), T(0)};
+    for (int i = 0; i < nominal.rotor_count; ++i) {
+        const T from = nominal.has_rotor_lag ? seen.thrust_n[i] : command_n[i];
+        const T thrust_n = from + reached * (command_n[i] - from);
+        wrench.thrust_n = wrench.thrust_n + thrust_n;
+        wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(nominal.rotor_x_m[i]) * thrust_n;
+    }
+    return wrench;
+}
+
+/// The commands for a demand: allocated to the rotors, clipped to their limits and to that of the joint.
+/// @param seen state as the controller knows it   @param motion nominal motion of that state
+template <class T>
+void actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
+             const Demand<T>& demand, double tick_s, Actuation<T>& given) {
+    T demand_n[max_rotors];
+    dynamics::allocate(nominal, demand.thrust_n, demand.pitch_torque_nm, demand_n);
+    given.saturation = thrust_saturation(nominal, demand_n);
+    for (int i = 0; i < nominal.rotor_count; ++i) {
+        given.command.thrust_n[i] = lane::clamp(demand_n[i], T(nominal.min_thrust_n), T(nominal.max_thrust_n));
+    }
+    const dynamics::RotorWrench<T> wrench = expected_wrench(nominal, seen, given.command.thrust_n, tick_s);
+    const T torque_nm = joint_torque(nominal, motion, demand.arm_acceleration, wrench.thrust_n, wrench.pitch_torque_nm);
+    const T most_torque(nominal.max_joint_torque_nm);
+    given.saturation = lane::max(given.saturation, lane::abs(torque_nm) / most_torque);
+    given.command.joint_torque_nm = lane::clamp(torque_nm, -most_torque, most_torque);
+}
+
+}  // namespace downwash::controllers

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <variant>
+
+#include "downwash/controllers/model_inversion.hpp"
+
+// The control laws that a robot can be flown by. docs/extending/controller.md says what a law consists of.
+
+namespace downwash {
+
+/// One of the laws, with its gains. The first is that of a robot file without `controller.type`.
+using ControlLaw = std::variant<ModelInversion>;
+
+/// The controller of a robot.
+struct Controller {
+    double rate_hz = 100;  ///< control ticks per second; a command is held over one tick
+    ControlLaw law;
+};
+
+namespace controllers {
+
+/// The numbers of the largest memory among laws.
+template <class... Laws>
+constexpr int max_memory(const std::variant<Laws...>* /*laws*/) {
+    return std::max({static_cast<int>(sizeof(typename Laws::template Memory<double>) / sizeof(double))...});
+}
+
+/// What the law of a flight remembers, whichever it is: the numbers of its memory, then zeros.
+template <class T>
+struct LawMemory {
+    T number[max_memory(static_cast<const ControlLaw*>(nullptr))];
+};
+
+/// The memory of one law in it.
+template <class Law, class T>
+[[nodiscard, gnu::always_inline]] inline typename Law::template Memory<T> recalled(const LawMemory<T>& all) {
+    using Memory = typename Law::template Memory<T>;
+    Memory own;
+    for (int i = 0; i < number_count<T, Memory>; ++i) {
+        set_number_at(own, i, all.number[i]);
+    }
+    return own;
+}
+
+/// The reverse.
+template <class T, template <class> class Memory>
+[[nodiscard, gnu::always_inline]] inline LawMemory<T> remembered(const Memory<T>& memory) {
+    LawMemory<T> all{};
+    for (int i = 0; i < number_count<T, Memory<T>>; ++i) {
+        all.number[i] = number_at<T>(memory, i);
+    }
+    return all;
+}
+
+}  // namespace controllers
+}  // namespace downwash
