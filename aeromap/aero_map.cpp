@@ -22,7 +22,7 @@ bool is_range(double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low < high;
 }
 
-void require_valid(double grid_m, const MapExtent& extent, const std::vector<MapLayer>& layers) {
+void require_valid(double grid_m, const Bounds& extent, const std::vector<MapLayer>& layers) {
     std::vector<KeyError> errors;
     if (!(std::isfinite(grid_m) && grid_m > 0)) {
         errors.push_back({"aero.grid_m", "must be a finite length above 0 in metres"});
@@ -46,11 +46,11 @@ double cells_over(double length_m, double cells_per_m) {
     return std::max(1.0, std::ceil(length_m * cells_per_m - 1e-9));
 }
 
-double columns_over(const MapExtent& extent, double cells_per_m) {
+double columns_over(const Bounds& extent, double cells_per_m) {
     return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m);
 }
 
-double rows_over(const MapExtent& extent, double cells_per_m) {
+double rows_over(const Bounds& extent, double cells_per_m) {
     return cells_over(extent.z_high_m - extent.z_low_m, cells_per_m);
 }
 
@@ -65,18 +65,18 @@ double cell_side_m(const std::vector<MapLayer>& layers) {
 
 }  // namespace
 
-double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent) {
+double map_cells(const std::vector<MapLayer>& layers, const Bounds& extent) {
     const double cells_per_m = 1 / cell_side_m(layers);
     return columns_over(extent, cells_per_m) * rows_over(extent, cells_per_m) * static_cast<double>(layers.size());
 }
 
-AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads,
+AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads,
                  const std::function<void(double)>& on_progress)
     : AeroMap(Empty(), std::move(layers), plane, extent) {
     build(threads, on_progress);
 }
 
-AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent)
+AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent)
     : layers_(std::move(layers)), plane_(plane), extent_(extent) {
     assert(!layers_.empty());
     require_valid(layers_.front().effect->settings().grid_m, extent_, layers_);

@@ -10,18 +10,13 @@
 
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/aeromap/map_view.hpp"
+#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 
 namespace downwash {
 
 struct CellRows;
-
-/// The rectangle of plane coordinates that a map covers [m].
-struct MapExtent {
-    double x_low_m = 0, x_high_m = 0;
-    double z_low_m = 0, z_high_m = 0;
-};
 
 /// One layer of a map: an effect in the plane of motion shifted sideways.
 struct MapLayer {
@@ -31,7 +26,7 @@ struct MapLayer {
 
 /// The number of cells that a map would have, all layers together. A cell is grid_m wide, or a whole fraction of it for
 /// steep models.
-[[nodiscard]] DOWNWASH_EXPORT double map_cells(const std::vector<MapLayer>& layers, const MapExtent& extent);
+[[nodiscard]] DOWNWASH_EXPORT double map_cells(const std::vector<MapLayer>& layers, const Bounds& extent);
 
 /// A map has no more cells than this: 2^24, some hundred megabytes.
 inline constexpr double max_map_cells = 16777216;
@@ -54,7 +49,7 @@ class DOWNWASH_EXPORT AeroMap {
     /// @param on_progress called from the calling thread with the share that is built
     /// @throws InputError if the extent is empty or not finite, grid_m or an offset is out of range, or the map would
     /// have too many cells
-    AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent, int threads = 1,
+    AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads = 1,
             const std::function<void(double)>& on_progress = {});
 
     /// The content of the map as bytes. Only a machine of the same byte order can read them.
@@ -63,10 +58,10 @@ class DOWNWASH_EXPORT AeroMap {
     /// The map from its bytes, equal to the last bit. Empty if the bytes are not a map of these layers, or if some of
     /// its values differ from what the effects give today.
     [[nodiscard]] static std::optional<AeroMap> from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
-                                                           const MapExtent& extent, std::string_view bytes);
+                                                           const Bounds& extent, std::string_view bytes);
 
     /// As given. The cells may reach beyond its upper ends by less than one cell.
-    [[nodiscard]] const MapExtent& extent() const noexcept { return extent_; }
+    [[nodiscard]] const Bounds& extent() const noexcept { return extent_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
@@ -125,7 +120,7 @@ class DOWNWASH_EXPORT AeroMap {
 
     /// A map without values.
     struct Empty {};
-    AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const MapExtent& extent);
+    AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent);
 
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
     void build(int threads, const std::function<void(double)>& on_progress);
@@ -135,7 +130,7 @@ class DOWNWASH_EXPORT AeroMap {
 
     std::vector<MapLayer> layers_;
     PlaneOfMotion plane_;
-    MapExtent extent_;
+    Bounds extent_;
     double cell_m_;  ///< side of a cell
     double cells_per_m_;
     std::uint32_t columns_;

@@ -79,7 +79,7 @@ std::string AeroMap::to_bytes() const {
 }
 
 std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
-                                           const MapExtent& extent, std::string_view bytes) {
+                                           const Bounds& extent, std::string_view bytes) {
     AeroMap map(Empty(), std::move(layers), plane, extent);
     std::uint64_t layer_count = 0;
     std::uint64_t columns = 0;

@@ -69,7 +69,7 @@ FactorGrid sampled(FactorGridParts parts, std::size_t layers, const GridSampling
 }
 
 FactorGridParts parts_over(const GridSampling& sampling, const Provenance& provenance) {
-    const MapExtent& extent = sampling.extent;
+    const Bounds& extent = sampling.extent;
     FactorGridParts parts;
     parts.frame = sampling.plane;
     parts.x = axis_over(extent.x_low_m, extent.x_high_m, sampling.step_m, "x");

@@ -11,7 +11,7 @@ namespace downwash {
 /// Where a grid is sampled. The spacing is rounded down so that the last node is at the upper end.
 struct GridSampling {
     PlaneOfMotion plane;
-    MapExtent extent;
+    Bounds extent;
     double step_m = 0;  ///< maximum distance between neighbouring nodes, > 0
     int threads = 1;
     std::function<void(double)> on_progress;  ///< see run_parallel

@@ -73,7 +73,7 @@ void trim(const fs::path& folder) {
 }  // namespace
 
 std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
-                                              const MapExtent& extent) const noexcept {
+                                              const Bounds& extent) const noexcept {
     try {
         const std::string key = map_key(layers, plane, extent);
         const fs::path path = folder_ / (key + std::string(extension));
@@ -109,7 +109,7 @@ bool MapCache::keep(const AeroMap& map) const noexcept {
 }
 
 std::shared_ptr<const AeroMap> cached_map(const fs::path& folder, const std::vector<MapLayer>& layers,
-                                          const PlaneOfMotion& plane, const MapExtent& extent, int threads,
+                                          const PlaneOfMotion& plane, const Bounds& extent, int threads,
                                           const std::function<void(double)>& on_progress) {
     if (folder.empty()) {
         return std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress);

@@ -17,7 +17,7 @@ inline constexpr int map_format_version = 8;
 /// A digest of everything that makes a map: scene, plane, extent, layers, models with their parameters and tables,
 /// rotors, grid, version. Names of obstacles and files do not count, the contents of meshes, octrees and tables do.
 [[nodiscard]] DOWNWASH_EXPORT std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
-                                                  const MapExtent& extent);
+                                                  const Bounds& extent);
 
 /// Keeps aero maps in a folder from one run to the next: at most 32 files and 1 GB, removing the least recently used
 /// first. Nothing here throws: a file that is damaged, foreign or of another version is not found, and a folder that
@@ -29,7 +29,7 @@ class DOWNWASH_EXPORT MapCache {
 
     /// The map of these layers, to the last bit as it was built; nullptr if it is not there.
     [[nodiscard]] std::shared_ptr<const AeroMap> find(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
-                                                      const MapExtent& extent) const noexcept;
+                                                      const Bounds& extent) const noexcept;
 
     /// Keeps a map; false if that is not possible.
     bool keep(const AeroMap& map) const noexcept;
@@ -41,6 +41,6 @@ class DOWNWASH_EXPORT MapCache {
 /// The map from the cache, or built and kept there. @param folder empty: no cache   @throws InputError as AeroMap
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const AeroMap> cached_map(
     const std::filesystem::path& folder, const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
-    const MapExtent& extent, int threads = 1, const std::function<void(double)>& on_progress = {});
+    const Bounds& extent, int threads = 1, const std::function<void(double)>& on_progress = {});
 
 }  // namespace downwash

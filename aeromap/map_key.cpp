@@ -111,7 +111,7 @@ void add_grid(Description& description, const FactorGrid& grid) {
 
 }  // namespace
 
-std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane, const MapExtent& extent) {
+std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane, const Bounds& extent) {
     Description description;
     description.add("downwash map").add(version()).add(map_format_version);
     description.add_all(plane.origin_m()).add(plane.heading_rad());

@@ -17,7 +17,7 @@ namespace {
 constexpr double longest_radii = 0.45;        // of a cell's edge: no obstacle is missed
 constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 
-void require_valid(const MapExtent& extent, double lateral_low_m, double lateral_high_m) {
+void require_valid(const Bounds& extent, double lateral_low_m, double lateral_high_m) {
     const auto require_range = [](double low_m, double high_m, const char* axis) {
         if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m)) {
             throw_input_error(std::string("the volume's ") + axis + " must be two finite numbers, the lower one first");
@@ -30,7 +30,7 @@ void require_valid(const MapExtent& extent, double lateral_low_m, double lateral
 
 }  // namespace
 
-VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const MapExtent& extent,
+VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
                      double lateral_low_m, double lateral_high_m, int threads,
                      const std::function<void(double)>& on_progress)
     : effect_(std::move(effect)),

@@ -34,7 +34,7 @@ class DOWNWASH_EXPORT VolumeMap {
     /// left
     /// @param threads at least 1; the bytes do not depend on it   @param on_progress see run_parallel
     /// @throws InputError if the block is empty or not finite, or needs more than max_volume_boxes
-    VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const MapExtent& extent,
+    VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
               double lateral_low_m, double lateral_high_m, int threads = 1,
               const std::function<void(double)>& on_progress = {});
 

@@ -38,19 +38,19 @@ FieldFigure vehicle_figure(const Problem& problem, Make make) {
     return figure;
 }
 
-FieldFigure force_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+FieldFigure force_kind(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     return vehicle_figure(problem, [&](const FlightModel& model) {
         return force_figure(problem, model, extent, pitch_option(request.pitch_deg));
     });
 }
 
-FieldFigure torque_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+FieldFigure torque_kind(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     return vehicle_figure(problem, [&](const FlightModel& model) {
         return torque_figure(problem, model, extent, pitch_option(request.pitch_deg));
     });
 }
 
-FieldFigure hold_kind(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+FieldFigure hold_kind(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     return vehicle_figure(problem, [&](const FlightModel& model) {
         return hold_figure(problem, model, extent, request.arm_deg / degrees_per_radian, threads);
@@ -162,9 +162,9 @@ AxisRange shown_range(const char* option, const std::vector<double>& given, cons
 }
 
 /// Where the vehicle's rotors can be, and a little more.
-MapExtent shown_extent(const PlotRequest& request, const Problem& problem) {
+Bounds shown_extent(const PlotRequest& request, const Problem& problem) {
     constexpr double margin = 0.04;  // of the longer side
-    const MapExtent rotors = rotor_extent(problem.robot.rotors, problem.bounds);
+    const Bounds rotors = rotor_extent(problem.robot.rotors, problem.bounds);
     const double margin_m = margin * std::max(rotors.x_high_m - rotors.x_low_m, rotors.z_high_m - rotors.z_low_m);
     const AxisRange x = shown_range("--x", request.x_m, {rotors.x_low_m - margin_m, rotors.x_high_m + margin_m});
     const AxisRange z = shown_range("--z", request.z_m, {rotors.z_low_m - margin_m, rotors.z_high_m + margin_m});

@@ -66,7 +66,7 @@ std::string model_text(const PlotRequest& request, const AeroSettings& aero) {
 
 /// K at (x, z) of a layer: from a map where that is the quicker way, else evaluated directly.
 std::function<double(double, double)> field_of(const MapLayer& layer, const PlaneOfMotion& plane,
-                                               const MapExtent& extent) {
+                                               const Bounds& extent) {
     constexpr double most_cells = 2e6;
     if (map_cells({layer}, extent) <= most_cells) {
         const auto map = std::make_shared<const AeroMap>(std::vector{layer}, plane, extent);
@@ -79,7 +79,7 @@ std::function<double(double, double)> field_of(const MapLayer& layer, const Plan
 }
 
 /// The least and the greatest value of a field, as far as some points tell.
-AxisRange range_of(const std::function<double(double, double)>& field, const MapExtent& extent) {
+AxisRange range_of(const std::function<double(double, double)>& field, const Bounds& extent) {
     constexpr int points = 400;  // each way
     AxisRange range{1, 1};
     for (int k = 0; k < points; ++k) {
@@ -101,7 +101,7 @@ std::string undefined_name(const Problem& problem) {
     return problem.aero.map ? "not flyable, or outside the given map" : "not flyable";
 }
 
-FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const MapExtent& extent) {
+FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     const auto scene = std::make_shared<const Scene>(problem.obstacles);
     const MapLayer layer = shown_layer(request, problem, scene);
     FieldFigure figure;

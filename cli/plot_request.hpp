@@ -44,14 +44,14 @@ struct FieldKind {
     const char* name;
     const char* description;
     PictureSubject subject;
-    FieldFigure (*make)(const PlotRequest& request, const Problem& problem, const MapExtent& extent);
+    FieldFigure (*make)(const PlotRequest& request, const Problem& problem, const Bounds& extent);
 };
 
 /// What it means in pictures of a problem that nothing is known at a place.
 [[nodiscard]] std::string undefined_name(const Problem& problem);
 
 /// The factor on the thrust of a rotor, or one of its sides: "factor", "ground" and "ceiling". @throws UsageError
-[[nodiscard]] FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const MapExtent& extent);
+[[nodiscard]] FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent);
 
 /// K of models over z/R, with measurements. @throws UsageError
 [[nodiscard]] CurveFigure model_figure(const PlotRequest& request);

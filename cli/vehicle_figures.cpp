@@ -19,7 +19,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent,
+FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const Bounds& extent,
                            std::string title) {
     FieldFigure figure;
     figure.title = std::move(title);
@@ -47,7 +47,7 @@ double reach_of(const FieldFigure& figure) {
     double most = 0;
     for (int i = 0; i <= steps; ++i) {
         for (int k = 0; k <= steps; ++k) {
-            const MapExtent& e = figure.extent;
+            const Bounds& e = figure.extent;
             const double value = figure.value(e.x_low_m + (e.x_high_m - e.x_low_m) * i / steps,
                                               e.z_low_m + (e.z_high_m - e.z_low_m) * k / steps);
             most = std::isnan(value) ? most : std::max(most, std::abs(value));
@@ -57,7 +57,7 @@ double reach_of(const FieldFigure& figure) {
 }
 
 /// Where the problem lets the centre of mass be, cut to what is shown.
-FigureLines bounds_lines(const Bounds& bounds, const MapExtent& shown) {
+FigureLines bounds_lines(const Bounds& bounds, const Bounds& shown) {
     FigureLines lines{"bounds of the problem", {}, {40, 40, 40}, 1.5, true, false};
     const double x_low_m = std::max(bounds.x_low_m, shown.x_low_m),
                  x_high_m = std::min(bounds.x_high_m, shown.x_high_m);
@@ -98,7 +98,7 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 
 }  // namespace
 
-FieldFigure force_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double pitch_rad) {
+FieldFigure force_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double pitch_rad) {
     FieldFigure figure = vehicle_figure(problem, model, extent, "Thrust of the whole vehicle at constant command");
     figure.subtitle += attitude_text(pitch_rad);
     figure.value = [&model, pitch_rad](double x_m, double z_m) {
@@ -109,7 +109,7 @@ FieldFigure force_figure(const Problem& problem, const FlightModel& model, const
     return figure;
 }
 
-FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double pitch_rad) {
+FieldFigure torque_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double pitch_rad) {
     FieldFigure figure =
         vehicle_figure(problem, model, extent, "Parasitic pitch torque at hover commands, positive nose down");
     figure.subtitle += attitude_text(pitch_rad) +
@@ -122,7 +122,7 @@ FieldFigure torque_figure(const Problem& problem, const FlightModel& model, cons
     return figure;
 }
 
-FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const MapExtent& extent, double arm_rad,
+FieldFigure hold_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, double arm_rad,
                         int threads) {
     constexpr double cells_across = 240;
     FieldFigure figure = vehicle_figure(

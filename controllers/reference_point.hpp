@@ -17,10 +17,4 @@ struct BasicReferencePoint {
 /// That of one vehicle.
 using ReferencePoint = BasicReferencePoint<double>;
 
-/// Whether the reference stands still there.
-[[nodiscard]] inline bool is_at_rest(const ReferencePoint& point) noexcept {
-    const auto is_zero = [](const double(&axis)[3]) { return axis[0] == 0 && axis[1] == 0 && axis[2] == 0; };
-    return is_zero(point.velocity) && is_zero(point.acceleration);
-}
-
 }  // namespace downwash

@@ -17,7 +17,7 @@ double translation(const double axis[3]) {
 /// Beyond a limit by no more than rounding.
 constexpr double kept = 1 + 1e-9;
 
-double ratio_at(const ReferencePoint& p, const ReferenceLimits& limits) {
+double ratio_at(const ReferencePoint& p, const MotionLimits& limits) {
     return std::max({translation(p.velocity) / limits.max_speed_m_s,
                      translation(p.acceleration) / limits.max_acceleration_m_s2,
                      std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
@@ -30,12 +30,12 @@ std::int64_t samples_of(const ReferenceSegment& segment) {
 }
 
 /// The largest ratio of a speed or an acceleration to its limit at a sample. Sample 0 is the segment's beginning.
-double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const ReferenceLimits& limits) {
+double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const MotionLimits& limits) {
     return ratio_at(segment.at_tick(segment.ticks() * sample / samples_of(segment)), limits);
 }
 
 /// The largest ratio at samples between the ends.
-double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limits) {
+double worst_ratio(const ReferenceSegment& segment, const MotionLimits& limits) {
     double worst = 0;
     for (std::int64_t i = 1; i < samples_of(segment); ++i) {
         worst = std::max(worst, ratio_at_sample(segment, i, limits));
@@ -45,7 +45,7 @@ double worst_ratio(const ReferenceSegment& segment, const ReferenceLimits& limit
 
 /// Whether all samples between the ends keep the limits.
 /// @param suspect the sample that is asked first, as it did not keep them last; becomes the one that does not
-bool keeps_limits_between(const ReferenceSegment& segment, const ReferenceLimits& limits, std::int64_t& suspect) {
+bool keeps_limits_between(const ReferenceSegment& segment, const MotionLimits& limits, std::int64_t& suspect) {
     const std::int64_t samples = samples_of(segment);
     if (suspect < samples && ratio_at_sample(segment, suspect, limits) > kept) {
         return false;
@@ -107,7 +107,7 @@ ReferencePoint ReferenceSegment::at_tick(std::int64_t tick) const noexcept {
     return point;
 }
 
-double rest_to_rest_duration_s(double distance_m, double arm_rad, const ReferenceLimits& limits) {
+double rest_to_rest_duration_s(double distance_m, double arm_rad, const MotionLimits& limits) {
     constexpr double peak_speed = 15.0 / 8.0;
     constexpr double peak_acceleration = 5.7735026918962576;  // 10 / sqrt(3)
     return std::max({peak_speed * distance_m / limits.max_speed_m_s,
@@ -116,7 +116,7 @@ double rest_to_rest_duration_s(double distance_m, double arm_rad, const Referenc
                      std::sqrt(peak_acceleration * arm_rad / limits.max_arm_acceleration_rad_s2)});
 }
 
-std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to, const ReferenceLimits& limits,
+std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to, const MotionLimits& limits,
                             double tick_s) {
     const double dx = to.position[0] - from.position[0];
     const double dz = to.position[1] - from.position[1];
@@ -159,11 +159,11 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     return ticks;
 }
 
-bool keeps_limits(const ReferencePoint& point, const ReferenceLimits& limits) {
+bool keeps_limits(const ReferencePoint& point, const MotionLimits& limits) {
     return ratio_at(point, limits) <= kept;
 }
 
-bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits) {
+bool keeps_limits(const ReferenceSegment& segment, const MotionLimits& limits) {
     std::int64_t suspect = 1;
     return keeps_limits(segment.from(), limits) && keeps_limits(segment.to(), limits) &&
            keeps_limits_between(segment, limits, suspect);

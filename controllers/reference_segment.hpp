@@ -8,11 +8,11 @@
 namespace downwash {
 
 /// Limits of a reference: Euclidean in (x, z), apart for the arm; all > 0.
-struct ReferenceLimits {
-    double max_speed_m_s;
-    double max_acceleration_m_s2;
-    double max_arm_rate_rad_s;
-    double max_arm_acceleration_rad_s2;
+struct MotionLimits {
+    double max_speed_m_s = 1.0;
+    double max_acceleration_m_s2 = 0.5;
+    double max_arm_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second
+    double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
 };
 
 /// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
@@ -55,17 +55,17 @@ struct ReferenceKnot {
 /// Where an end moves the limits are sampled (kept to 0.3 %), and one tick less breaks them. Ends between which no
 /// duration keeps them are given the one that breaks them least: keeps_limits() tells.
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
-                                                          const ReferenceLimits& limits, double tick_s);
+                                                          const MotionLimits& limits, double tick_s);
 
 /// Whether speeds and accelerations at a point keep the limits. No segment that ends where they do not keeps them.
-[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferencePoint& point, const ReferenceLimits& limits);
+[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferencePoint& point, const MotionLimits& limits);
 
 /// Whether a segment keeps the limits wherever they are sampled, its ends included.
-[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const ReferenceLimits& limits);
+[[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const MotionLimits& limits);
 
 /// Duration [s] of the rest-to-rest quintic over a distance [m] and an arm angle [rad] (peak speed 15/8 of the mean,
 /// peak acceleration 10 / sqrt(3) of distance / duration^2), before it is rounded up to ticks.
 [[nodiscard]] DOWNWASH_EXPORT double rest_to_rest_duration_s(double distance_m, double arm_rad,
-                                                             const ReferenceLimits& limits);
+                                                             const MotionLimits& limits);
 
 }  // namespace downwash

@@ -11,6 +11,7 @@
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/controllers/reference_segment.hpp"
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/problems/objective.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
@@ -38,14 +39,6 @@ struct Start {
 
     /// Where vehicle and arm are, the pitch left out.
     [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
-};
-
-/// Limits of the reference motion.
-struct MotionLimits {
-    double max_speed_m_s = 1.0;
-    double max_acceleration_m_s2 = 0.5;
-    double max_arm_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second
-    double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
 };
 
 /// Wall time of a search that is limited by nothing else [s].

@@ -135,7 +135,7 @@ std::vector<KeyError> unreached_places(const Problem& p) {
     if (!p.aero.enabled || !p.aero.map || !map_of_another_plane(p).empty()) {
         return {};
     }
-    const MapExtent reach = rotor_extent(p.robot.rotors, p.bounds);
+    const Bounds reach = rotor_extent(p.robot.rotors, p.bounds);
     for (const Vector3& rotor_m : p.robot.rotors.positions_m) {
         for (const double x : {reach.x_low_m, reach.x_high_m}) {
             for (const double z : {reach.z_low_m, reach.z_high_m}) {

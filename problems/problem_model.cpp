@@ -8,9 +8,8 @@ std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
 }
 
 FlightState start_state(const FlightModel& model, const Start& start) {
-    const double q[4] = {start.x_m, start.z_m, start.pitch_rad, start.arm_rad};
     const double u[4] = {start.vx_m_s, start.vz_m_s, start.pitch_rate_rad_s, start.arm_rate_rad_s};
-    return model.state_at(q, u);
+    return model.state_at({start.x_m, start.z_m, start.pitch_rad, start.arm_rad}, u);
 }
 
 }  // namespace downwash

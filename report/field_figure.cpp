@@ -89,7 +89,7 @@ void add_color_bar(GnuplotScript& script, const FieldFigure& figure, const Field
     script.add_line_of_text(scale.label, (layout.left + layout.right) / 2, 13, 1, "'#000000'");
 }
 
-void add_arrows(GnuplotScript& script, const FigureLines& lines, const MapExtent& extent) {
+void add_arrows(GnuplotScript& script, const FigureLines& lines, const Bounds& extent) {
     const auto is_shown = [&](const PlanePoint& p) {
         return p.x_m > extent.x_low_m && p.x_m < extent.x_high_m && p.z_m > extent.z_low_m && p.z_m < extent.z_high_m;
     };
@@ -147,7 +147,7 @@ void add_boundary(GnuplotScript& script, const FieldFigure& figure, const FieldL
 }
 
 void add_axes(GnuplotScript& script, const FieldFigure& figure, const FieldLayout& layout) {
-    const MapExtent& extent = figure.extent;
+    const Bounds& extent = figure.extent;
     script.set_axes(layout.left, layout.right, layout.bottom, layout.top);
     script.add(fmt::format("set xrange [{}:{}]", extent.x_low_m, extent.x_high_m));
     script.add(fmt::format("set yrange [{}:{}]", extent.z_low_m, extent.z_high_m));
@@ -187,7 +187,7 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     add_obstacle_data(script, outlines);
     add_obstacle_names(script, figure, outlines, layout);
     add_mark_data(script, figure);
-    const MapExtent& extent = figure.extent;
+    const Bounds& extent = figure.extent;
     add_data(script, "$all",
              points_text({{extent.x_low_m, extent.z_low_m},
                           {extent.x_high_m, extent.z_low_m},

@@ -35,7 +35,7 @@ struct FieldFigure {
     std::string subtitle;
     std::string x_label = "x [m]";
     std::string z_label = "z [m]";
-    MapExtent extent;  ///< what is shown; not empty, neither side 40 times as long as the other
+    Bounds extent;  ///< what is shown; not empty, neither side 40 times as long as the other
     ColorScale scale;
     /// The field at (x, z); NaN where it is not defined. Called for some hundred thousand points of the extent.
     std::function<double(double x_m, double z_m)> value;

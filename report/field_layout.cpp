@@ -10,7 +10,7 @@
 
 namespace downwash {
 
-void require_drawable(const MapExtent& extent) {
+void require_drawable(const Bounds& extent) {
     constexpr double longest_ratio = 40;
     const double width_m = extent.x_high_m - extent.x_low_m;
     const double height_m = extent.z_high_m - extent.z_low_m;
@@ -29,7 +29,7 @@ void require_drawable(const MapExtent& extent) {
 FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend) {
     constexpr double left_px = 80, right_px = 24, below_axes_px = 128;
     constexpr double tallest = 1.2;  // of the axes, in their widths
-    const MapExtent& extent = figure.extent;
+    const Bounds& extent = figure.extent;
     const double ratio = (extent.z_high_m - extent.z_low_m) / (extent.x_high_m - extent.x_low_m);
     const double room_px = picture_width_px - left_px - right_px;
     const double width_px = ratio > tallest ? room_px * tallest / ratio : room_px;

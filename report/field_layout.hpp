@@ -19,7 +19,7 @@ struct FieldLayout {
 };
 
 /// @throws InputError when what is shown cannot be drawn to scale
-void require_drawable(const MapExtent& extent);
+void require_drawable(const Bounds& extent);
 
 [[nodiscard]] FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend);
 

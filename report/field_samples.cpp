@@ -16,7 +16,7 @@ std::string FieldSamples::surface_source() const {
 
 FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners) {
     FieldSamples samples;
-    const MapExtent& extent = figure.extent;
+    const Bounds& extent = figure.extent;
     samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);
     samples.dz_m = (extent.z_high_m - extent.z_low_m) / static_cast<double>(rows);
     samples.columns = columns + (at_corners ? 1 : 0);

@@ -36,7 +36,7 @@ std::optional<PlanePoint> next_point(const PlanarVelocity& velocity, const Plane
 
 }  // namespace
 
-std::vector<PlanePoint> streamline(const PlanarVelocity& velocity, const PlanePoint& start, const MapExtent& extent,
+std::vector<PlanePoint> streamline(const PlanarVelocity& velocity, const PlanePoint& start, const Bounds& extent,
                                    double step) {
     constexpr std::size_t most_points = 10001;
     const auto is_shown = [&](const PlanePoint& p) {
@@ -56,7 +56,7 @@ std::vector<PlanePoint> streamline(const PlanarVelocity& velocity, const PlanePo
     return points;
 }
 
-FieldFigure flow_figure(const PlanarVelocity& velocity, const MapExtent& extent, const std::vector<PlanePoint>& starts,
+FieldFigure flow_figure(const PlanarVelocity& velocity, const Bounds& extent, const std::vector<PlanePoint>& starts,
                         ColorScale scale) {
     constexpr double steps_across = 500;
     FieldFigure figure;

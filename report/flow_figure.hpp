@@ -17,12 +17,12 @@ using PlanarVelocity = std::function<std::array<double, 2>(double x, double z)>;
 /// classical method of Runge and Kutta. It ends where it leaves the extent, where the velocity vanishes or is not
 /// finite, or after 10000 steps. @pre step > 0
 [[nodiscard]] DOWNWASH_EXPORT std::vector<PlanePoint> streamline(const PlanarVelocity& velocity,
-                                                                 const PlanePoint& start, const MapExtent& extent,
+                                                                 const PlanePoint& start, const Bounds& extent,
                                                                  double step);
 
 /// A picture of a flow: the velocity along z as colours, and streamlines from these points. Titles and axes are the
 /// caller's to set. @param scale of the velocity along z  @pre the extent is not empty
-[[nodiscard]] DOWNWASH_EXPORT FieldFigure flow_figure(const PlanarVelocity& velocity, const MapExtent& extent,
+[[nodiscard]] DOWNWASH_EXPORT FieldFigure flow_figure(const PlanarVelocity& velocity, const Bounds& extent,
                                                       const std::vector<PlanePoint>& starts, ColorScale scale);
 
 }  // namespace downwash

@@ -132,7 +132,7 @@ void add_obstacle_data(GnuplotScript& script, const std::vector<ObstacleOutline>
 
 void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<ObstacleOutline>& outlines,
                         const FieldLayout& layout) {
-    const MapExtent& extent = figure.extent;
+    const Bounds& extent = figure.extent;
     const double px_per_m = layout.width() / (extent.x_high_m - extent.x_low_m);
     std::vector<NamedShape> shapes;
     for (const ObstacleOutline& outline : outlines) {

@@ -7,7 +7,7 @@ namespace {
 
 class Grid {
  public:
-    Grid(const std::function<bool(double, double)>& contains, const MapExtent& extent, std::size_t columns,
+    Grid(const std::function<bool(double, double)>& contains, const Bounds& extent, std::size_t columns,
          std::size_t rows)
         : contains_(contains), extent_(extent), columns_(columns), rows_(rows), inside_((columns + 1) * (rows + 1)) {
         for (std::size_t node = 0; node < inside_.size(); ++node) {
@@ -38,7 +38,7 @@ class Grid {
 
  private:
     const std::function<bool(double, double)>& contains_;
-    MapExtent extent_;
+    Bounds extent_;
     std::size_t columns_, rows_;
     std::vector<bool> inside_;
 };
@@ -46,7 +46,7 @@ class Grid {
 }  // namespace
 
 std::vector<std::vector<PlanePoint>> region_boundary(const std::function<bool(double, double)>& contains,
-                                                     const MapExtent& extent, std::size_t columns, std::size_t rows) {
+                                                     const Bounds& extent, std::size_t columns, std::size_t rows) {
     const Grid grid(contains, extent, columns, rows);
     // Inside counts as the low side: two fields of a region that meet at a corner only are taken as apart.
     const auto side = [&grid](std::size_t column, std::size_t row) {

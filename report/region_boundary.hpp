@@ -14,7 +14,7 @@ namespace downwash {
 /// that differ (grid_contour): what is smaller than a cell may be missed.
 /// @param contains whether a point belongs to the region  @pre columns and rows at least 1
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::vector<PlanePoint>> region_boundary(
-    const std::function<bool(double x_m, double z_m)>& contains, const MapExtent& extent, std::size_t columns,
+    const std::function<bool(double x_m, double z_m)>& contains, const Bounds& extent, std::size_t columns,
     std::size_t rows);
 
 }  // namespace downwash

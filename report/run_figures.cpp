@@ -128,9 +128,9 @@ std::vector<PlanePoint> planned_way(const RunRecord& run) {
 }
 
 /// What plan, flight and goals need, with room around.
-MapExtent shown_extent(const RunRecord& run, const Flight& flight) {
+Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     const double room_m = 1.2 * run.problem.robot.arm.length_m;
-    MapExtent extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    Bounds extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
     const auto include = [&](const std::vector<double>& x_m, const std::vector<double>& z_m) {
         for (std::size_t i = 0; i < x_m.size(); ++i) {
             extent.x_low_m = std::min(extent.x_low_m, x_m[i] - room_m);

@@ -54,7 +54,7 @@ class FlightControlSpace : public oc::RealVectorControlSpace {
 /// Velocities in all directions alike, and durations, with the caller's generator.
 class VelocitySampler : public oc::ControlSampler {
  public:
-    VelocitySampler(const oc::ControlSpace* controls, const ReferenceLimits& limits, Random& random)
+    VelocitySampler(const oc::ControlSpace* controls, const MotionLimits& limits, Random& random)
         : oc::ControlSampler(controls), limits_(limits), random_(random) {}
 
     void sample(oc::Control* control) override {
@@ -73,7 +73,7 @@ class VelocitySampler : public oc::ControlSampler {
     }
 
  private:
-    ReferenceLimits limits_;
+    MotionLimits limits_;
     Random& random_;
 };
 
@@ -126,7 +126,7 @@ const double* velocity_of(const oc::Control* control) {
 oc::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, Random& random) {
     const auto states = make_flight_space(flights.task(), random);
     const auto controls = std::make_shared<FlightControlSpace>(states);
-    const ReferenceLimits& limits = flights.flights().limits();
+    const MotionLimits& limits = flights.flights().limits();
     ob::RealVectorBounds bounds(3);
     const double most[3] = {limits.max_speed_m_s, limits.max_speed_m_s, limits.max_arm_rate_rad_s};
     for (unsigned int i = 0; i < 3; ++i) {

@@ -142,7 +142,7 @@ double cost_of(const std::vector<Configuration>& waypoints, const FreeAirCost& c
 
 }  // namespace
 
-Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start, const ReferenceLimits& limits,
+Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start, const MotionLimits& limits,
                 double tick_s) {
     Plan plan;
     plan.tick_s = tick_s;
@@ -211,7 +211,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
         if (is_exact || waypoints.size() > 1) {
             result.status = is_exact ? Status::solved : Status::approximate;
             result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
-            result.plan = timed_plan(waypoints, reference_at(problem.start), reference_limits(problem.motion),
+            result.plan = timed_plan(waypoints, reference_at(problem.start), problem.motion,
                                      task.model.tick().tick_s);
             if (is_exact && !best_cost) {
                 improve(cost_of(waypoints, free_air_cost, space));

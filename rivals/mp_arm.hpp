@@ -43,6 +43,6 @@ struct GeometricHooks {
 
 /// The rest-to-rest reference through waypoints whose arm angles are unwrapped, the first at the start's motion.
 [[nodiscard]] Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start,
-                              const ReferenceLimits& limits, double tick_s);
+                              const MotionLimits& limits, double tick_s);
 
 }  // namespace downwash::planning

@@ -33,7 +33,7 @@ double braking_way(double speed, double gain, double step_s) {
 
 }  // namespace
 
-ReferenceSteps::ReferenceSteps(const ReferenceLimits& limits, double tick_s)
+ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
     : limits_(limits),
       ticks_(std::max<std::int64_t>(1, std::llround(wanted_step_s / tick_s))),
       duration_s_(static_cast<double>(ticks_) * tick_s),

@@ -13,7 +13,7 @@ class ReferenceSteps {
  public:
     /// @param tick_s length of a control tick; a step is the whole number of them nearest to half a second, at least
     /// one
-    ReferenceSteps(const ReferenceLimits& limits, double tick_s);
+    ReferenceSteps(const MotionLimits& limits, double tick_s);
 
     [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
     [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
@@ -30,7 +30,7 @@ class ReferenceSteps {
     [[nodiscard]] double braking_ticks(const ReferencePoint& from) const noexcept;
 
  private:
-    ReferenceLimits limits_;
+    MotionLimits limits_;
     std::int64_t ticks_;
     double duration_s_;
     double speed_gain_m_s_;  ///< greatest change of velocity in a step

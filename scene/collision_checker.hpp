@@ -3,20 +3,11 @@
 #include <memory>
 
 #include "downwash/base/export.hpp"
+#include "downwash/scene/planar_pose.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {
-
-/// Where the robot's bodies are: planar position of the multirotor's centre of mass [m], pitch and arm angle relative
-/// to the multirotor [rad] (docs/model.md 1: pitch positive nose down, arm direction (cos a, -sin a) with a = pitch +
-/// arm).
-struct PlanarPose {
-    double x_m = 0;
-    double z_m = 0;
-    double pitch_rad = 0;
-    double arm_rad = 0;
-};
 
 /// Answers whether and how near the robot touches the scene. Immutable; every query may run in several threads.
 /// Bounding boxes dismiss what is plainly apart; between the others distances are enclosed to 1e-8 m

@@ -21,17 +21,12 @@ double hover_power_w(const FlightModel& model) {
 
 }  // namespace
 
-ReferenceLimits reference_limits(const MotionLimits& motion) {
-    return {motion.max_speed_m_s, motion.max_acceleration_m_s2, motion.max_arm_rate_rad_s,
-            motion.max_arm_acceleration_rad_s2};
-}
-
 FreeAirCost::FreeAirCost(const SearchTask& task)
     : objective_(task.problem.planner.objective),
       counts_clearance_(objective_.weight(Objective::clearance) > 0),
       model_(task.model),
       space_(task.space),
-      limits_(reference_limits(task.problem.motion)),
+      limits_(task.problem.motion),
       hover_power_w_(hover_power_w(task.model)) {}
 
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {

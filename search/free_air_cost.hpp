@@ -32,11 +32,8 @@ class FreeAirCost {
     bool counts_clearance_;  ///< it takes queries of distance
     const FlightModel& model_;
     const SearchSpace& space_;
-    ReferenceLimits limits_;
+    MotionLimits limits_;
     double hover_power_w_;
 };
-
-/// The reference limits of a problem.
-[[nodiscard]] ReferenceLimits reference_limits(const MotionLimits& motion);
 
 }  // namespace downwash::planning

@@ -65,7 +65,7 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
 
 PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_over, int threads)
     : task_(task),
-      limits_(reference_limits(task.problem.motion)),
+      limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
       crew_(task.model, task.map, planning_rules(task.problem, std::move(is_over)), &task.problem.goal, threads) {
     forget_statistics();

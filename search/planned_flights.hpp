@@ -56,7 +56,7 @@ class PlannedFlights {
 
     /// A segment between two points in as few ticks as the limits of motion allow.
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
-    [[nodiscard]] const ReferenceLimits& limits() const noexcept { return limits_; }
+    [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
     [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
@@ -73,7 +73,7 @@ class PlannedFlights {
     void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
 
     const SearchTask& task_;
-    ReferenceLimits limits_;
+    MotionLimits limits_;
     double tick_s_;
     FlightCrew crew_;
     FlightStatistics statistics_;

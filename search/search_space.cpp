@@ -1,7 +1,6 @@
 #include "downwash/search/search_space.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -10,14 +9,6 @@
 #include "downwash/dynamics/rigid_body.hpp"
 
 namespace downwash::planning {
-namespace {
-
-/// The coordinates of the level vehicle.
-std::array<double, 4> level_at(const Configuration& c) {
-    return {c.x_m, c.z_m, 0, c.arm_rad};
-}
-
-}  // namespace
 
 ReferencePoint reference_at(const Start& start) noexcept {
     ReferencePoint point = at_rest(start.configuration());
@@ -109,7 +100,7 @@ Configuration SearchSpace::sample_near(const Configuration& configuration, doubl
 
 std::optional<Configuration> SearchSpace::sample_goal_near(const Configuration& configuration, double radius_m,
                                                            Random& random) const {
-    const Goal& goal = nearest_goal(goal_, model_.tick().plant, level_at(configuration).data());
+    const Goal& goal = nearest_goal(goal_, model_.tick().plant, level_at(configuration));
     const Configuration near = sample_near(configuration, radius_m, random);
     // Another place anywhere within a disc is near enough; a rectangle may be wide.
     const Configuration candidate = tolerance_of(goal).is_disc
@@ -154,7 +145,7 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
 }
 
 Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
-    return moved_into(nearest_goal(goal_, model_.tick().plant, level_at(c).data()), c, share);
+    return moved_into(nearest_goal(goal_, model_.tick().plant, level_at(c)), c, share);
 }
 
 Configuration SearchSpace::moved_into(const Goal& wanted, Configuration c, double share) const {
@@ -220,11 +211,11 @@ std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
 }
 
 GoalError SearchSpace::error(const Configuration& c) const {
-    return goal_error(goal_, model_.tick().plant, level_at(c).data());
+    return goal_error(goal_, model_.tick().plant, level_at(c));
 }
 
 double SearchSpace::hold_s(const Configuration& c) const {
-    return nearest_goal(goal_, model_.tick().plant, level_at(c).data()).hold_s;
+    return nearest_goal(goal_, model_.tick().plant, level_at(c)).hold_s;
 }
 
 bool SearchSpace::is_near_goal(const Configuration& c) const {
@@ -245,7 +236,7 @@ double SearchSpace::goal_distance_m(const Configuration& c) const {
 }
 
 GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configuration& c) const {
-    const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c).data());
+    const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c));
     const GoalTolerance tolerance = tolerance_of(goal);
     const auto beyond = [](double deviation, double most) {
         return std::max(0.0, std::abs(deviation) - usable_tolerance_share * most);
@@ -266,7 +257,7 @@ Rejection SearchSpace::rejection_at(const Configuration& c) const {
     if (!is_inside(c)) {
         return Rejection::bounds;
     }
-    return model_.collisions().is_nearer_than({c.x_m, c.z_m, 0, c.arm_rad}, margin_m_) ? Rejection::collision
+    return model_.collisions().is_nearer_than(level_at(c), margin_m_) ? Rejection::collision
                                                                                        : Rejection::none;
 }
 

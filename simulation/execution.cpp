@@ -9,6 +9,7 @@
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 namespace {
@@ -88,7 +89,7 @@ class Recorder {
                 return Rejection::collision;
             }
         }
-        if (execution_.aero && !is_flyable(state)) {
+        if (execution_.aero && !is_flyable(model_, pose_of(state))) {
             return Rejection::flyable_area;
         }
         return Rejection::none;
@@ -104,12 +105,6 @@ class Recorder {
     }
 
  private:
-    [[nodiscard]] bool is_flyable(const FlightState& state) const {
-        return simulation::all_rotors(model_, state, [&](int rotor, double x_m, double z_m) {
-            return model_.effect(rotor).is_flyable(model_.plane().to_world(x_m, model_.rotor_lateral_m(rotor), z_m));
-        });
-    }
-
     const FlightModel& model_;
     const PlantModel& plant_;
     const Factor& factor_;
@@ -117,15 +112,6 @@ class Recorder {
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
 };
-
-struct Level {
-    double q[4];
-};
-
-/// The level vehicle at a reference point.
-Level level_at(const ReferencePoint& point) {
-    return {{point.position[0], point.position[1], 0, point.position[2]}};
-}
 
 std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot>& knots, std::int64_t hold,
                                                  double tick_s) {
@@ -147,7 +133,7 @@ std::vector<std::int64_t> hold_ends(const FlightModel& model, const std::vector<
         const ReferencePoint& point = knots[i].point;
         if (point == knots[i - 1].point && is_at_rest(point) &&
             knots[i].tick - knots[i - 1].tick >= hold_ticks(goal, model, point) &&
-            is_met(goal_error(goal, model.tick().plant, level_at(point).q))) {
+            is_met(goal_error(goal, model.tick().plant, level_at(configuration_of(point))))) {
             ends.push_back(knots[i].tick);
         }
     }
@@ -166,7 +152,7 @@ GoalVisit visit_of(const Goal& goal, std::optional<std::int64_t> end, const Flig
     const std::int64_t settling = visit.is_met ? std::llround(goal_settling_s / model.tick().tick_s) : 0;
     for (std::int64_t i = std::max<std::int64_t>(0, last - settling); i <= last; ++i) {
         const FlightRow& row = rows[static_cast<std::size_t>(i)];
-        const GoalError error = goal_error(goal, model.tick().plant, row.q);
+        const GoalError error = goal_error(goal, model.tick().plant, pose_of(row.q));
         const bool is_slow = std::sqrt(row.u[0] * row.u[0] + row.u[1] * row.u[1]) < goal_max_speed_m_s;
         visit.error_m = std::max(visit.error_m, error.distance_m);
         visit.is_met = visit.is_met && is_met(error) && is_slow;
@@ -233,13 +219,13 @@ std::string_view name_of(Outcome outcome) {
 }
 
 std::int64_t hold_ticks(const Goal& goal, const FlightModel& model, const ReferencePoint& at) {
-    const double hold_s = nearest_goal(goal, model.tick().plant, level_at(at).q).hold_s;
+    const double hold_s = nearest_goal(goal, model.tick().plant, level_at(configuration_of(at))).hold_s;
     return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(hold_s / model.tick().tick_s - 1e-9)));
 }
 
 bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state) {
     const double* u = state.plant.u;
-    return is_met(goal_error(goal, plant, state.plant.q)) && std::sqrt(u[0] * u[0] + u[1] * u[1]) < goal_max_speed_m_s;
+    return is_met(goal_error(goal, plant, pose_of(state))) && std::sqrt(u[0] * u[0] + u[1] * u[1]) < goal_max_speed_m_s;
 }
 
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,

@@ -13,12 +13,6 @@ using Given = controllers::Actuation<double>;
 
 constexpr std::int64_t ticks_between_questions = 4096;
 
-bool is_flyable(const FlightModel& model, const AeroMap& map, const FlightState& state) {
-    return simulation::all_rotors(model, state, [&](int rotor, double x_m, double z_m) {
-        return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
-    });
-}
-
 /// The rules, cheapest first.
 Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                         const simulation::RuleLimits& limits, const Given& given,
@@ -27,7 +21,7 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
     if (broken > 0) {
         return static_cast<Rejection>(static_cast<int>(broken));
     }
-    if (map != nullptr && !is_flyable(model, *map, state)) {
+    if (map != nullptr && !simulation::is_flyable(model, *map, pose_of(state))) {
         return Rejection::flyable_area;
     }
     if (model.collisions().is_nearer_than(pose_of(state), rules.margin_m) ||

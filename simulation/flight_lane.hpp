@@ -155,7 +155,7 @@ class FlightLane {
             return Rejection::goal_missed;
         }
         const double motion_m =
-            motion_within_goal_m(*world_->goal, plant(), now.plant.q, world_->model.collisions().body_reach_m());
+            motion_within_goal_m(*world_->goal, plant(), pose_of(now), world_->model.collisions().body_reach_m());
         lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
         lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;
@@ -166,13 +166,10 @@ class FlightLane {
 
     /// Flyable area and collision at the state of now; how far the robot may move until the next look.
     Rejection rejection_nearby() {
-        const FlightState now = state();
-        if (world_->map != nullptr && !all_rotors(world_->model, now, [&](int rotor, double x_m, double z_m) {
-                return world_->map->is_flyable(world_->model.rotor_layer(rotor), x_m, z_m);
-            })) {
+        const PlanarPose pose = pose_of(state());
+        if (world_->map != nullptr && !is_flyable(world_->model, *world_->map, pose)) {
             return Rejection::flyable_area;
         }
-        const PlanarPose pose = pose_of(now);
         const CollisionChecker& collisions = world_->model.collisions();
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
         if (comes_nearer_between(world_->model, read<PlanarPose>(lanes_->before), pose, world_->rules.margin_m)) {

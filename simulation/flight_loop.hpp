@@ -23,16 +23,23 @@ inline double clearance_density(double clearance_m) noexcept {
 
 /// Whether a property holds at the hub of every rotor, given as (rotor, x_m, z_m) in the plane.
 template <class Predicate>
-bool all_rotors(const FlightModel& model, const FlightState& state, const Predicate& predicate) {
+bool all_rotors(const FlightModel& model, const PlanarPose& pose, const Predicate& predicate) {
     const PlantModel& plant = model.tick().plant;
-    const auto attitude = dynamics::attitude(plant, state.plant.q[2], state.plant.q[3]);
+    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
     for (int i = 0; i < plant.rotor_count; ++i) {
-        const auto hub = dynamics::rotor_position(plant, attitude, state.plant.q[0], state.plant.q[1], i);
+        const auto hub = dynamics::rotor_position(plant, attitude, pose.x_m, pose.z_m, i);
         if (!predicate(i, hub.x, hub.z)) {
             return false;
         }
     }
     return true;
+}
+
+/// Whether every rotor of a vehicle at this pose is inside the flyable area of a map.
+inline bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose) {
+    return all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
+        return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
+    });
 }
 
 /// Flies a segment tick by tick until `after` finds a reason to end the flight.

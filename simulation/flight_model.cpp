@@ -41,7 +41,7 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
     return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
 }
 
-MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
+Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
     double reach_m = 0;
     for (const Vector3& hub_m : rotors.positions_m) {
         reach_m = std::max(reach_m, std::sqrt(hub_m[0] * hub_m[0] + hub_m[2] * hub_m[2]));
@@ -86,11 +86,12 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
     return all;
 }
 
-FlightState FlightModel::state_at(const double q[4], const double u[4]) const noexcept {
+FlightState FlightModel::state_at(const PlanarPose& pose, const double (&u)[4]) const noexcept {
+    const double q[4] = {pose.x_m, pose.z_m, pose.pitch_rad, pose.arm_rad};
     FlightState state{};
     std::copy(q, q + 4, state.plant.q);
     std::copy(u, u + 4, state.plant.u);
-    state.memory = std::visit([&](const auto& law) { return controllers::remembered(law.rested(q[2])); }, tick_.law);
+    state.memory = std::visit([&](const auto& law) { return controllers::remembered(law.rested(pose.pitch_rad)); }, tick_.law);
     // Rotors that lag begin with the thrust that carries the weight.
     const PlantModel& plant = tick_.plant;
     for (int i = 0; i < plant.rotor_count; ++i) {

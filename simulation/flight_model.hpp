@@ -49,8 +49,9 @@ class DOWNWASH_EXPORT FlightModel {
                                                           const std::function<void(double)>& on_progress = {},
                                                           const std::filesystem::path& cache = {}) const;
 
-    /// The vehicle at q = (x, z, pitch, arm) [m, m, rad, rad] with speeds u, controller rested, no energy spent.
-    [[nodiscard]] FlightState state_at(const double q[4], const double u[4]) const noexcept;
+    /// The vehicle at a pose with the speeds u of its coordinates [m/s, m/s, rad/s, rad/s], controller rested, no energy
+    /// spent.
+    [[nodiscard]] FlightState state_at(const PlanarPose& pose, const double (&u)[4] = {0, 0, 0, 0}) const noexcept;
 
  private:
     Robot robot_;
@@ -62,7 +63,7 @@ class DOWNWASH_EXPORT FlightModel {
 };
 
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
-[[nodiscard]] DOWNWASH_EXPORT MapExtent rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
+[[nodiscard]] DOWNWASH_EXPORT Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
 
 /// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle and, where the ground
 /// model has a fountain, its body.
@@ -77,7 +78,7 @@ struct EffectLayers {
 
 /// The pose whose collisions a state stands for.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {
-    return {state.plant.q[0], state.plant.q[1], state.plant.q[2], state.plant.q[3]};
+    return pose_of(state.plant.q);
 }
 
 }  // namespace downwash

@@ -13,16 +13,16 @@ double angle_between(double a_rad, double b_rad) {
     return std::abs(lane::wrap_angle(a_rad - b_rad));
 }
 
-GoalDeviation deviation(const EndEffectorGoal& goal, const PlantModel& model, const double q[4]) {
-    const auto attitude = dynamics::attitude(model, q[2], q[3]);
-    const auto tip = dynamics::end_effector_position(model, attitude, q[0], q[1]);
+GoalDeviation deviation(const EndEffectorGoal& goal, const PlantModel& model, const PlanarPose& pose) {
+    const auto attitude = dynamics::attitude(model, pose.pitch_rad, pose.arm_rad);
+    const auto tip = dynamics::end_effector_position(model, attitude, pose.x_m, pose.z_m);
     return {tip.x - goal.x_m, tip.z - goal.z_m,
-            goal.direction_rad ? angle_between(q[2] + q[3], *goal.direction_rad) : 0};
+            goal.direction_rad ? angle_between(pose.pitch_rad + pose.arm_rad, *goal.direction_rad) : 0};
 }
 
-GoalDeviation deviation(const ConfigurationGoal& goal, const double q[4]) {
-    return {goal.x_m ? q[0] - *goal.x_m : 0, goal.z_m ? q[1] - *goal.z_m : 0,
-            goal.arm_rad ? angle_between(q[3], *goal.arm_rad) : 0};
+GoalDeviation deviation(const ConfigurationGoal& goal, const PlanarPose& pose) {
+    return {goal.x_m ? pose.x_m - *goal.x_m : 0, goal.z_m ? pose.z_m - *goal.z_m : 0,
+            goal.arm_rad ? angle_between(pose.arm_rad, *goal.arm_rad) : 0};
 }
 
 template <class Kind>
@@ -54,28 +54,28 @@ GoalTolerance tolerance_of(const Goal& goal) noexcept {
     return tolerance(configuration, configuration.tolerance_rad);
 }
 
-GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model, const double q[4]) {
-    return goal.end_effector ? deviation(*goal.end_effector, model, q) : deviation(*goal.configuration, q);
+GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
+    return goal.end_effector ? deviation(*goal.end_effector, model, pose) : deviation(*goal.configuration, pose);
 }
 
-GoalError goal_error(const Goal& goal, const PlantModel& model, const double q[4]) {
-    const Goal& nearest = nearest_goal(goal, model, q);
-    const GoalDeviation d = goal_deviation(nearest, model, q);
+GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
+    const Goal& nearest = nearest_goal(goal, model, pose);
+    const GoalDeviation d = goal_deviation(nearest, model, pose);
     return {distance_m(d), d.angle_rad, tolerance_of(nearest).used_share(d)};
 }
 
-const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const double q[4]) {
+const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
     if (goal.any_of.empty()) {
         return goal;
     }
-    const auto share = [&](const Goal& each) { return tolerance_of(each).used_share(goal_deviation(each, model, q)); };
+    const auto share = [&](const Goal& each) { return tolerance_of(each).used_share(goal_deviation(each, model, pose)); };
     return *std::min_element(goal.any_of.begin(), goal.any_of.end(),
                              [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
 }
 
-double motion_within_goal_m(const Goal& goal, const PlantModel& model, const double q[4], double body_reach_m) {
-    const Goal& nearest = nearest_goal(goal, model, q);
-    const GoalDeviation d = goal_deviation(nearest, model, q);
+double motion_within_goal_m(const Goal& goal, const PlantModel& model, const PlanarPose& pose, double body_reach_m) {
+    const Goal& nearest = nearest_goal(goal, model, pose);
+    const GoalDeviation d = goal_deviation(nearest, model, pose);
     const GoalTolerance tolerance = tolerance_of(nearest);
     const double distance_left_m = tolerance.is_disc
                                        ? tolerance.x_m - distance_m(d)

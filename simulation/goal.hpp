@@ -5,15 +5,11 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/bounds.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/simulation/pose.hpp"
 
 namespace downwash {
-
-/// Limits of the multirotor's centre of mass, plane coordinates [m].
-struct Bounds {
-    double x_low_m = 0, x_high_m = 0;
-    double z_low_m = 0, z_high_m = 0;
-};
 
 /// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
 struct EndEffectorGoal {
@@ -65,9 +61,9 @@ struct GoalTolerance {
 /// Of a goal without alternatives.
 [[nodiscard]] DOWNWASH_EXPORT GoalTolerance tolerance_of(const Goal& goal) noexcept;
 
-/// The deviation of a configuration q = (x, z, pitch, arm) [m, m, rad, rad] from a goal without alternatives.
+/// The deviation of a pose from a goal without alternatives.
 [[nodiscard]] DOWNWASH_EXPORT GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model,
-                                                           const double q[4]);
+                                                           const PlanarPose& pose);
 
 /// How far a vehicle is from a goal.
 struct GoalError {
@@ -76,21 +72,21 @@ struct GoalError {
     double used_share = 0;  ///< the greatest share of a tolerance that is used up; see is_met()
 };
 
-/// The error of a configuration q = (x, z, pitch, arm) [m, m, rad, rad]; among alternatives that of the nearest.
-[[nodiscard]] DOWNWASH_EXPORT GoalError goal_error(const Goal& goal, const PlantModel& model, const double q[4]);
+/// The error of a pose; among alternatives that of the nearest.
+[[nodiscard]] DOWNWASH_EXPORT GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose);
 
-/// The alternative of which a configuration uses up the least share of the tolerances; the first of equals.
-[[nodiscard]] DOWNWASH_EXPORT const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const double q[4]);
+/// The alternative of which a pose uses up the least share of the tolerances; the first of equals.
+[[nodiscard]] DOWNWASH_EXPORT const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const PlanarPose& pose);
 
 /// Whether the error lies within the goal's tolerances.
 [[nodiscard]] inline bool is_met(const GoalError& error) noexcept {
     return error.used_share <= 1;
 }
 
-/// How far any point of the robot may move, at the most, so that a configuration that meets the goal surely still does
+/// How far any point of the robot may move, at the most, so that a pose that meets the goal surely still does
 /// [m]; negative where it does not.
 /// @param body_reach_m a turn of the body moves some point of the robot with this reach [m], > 0
-[[nodiscard]] DOWNWASH_EXPORT double motion_within_goal_m(const Goal& goal, const PlantModel& model, const double q[4],
+[[nodiscard]] DOWNWASH_EXPORT double motion_within_goal_m(const Goal& goal, const PlantModel& model, const PlanarPose& pose,
                                                           double body_reach_m);
 
 /// The share of each tolerance that a reference may use up while planning; the rest is left to the flight.

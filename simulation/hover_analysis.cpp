@@ -157,8 +157,8 @@ bool is_beyond_model(const DirectEffect& effect, const Vector3& hub_m) {
            above.ground + above.ceiling > below.ground + below.ceiling;
 }
 
-bool is_within_model(const FlightModel& model, const FlightState& resting) {
-    return simulation::all_rotors(model, resting, [&](int rotor, double x_m, double z_m) {
+bool is_within_model(const FlightModel& model, const PlanarPose& pose) {
+    return simulation::all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
         return !is_beyond_model(model.effect(rotor), model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
     });
 }
@@ -175,20 +175,18 @@ std::string_view name_of(HoldLimit limit) {
 
 HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, double arm_rad) {
     HoverAnalysis analysis;
-    const double q[4] = {x_m, z_m, 0, arm_rad};
-    const double u[4] = {};
-    const FlightState resting = model.state_at(q, u);
-    if (!is_flyable(model, pose_of(resting))) {
+    const PlanarPose pose = level_at({x_m, z_m, arm_rad});
+    if (!is_flyable(model, pose)) {
         return analysis;
     }
     analysis.verdict = HoldVerdict::in_collision;
-    if (model.collisions().is_nearer_than(pose_of(resting), 0)) {
+    if (model.collisions().is_nearer_than(pose, 0)) {
         return analysis;
     }
     const TickModel& tick = model.tick();
     const auto attitude = dynamics::attitude(tick.plant, 0.0, arm_rad);
     const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model});
-    analysis.trim = simulation::hover_trim(model.robot(), tick, effect, resting);
+    analysis.trim = simulation::hover_trim(model.robot(), tick, effect, model.state_at(pose));
     analysis.verdict = HoldVerdict::no_equilibrium;
     if (analysis.trim.limit != HoldLimit::none) {
         return analysis;
@@ -198,7 +196,7 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
     if (!(analysis.stability.spectral_radius < 1 - radius_slack)) {
         analysis.verdict = HoldVerdict::unstable;
     } else {
-        analysis.verdict = is_within_model(model, resting) ? HoldVerdict::stable : HoldVerdict::unknown;
+        analysis.verdict = is_within_model(model, pose) ? HoldVerdict::stable : HoldVerdict::unknown;
     }
     return analysis;
 }

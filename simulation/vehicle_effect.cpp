@@ -27,9 +27,7 @@ VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose) {
 }
 
 bool is_flyable(const FlightModel& model, const PlanarPose& pose) {
-    const double q[4] = {pose.x_m, pose.z_m, pose.pitch_rad, pose.arm_rad};
-    const double u[4] = {};
-    return simulation::all_rotors(model, model.state_at(q, u), [&](int rotor, double x_m, double z_m) {
+    return simulation::all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
         return model.effect(rotor).is_flyable(model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
     });
 }

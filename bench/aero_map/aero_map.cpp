@@ -50,7 +50,7 @@ class RandomPoints {
 
     /// Flyable for the map's first layer.
     Point one() {
-        const MapExtent& all = map_.extent();
+        const Bounds& all = map_.extent();
         while (true) {
             const Point p{uniform(all.x_low_m, all.x_high_m), uniform(all.z_low_m, all.z_high_m)};
             if (map_.is_flyable(0, p.x_m, p.z_m)) {
@@ -81,7 +81,7 @@ class RandomPoints {
  private:
     double uniform(double low, double high) { return uniform_between(engine_, low, high); }
     bool is_inside(const Point& p) const {
-        const MapExtent& all = map_.extent();
+        const Bounds& all = map_.extent();
         return p.x_m >= all.x_low_m && p.x_m <= all.x_high_m && p.z_m >= all.z_low_m && p.z_m <= all.z_high_m &&
                map_.is_flyable(0, p.x_m, p.z_m);
     }

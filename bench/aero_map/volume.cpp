@@ -17,7 +17,7 @@ namespace {
 /// A block of space as a VolumeMap holds it: 30 m3 under the deck of the bridge, its underside, the walkway's top and
 /// edges, the cross girder.
 struct UnderDeck {
-    MapExtent extent{-8, -2, 8, 10};
+    Bounds extent{-8, -2, 8, 10};
     double lateral_m = 1.25;  ///< to either side
 };
 
@@ -27,7 +27,7 @@ class RandomHubs {
     RandomHubs(const FlightModel& model, const UnderDeck& block) : model_(model), block_(block) {}
 
     Vector3 one() {
-        const MapExtent& all = block_.extent;
+        const Bounds& all = block_.extent;
         while (true) {
             const Vector3 at{uniform(all.x_low_m, all.x_high_m), uniform(-block_.lateral_m, block_.lateral_m),
                              uniform(all.z_low_m, all.z_high_m)};
@@ -62,7 +62,7 @@ class RandomHubs {
     double uniform(double low, double high) { return uniform_between(engine_, low, high); }
     [[nodiscard]] Vector3 in_world(const Vector3& at) const { return model_.plane().to_world(at[0], at[1], at[2]); }
     [[nodiscard]] bool is_flyable(const Vector3& at) const {
-        const MapExtent& all = block_.extent;
+        const Bounds& all = block_.extent;
         return at[0] >= all.x_low_m && at[0] <= all.x_high_m && std::abs(at[1]) <= block_.lateral_m &&
                at[2] >= all.z_low_m && at[2] <= all.z_high_m && model_.effect(0).is_flyable(in_world(at));
     }

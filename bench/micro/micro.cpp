@@ -23,24 +23,14 @@ using bench::Bridge;
 
 namespace {
 
-ReferencePoint rest(double x_m, double z_m, double arm_rad) {
-    ReferencePoint point;
-    point.position[0] = x_m;
-    point.position[1] = z_m;
-    point.position[2] = arm_rad;
-    return point;
-}
-
 /// A flight along the slot under the deck, where the surface effect is at work.
 const ReferenceSegment& slot_segment() {
-    static const ReferenceSegment segment(rest(-6, 9.0, -0.6), rest(0, 9.3, -0.2), 1200, 0.01);
+    static const ReferenceSegment segment(at_rest({-6, 9.0, -0.6}), at_rest({0, 9.3, -0.2}), 1200, 0.01);
     return segment;
 }
 
 FlightState slot_start(const Bridge& bridge) {
-    const double q[4] = {-6, 9.0, 0, -0.6};
-    const double u[4] = {};
-    return bridge.model->state_at(q, u);
+    return bridge.model->state_at({-6, 9.0, 0, -0.6});
 }
 
 template <class Factor>
@@ -73,17 +63,13 @@ void tick_with_direct_effect(benchmark::State& state) {
 }
 BENCHMARK(tick_with_direct_effect);
 
-struct Query {
-    double x_m, z_m, pitch_rad, arm_rad;
-};
-
-std::vector<Query> random_queries(const Bounds& bounds) {
+std::vector<PlanarPose> random_queries(const Bounds& bounds) {
     std::mt19937_64 engine(1);
     const auto uniform = [&engine](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);
     };
-    std::vector<Query> queries(4096);
-    for (Query& q : queries) {
+    std::vector<PlanarPose> queries(4096);
+    for (PlanarPose& q : queries) {
         q = {uniform(bounds.x_low_m, bounds.x_high_m), uniform(bounds.z_low_m, bounds.z_high_m), uniform(-0.2, 0.2),
              uniform(-3, 3)};
     }
@@ -92,9 +78,9 @@ std::vector<Query> random_queries(const Bounds& bounds) {
 
 void map_look_up(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const Query& q : queries) {
+        for (const PlanarPose& q : queries) {
             benchmark::DoNotOptimize(bridge.map->factor(0, q.x_m, q.z_m));
         }
     }
@@ -104,9 +90,9 @@ BENCHMARK(map_look_up);
 
 void direct_effect(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const Query& q : queries) {
+        for (const PlanarPose& q : queries) {
             benchmark::DoNotOptimize(bridge.model->effect(0).factor({q.x_m, 0.32, q.z_m}));
         }
     }
@@ -116,11 +102,11 @@ BENCHMARK(direct_effect);
 
 void collision_check(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const Query& q : queries) {
+        for (const PlanarPose& q : queries) {
             benchmark::DoNotOptimize(
-                bridge.model->collisions().is_nearer_than({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}, 0.05));
+                bridge.model->collisions().is_nearer_than(q, 0.05));
         }
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
@@ -129,10 +115,10 @@ BENCHMARK(collision_check);
 
 void clearance(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    const std::vector<Query> queries = random_queries(bridge.problem.bounds);
+    const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const Query& q : queries) {
-            benchmark::DoNotOptimize(bridge.model->collisions().clearance_m({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}));
+        for (const PlanarPose& q : queries) {
+            benchmark::DoNotOptimize(bridge.model->collisions().clearance_m(q));
         }
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
@@ -167,7 +153,7 @@ BENCHMARK(map_load)->Unit(benchmark::kMillisecond);
 
 /// 30 m3 under the deck: its underside, the walkway's top and edges, the cross girder.
 struct UnderDeck {
-    MapExtent extent{-8, -2, 8, 10};
+    Bounds extent{-8, -2, 8, 10};
     double lateral_m = 1.25;  ///< to either side
 
     [[nodiscard]] VolumeMap map() const {
@@ -218,13 +204,12 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     FlightCrew crew(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, nullptr, threads, instructions);
     const double tick_s = bridge.model->tick().tick_s;
     std::vector<FlightJob> edges;
-    const std::vector<Query> from = random_queries(bridge.problem.bounds);
+    const std::vector<PlanarPose> from = random_queries(bridge.problem.bounds);
     for (std::size_t i = 0; edges.size() < 512; ++i) {
-        const double q[4] = {from[i].x_m, from[i].z_m, 0, from[i].arm_rad};
-        const double u[4] = {};
-        if (!bridge.model->collisions().is_nearer_than({q[0], q[1], q[2], q[3]}, rules.margin_m)) {
-            const ReferencePoint to = rest(q[0] + 20 * from[i].pitch_rad, q[1], q[3] + 0.5);
-            edges.push_back({bridge.model->state_at(q, u), {{{rest(q[0], q[1], q[3]), to, 800, tick_s}}}});
+        const Configuration at{from[i].x_m, from[i].z_m, from[i].arm_rad};
+        if (!bridge.model->collisions().is_nearer_than(level_at(at), rules.margin_m)) {
+            const Configuration to{at.x_m + 20 * from[i].pitch_rad, at.z_m, at.arm_rad + 0.5};
+            edges.push_back({bridge.model->state_at(level_at(at)), {{{at_rest(at), at_rest(to), 800, tick_s}}}});
         }
     }
     std::int64_t ticks = 0;

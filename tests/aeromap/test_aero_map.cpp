@@ -24,7 +24,7 @@ struct Comparison {
 Comparison compare(const AeroMap& map, int points, unsigned seed) {
     test::Random random(seed);
     Comparison result;
-    const MapExtent& extent = map.extent();
+    const Bounds& extent = map.extent();
     for (long tries = 0; result.points < points && tries < 400L * points; ++tries) {
         const double x = random.uniform(extent.x_low_m, extent.x_high_m);
         const double z = random.uniform(extent.z_low_m, extent.z_high_m);

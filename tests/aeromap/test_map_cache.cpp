@@ -26,7 +26,7 @@ struct Making {
     double radius_m = 0.15;
     RotorNeighbours neighbours;
     PlaneOfMotion plane;
-    MapExtent extent{-3, 1, 0.4, 4};
+    Bounds extent{-3, 1, 0.4, 4};
     std::vector<double> laterals_m{-0.2, 0.2};
 
     Making() { settings.grid_m = 0.1; }
@@ -53,7 +53,7 @@ bool same_bits(double a, double b) {
 /// Whether two maps answer alike everywhere, beyond their extent too.
 bool answers_alike(const AeroMap& a, const AeroMap& b) {
     test::Random random(8);
-    const MapExtent& extent = a.extent();
+    const Bounds& extent = a.extent();
     for (int i = 0; i < 20000; ++i) {
         const double x = random.uniform(extent.x_low_m - 0.2, extent.x_high_m + 0.2);
         const double z = random.uniform(extent.z_low_m - 0.2, extent.z_high_m + 0.2);

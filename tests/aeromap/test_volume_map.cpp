@@ -18,7 +18,7 @@ namespace {
 
 /// A block in a frame.
 struct Block {
-    MapExtent extent;
+    Bounds extent;
     double lateral_low_m, lateral_high_m;
     PlaneOfMotion frame;
 

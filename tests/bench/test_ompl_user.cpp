@@ -40,9 +40,7 @@ double worst_difference(const FlightModel& model, const AeroMap* map, const Conf
                         double& greatest_factor) {
     const ClosedLoopOde ode(model, map);
     std::vector<double> state = Ode::resting_at(from.x_m, from.z_m, from.arm_rad);
-    const double q[4] = {from.x_m, from.z_m, 0, from.arm_rad};
-    const double u[4] = {};
-    FlightState vehicle = model.state_at(q, u);
+    FlightState vehicle = model.state_at(level_at(from));
     const double velocity[3] = {0.3, -0.05, 0.2};
     double worst = 0;
     greatest_factor = 1;

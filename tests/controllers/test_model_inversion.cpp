@@ -190,8 +190,7 @@ TEST_CASE("The pitch reference leans towards the target and never beyond the gre
     const double q[4] = {0, 2, 0, quarter_turn};
     const double u[4] = {0, 0, 0, 0};
     const auto pitch_reference = [&](double x_m, double z_m) {
-        return controllers::model_inversion_control(model, gains_of(robot), q, u, ModelInversion::rested(0.0),
-                                                    hold(x_m, z_m, quarter_turn), tick_s)
+        return demanded(gains_of(robot), model, q, u, ModelInversion::rested(0.0), hold(x_m, z_m, quarter_turn))
             .integrated.pitch_reference_rad;
     };
     CHECK(pitch_reference(0.1, 2) == Approx(std::atan2(0.1 * 2.0, 9.80665)));

@@ -8,7 +8,7 @@
 
 namespace {
 
-using downwash::ReferenceLimits;
+using downwash::MotionLimits;
 using downwash::ReferencePoint;
 using downwash::ReferenceSegment;
 using downwash::rest_to_rest_duration_s;
@@ -16,7 +16,7 @@ using downwash::shortest_ticks;
 using downwash::test::Random;
 
 constexpr double tick_s = 0.01;
-constexpr ReferenceLimits limits{1.0, 0.5, 0.785, 1.57};
+constexpr MotionLimits limits{1.0, 0.5, 0.785, 1.57};
 
 ReferencePoint rest_at(double x_m, double z_m, double arm_rad) {
     ReferencePoint point;
@@ -41,7 +41,7 @@ double length(const double axis[3]) {
 }
 
 /// The greatest of speeds and accelerations over their limits, at every tick between the ends.
-double use_of_limits(const ReferenceSegment& segment, const ReferenceLimits& most) {
+double use_of_limits(const ReferenceSegment& segment, const MotionLimits& most) {
     double worst = 0;
     for (std::int64_t tick = 1; tick < segment.ticks(); ++tick) {
         const ReferencePoint p = segment.at_tick(tick);

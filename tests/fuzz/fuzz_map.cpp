@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace downwash;
     static const PlaneOfMotion plane;
-    static const MapExtent extent{0, 0.3, 0.1, 0.4};
+    static const Bounds extent{0, 0.3, 0.1, 0.4};
     static const std::vector<MapLayer> layers = [] {
         AeroSettings settings;
         settings.grid_m = 0.1;

@@ -34,7 +34,7 @@ struct Comparison {
 
     /// @return whether the hub counts: it is within the map and flyable
     bool look(std::size_t layer, double x_m, double z_m) {
-        const MapExtent& extent = map.extent();
+        const Bounds& extent = map.extent();
         if (x_m < extent.x_low_m || x_m > extent.x_high_m || z_m < extent.z_low_m || z_m > extent.z_high_m ||
             !map.is_flyable(layer, x_m, z_m)) {
             return false;
@@ -77,7 +77,7 @@ TEST_CASE("The map of every shipped problem is within 0.01 of the direct effect 
         }
         const auto model = make_flight_model(problem);
         const auto map = model->make_map(problem.bounds, 2);
-        const MapExtent& extent = map->extent();
+        const Bounds& extent = map->extent();
         Comparison found{*map};
         test::Random random(17);
         int points = 0;

@@ -135,7 +135,7 @@ TEST_CASE("names that would run commands are shown as they are") {
 }
 
 TEST_CASE("what cannot be drawn to scale is refused") {
-    const auto with_extent = [](const MapExtent& extent) {
+    const auto with_extent = [](const Bounds& extent) {
         FieldFigure figure = sample_figure();
         figure.extent = extent;
         return figure;

@@ -19,7 +19,7 @@ TEST_CASE("the streamlines of a rotation are circles, run through in its sense")
 }
 
 TEST_CASE("a streamline ends where it leaves the extent, and where the flow stands still or is not finite") {
-    const MapExtent extent{-1, 1, -1, 1};
+    const Bounds extent{-1, 1, -1, 1};
     const PlanarVelocity uniform = [](double, double) -> std::array<double, 2> { return {3, 0}; };
     const auto leaving = streamline(uniform, {0, 0}, extent, 0.1);
     CHECK(leaving.back().x_m > 1);

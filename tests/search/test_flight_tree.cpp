@@ -88,9 +88,7 @@ TEST_CASE("an edge starts from the whole vehicle state of its parent, not from r
     FlightNode* first = f.fly(f.tree.root(), {-1, 2.5, 0.5});
     REQUIRE(first != nullptr);
     FlightNode rested = *first;
-    const double q[4] = {first->configuration.x_m, first->configuration.z_m, 0, first->configuration.arm_rad};
-    const double u[4] = {0, 0, 0, 0};
-    rested.state = f.model->state_at(q, u);
+    rested.state = f.model->state_at(level_at(first->configuration));
     const auto from_flight = f.flown(*first, {1, 3, 0});
     const auto from_rest = f.flown(rested, {1, 3, 0});
     REQUIRE(from_flight);

@@ -49,9 +49,7 @@ ReferencePoint rising_at(double z_m, double at_speed_m_s = speed_m_s) {
 }
 
 FlightState rising(const FlightModel& model) {
-    const double q[4] = {0, 1, 0, 0};
-    const double u[4] = {0, speed_m_s, 0, 0};
-    return model.state_at(q, u);
+    return model.state_at({0, 1, 0, 0}, {0, speed_m_s, 0, 0});
 }
 
 ReferenceSegment rise(const FlightModel& model) {
@@ -149,10 +147,9 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
             to.position[0] += random.uniform(-2, 2);
             to.position[1] += random.uniform(-1, 1);
             to.position[2] += random.uniform(-1, 1);
-            const double q[4] = {from.position[0], from.position[1], 0, from.position[2]};
-            const double u[4] = {};
-            if (!model->collisions().is_nearer_than({q[0], q[1], q[2], q[3]}, margin_m)) {
-                jobs.push_back({model->state_at(q, u), {{{from, to, random.integer(60, 120), model->tick().tick_s}}}});
+            const PlanarPose pose = level_at(configuration_of(from));
+            if (!model->collisions().is_nearer_than(pose, margin_m)) {
+                jobs.push_back({model->state_at(pose), {{{from, to, random.integer(60, 120), model->tick().tick_s}}}});
             }
         }
         std::vector<FlightJob> flown = jobs;

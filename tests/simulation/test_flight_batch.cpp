@@ -35,12 +35,12 @@ std::vector<FlightJob> random_jobs(const Problem& problem, const FlightModel& mo
     std::vector<FlightJob> jobs;
     while (static_cast<int>(jobs.size()) < count) {
         ReferencePoint from = random_point(problem.bounds, random);
-        const double q[4] = {from.position[0], from.position[1], random.uniform(-0.05, 0.05), from.position[2]};
+        const PlanarPose pose{from.position[0], from.position[1], random.uniform(-0.05, 0.05), from.position[2]};
         const double u[4] = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0, random.uniform(-0.1, 0.1)};
-        if (model.collisions().is_nearer_than({q[0], q[1], q[2], q[3]}, 0.05)) {
+        if (model.collisions().is_nearer_than(pose, 0.05)) {
             continue;
         }
-        FlightJob job{model.state_at(q, u), {}};
+        FlightJob job{model.state_at(pose, u), {}};
         for (int leg = random.integer(1, 3); leg > 0; --leg) {
             ReferencePoint to = from;
             to.position[0] += random.uniform(-3, 3);
@@ -148,11 +148,10 @@ TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as o
     CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), 60).count(Rejection::saturation) == 1);
 
     const auto model = make_flight_model(cluttered_problem());
-    const double tumbling[4] = {0, 2, 1.5, 0};
-    const double u[4] = {};
+    const PlanarPose tumbling{0, 2, 1.5, 0};
     ReferencePoint at;
     at.position[1] = 2;
-    std::vector<FlightJob> jobs{{model->state_at(tumbling, u), {{{at, at, 100, model->tick().tick_s}}}}};
+    std::vector<FlightJob> jobs{{model->state_at(tumbling), {{{at, at, 100, model->tick().tick_s}}}}};
     FlightCrew(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
     CHECK(jobs[0].rejection() == Rejection::unstable);
     CHECK(jobs[0].legs[0].flight.ticks == 1);
@@ -166,9 +165,7 @@ TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
     at.position[0] = 3;
     at.position[1] = 3.6;
     at.position[2] = -1.5707963267948966;  // the arm points up to the goal at (3, 4.8)
-    const double q[4] = {3, 3.6, 0, at.position[2]};
-    const double u[4] = {};
-    FlightJob held{model->state_at(q, u), {{{at, at, 500, model->tick().tick_s}}}, 100};
+    FlightJob held{model->state_at(level_at(configuration_of(at))), {{{at, at, 500, model->tick().tick_s}}}, 100};
     FlightJob missed = held;
     missed.legs[0].segment = {at, at, 120, model->tick().tick_s};
     missed.start.plant.q[0] = 3.2;  // twice the tolerance: on its way to the reference, but too late
@@ -199,10 +196,10 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
         at.position[0] = 3 + random.uniform(-0.08, 0.08);
         at.position[1] = 3.6 + random.uniform(-0.08, 0.08);
         at.position[2] = -1.5707963267948966;
-        const double q[4] = {at.position[0] + random.uniform(-0.1, 0.1), at.position[1] + random.uniform(-0.1, 0.1), 0,
-                             at.position[2] + random.uniform(-0.1, 0.1)};
+        const PlanarPose pose{at.position[0] + random.uniform(-0.1, 0.1), at.position[1] + random.uniform(-0.1, 0.1), 0,
+                              at.position[2] + random.uniform(-0.1, 0.1)};
         const double u[4] = {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0, random.uniform(-0.2, 0.2)};
-        all.push_back({model->state_at(q, u), {{{at, at, random.integer(80, 500), tick_s}}}, judged});
+        all.push_back({model->state_at(pose, u), {{{at, at, random.integer(80, 500), tick_s}}}, judged});
     }
     int too_fast = 0, elsewhere = 0, met = 0;
     std::vector<std::int64_t> missed_at;
@@ -218,7 +215,7 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
             }
             if (tick + judged >= segment.ticks() && !meets_goal(goal, model->tick().plant, state)) {
                 missed = tick;
-                ++(is_met(goal_error(goal, model->tick().plant, state.plant.q)) ? too_fast : elsewhere);
+                ++(is_met(goal_error(goal, model->tick().plant, pose_of(state))) ? too_fast : elsewhere);
             }
         }
         if (!breaks_rules) {
@@ -267,9 +264,7 @@ TEST_CASE("a batch can be ended from outside") {
     ReferencePoint at;
     at.position[0] = 0;
     at.position[1] = 2;
-    const double q[4] = {0, 2, 0, 0};
-    const double u[4] = {};
-    std::vector<FlightJob> jobs(5, FlightJob{model->state_at(q, u), {{{at, at, 100000000, model->tick().tick_s}}}});
+    std::vector<FlightJob> jobs(5, FlightJob{model->state_at({0, 2, 0, 0}), {{{at, at, 100000000, model->tick().tick_s}}}});
     FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
         CHECK(job.rejection() == Rejection::interrupted);

@@ -16,11 +16,11 @@ TEST_CASE("goal errors of an end effector and of a configuration by hand") {
     goal.end_effector = EndEffectorGoal{};
     goal.end_effector->x_m = 1;
     goal.end_effector->z_m = 2;
-    const double forward[4] = {-0.2, 2.3, 0, 0};  // tip at (1.0, 2.3)
+    const PlanarPose forward{-0.2, 2.3, 0, 0};  // tip at (1.0, 2.3)
     CHECK(goal_error(goal, plant, forward).distance_m == Approx(0.3));
     goal.end_effector->direction_rad = 0.2;
     CHECK(goal_error(goal, plant, forward).angle_rad == Approx(0.2));
-    const double turned[4] = {-0.2, 2.3, 0, 2 * 3.14159265358979323846};
+    const PlanarPose turned{-0.2, 2.3, 0, 2 * 3.14159265358979323846};
     CHECK(goal_error(goal, plant, turned).angle_rad == Approx(0.2));
 
     Goal configured;
@@ -45,7 +45,7 @@ TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
     goal.configuration->z_m = 2;
     goal.configuration->tolerance_m = 0.1;
     const auto share_at = [&](double x_m, double z_m) {
-        const double q[4] = {x_m, z_m, 0, 0};
+        const PlanarPose q{x_m, z_m, 0, 0};
         return goal_error(goal, plant, q).used_share;
     };
     CHECK(share_at(0.06, 2.08) == Approx(1));
@@ -56,7 +56,7 @@ TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
     CHECK(share_at(0, 2.2) == Approx(2));
     goal.configuration->tolerance_z_m = 0.05;
     CHECK(share_at(0.25, 2.04) == Approx(0.8));
-    const double q[4] = {0.3, 2.4, 0, 0};
+    const PlanarPose q{0.3, 2.4, 0, 0};
     CHECK(goal_error(goal, plant, q).distance_m == Approx(0.5));  // as the crow flies, whatever the tolerances
 
     Goal tip;
@@ -64,7 +64,7 @@ TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
     tip.end_effector->x_m = 1.2;
     tip.end_effector->z_m = 2;
     tip.end_effector->tolerance_z_m = 0.4;
-    const double forward[4] = {0.05, 2.1, 0, 0};  // tip at (1.25, 2.1)
+    const PlanarPose forward{0.05, 2.1, 0, 0};  // tip at (1.25, 2.1)
     CHECK(goal_error(tip, plant, forward).used_share == Approx(0.5));
 }
 
@@ -83,11 +83,11 @@ TEST_CASE("of several goals the nearest by its own tolerances counts, with its o
     loose.hold_s = 7;
     Goal goal;
     goal.any_of = {strict, loose};
-    const double between[4] = {0.5, 0, 0, 0};  // five tolerances from one, one and a half from the other
+    const PlanarPose between{0.5, 0, 0, 0};  // five tolerances from one, one and a half from the other
     CHECK(goal_error(goal, plant, between).distance_m == Approx(1.5));
     CHECK(goal_error(goal, plant, between).used_share == Approx(1.5));
     CHECK_FALSE(is_met(goal_error(goal, plant, between)));
-    const double beside[4] = {0.05, 0, 0, 0};
+    const PlanarPose beside{0.05, 0, 0, 0};
     CHECK(nearest_goal(goal, plant, beside).hold_s == 3);
     CHECK(is_met(goal_error(goal, plant, beside)));
     ReferencePoint at;
@@ -120,7 +120,7 @@ TEST_CASE("within the motion that a goal leaves it stays met, and not much more 
             goal.configuration->z_m = 0;
             goal.configuration->arm_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
         }
-        const double q[4] = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.05, 0.05),
+        const PlanarPose q{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.05, 0.05),
                              random.uniform(-0.05, 0.05)};
         const double motion_m = motion_within_goal_m(goal, plant, q, reach_m);
         REQUIRE((motion_m >= 0) == is_met(goal_error(goal, plant, q)));
@@ -134,8 +134,8 @@ TEST_CASE("within the motion that a goal leaves it stays met, and not much more 
             const double left_m = share * motion_m - way_m;
             const double pitch = left_m / std::max(reach_m, joint_reach_m) * random.uniform(-1, 1);
             const double arm = (left_m - joint_reach_m * std::abs(pitch)) / plant.arm_length_m * random.uniform(-1, 1);
-            const double to[4] = {q[0] + way_m * std::cos(angle), q[1] + way_m * std::sin(angle), q[2] + pitch,
-                                  q[3] + arm - pitch};
+            const PlanarPose to{q.x_m + way_m * std::cos(angle), q.z_m + way_m * std::sin(angle), q.pitch_rad + pitch,
+                                  q.arm_rad + arm - pitch};
             return is_met(goal_error(goal, plant, to));
         };
         REQUIRE(moved(1 - 1e-9));

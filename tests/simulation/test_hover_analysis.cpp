@@ -71,8 +71,8 @@ double spectral_radius(Matrix3 m) {
 
 /// Height, its rate and the integral over one tick, by hand: between ticks the surface pushes like a negative spring,
 /// d'' = (g K'/K) d + K v, with v = -kp d - kd d' + ki i held.
-Matrix3 sampled_height(const ControllerGains& gains, const Ceiling& k) {
-    const double h = 1 / gains.rate_hz;
+Matrix3 sampled_height(const ModelInversion& gains, const Ceiling& k) {
+    const double h = 0.01;
     const double w = std::sqrt(gravity * k.slope_1_m / k.factor);
     const double c = std::cosh(w * h);
     const double s = std::sinh(w * h);
@@ -213,7 +213,7 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
 
 TEST_CASE("under a wide ceiling the slowest mode is that of the sampled height loop written by hand") {
     const auto model = ceiling_model();
-    const ControllerGains gains = test::test_robot().controller;
+    const ModelInversion gains = test::gains_of(test::test_robot());
     for (const double gap_m : {0.16, 0.20, 0.25, 0.29, 0.31, 0.33}) {
         const HoverAnalysis a = below_ceiling(*model, gap_m);
         const Ceiling k(gap_m);
@@ -381,7 +381,7 @@ TEST_CASE("gains beyond all measure end in a verdict") {
     for (const double gain : {1e8, 1e100, 1e154, 1e200, 1e300, 1e308}) {
         for (int which = 0; which < 4; ++which) {
             Problem problem = test::ceiling_problem();
-            ControllerGains& gains = problem.robot.controller;
+            ModelInversion& gains = test::gains_of(problem.robot);
             (which == 0   ? gains.position_kp
              : which == 1 ? gains.position_kd
              : which == 2 ? gains.attitude_ku5

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "downwash/controllers/configuration.hpp"
+#include "downwash/scene/planar_pose.hpp"
+
+namespace downwash {
+
+/// The level vehicle at a configuration.
+[[nodiscard]] inline PlanarPose level_at(const Configuration& at) noexcept {
+    return {at.x_m, at.z_m, 0, at.arm_rad};
+}
+
+/// The pose with coordinates q = (x, z, pitch, arm) [m, m, rad, rad].
+[[nodiscard]] inline PlanarPose pose_of(const double (&q)[4]) noexcept {
+    return {q[0], q[1], q[2], q[3]};
+}
+
+}  // namespace downwash
