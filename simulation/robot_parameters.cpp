@@ -1,6 +1,9 @@
 #include "downwash/simulation/robot_parameters.hpp"
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "downwash/base/parameter_factories.hpp"
@@ -156,9 +159,17 @@ class LawRows {
  public:
     explicit LawRows(Rows& rows) : rows_(rows) {}
 
+    /// A key that another law has, too, is one row that serves whichever law flies the robot.
     void add(Parameter<Robot> row) {
         if constexpr (std::variant_size_v<ControlLaw> > 1) {
-            row = std::move(row).only(std::string("controller.type is ") + Law::name, is_flown);
+            row.condition = std::string("controller.type is ") + Law::name;
+            row.applies = is_flown;
+            const auto known =
+                std::find_if(rows_.begin(), rows_.end(), [&](const auto& other) { return other.path == row.path; });
+            if (known != rows_.end()) {
+                *known = shared(*known, row);
+                return;
+            }
         }
         rows_.push_back(std::move(row));
     }
@@ -175,6 +186,22 @@ class LawRows {
     }
 
  private:
+    static Parameter<Robot> shared(const Parameter<Robot>& other, const Parameter<Robot>& own) {
+        Parameter<Robot> both = own;
+        both.condition = other.condition + " or " + Law::name;
+        both.applies = [other, own](const Robot& robot, std::size_t i) {
+            return other.applies(robot, i) || own.applies(robot, i);
+        };
+        if (own.get) {
+            both.get = [other, own](const Robot& robot, std::size_t i) {
+                return (own.applies(robot, i) ? own : other).get(robot, i);
+            };
+            both.set = [other, own](Robot& robot, std::size_t i, const Value& value) {
+                (own.applies(robot, i) ? own : other).set(robot, i, value);
+            };
+        }
+        return both;
+    }
     static std::string below(std::string_view path) { return "controller." + std::string(path); }
     static bool is_flown(const Robot& robot, std::size_t /*index*/) {
         return std::holds_alternative<Law>(robot.controller.law);
@@ -190,9 +217,8 @@ class LawRows {
 /// The key that says which law flies the robot, once there is a choice.
 template <class... Laws>
 void add_law_type(Rows& rows, const std::variant<Laws...>* /*laws*/) {
-    auto row = parameters::choice<Robot>(
-        "controller.type", "law of the controller", {std::string_view(Laws::name)...},
-        [](auto& /*robot*/) -> auto& { static std::string none; return none; });
+    auto row = parameters::row<Robot>(ParameterKind::choice, "controller.type", "law of the controller");
+    row.names = {std::string_view(Laws::name)...};
     row.get = [](const Robot& robot, std::size_t) {
         return Value(std::visit([](const auto& law) { return std::string(law.name); }, robot.controller.law));
     };

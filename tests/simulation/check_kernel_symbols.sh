@@ -5,7 +5,7 @@ found=0
 for kernel in avx2 avx512; do
     file=$1/flight_kernel_$kernel.cpp.o
     [[ -f $file ]] || { echo "no $file" >&2; exit 2; }
-    offered=$(nm --defined-only --demangle "$file" | awk '$2 ~ /[A-Zuvw]/' | grep -v " T downwash::simulation::fly_lanes_$kernel(" || true)
+    offered=$(nm --defined-only --demangle "$file" | awk '$2 ~ /[A-Zuvw]/' | grep -v " T downwash::simulation::${kernel}_kernel(" || true)
     if [[ -n $offered ]]; then
         printf '%s:\n%s\n' "$file" "$offered"
         found=1
