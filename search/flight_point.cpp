@@ -14,10 +14,8 @@ FlightPoint start_point(const SearchTask& task) {
 }
 
 FlightPoint resting_at(const FlightModel& model, const Configuration& c) {
-    const double q[4] = {c.x_m, c.z_m, 0, c.arm_rad};
-    const double u[4] = {};
     FlightPoint point;
-    point.vehicle = model.state_at(q, u);
+    point.vehicle = model.state_at(level_at(c));
     point.reference = at_rest(c);
     point.rest = c;
     return point;

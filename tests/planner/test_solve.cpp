@@ -350,7 +350,7 @@ TEST_CASE("rejections are counted by cause") {
         {"collision", [](Problem& p) { p = test::walled_problem(); }},
         {"flyable_area", [](Problem& p) { p.aero.min_distance_radii = 4; }},
         {"saturation", [](Problem& p) { p.robot.rotors.max_thrust_n = 4.95 * 9.80665 / 4 * 1.02; }},
-        {"tracking", [](Problem& p) { p.robot.controller.max_tilt_rad = 0.01; }},
+        {"tracking", [](Problem& p) { test::gains_of(p.robot).max_tilt_rad = 0.01; }},
         {"bounds",
          [](Problem& p) {
              p.start.x_m = p.bounds.x_low_m + 0.3;
@@ -360,7 +360,7 @@ TEST_CASE("rejections are counted by cause") {
          [](Problem& p) {
              p = test::with_place(3, 4.3);  // where the ceiling lifts the vehicle, and nothing integrates the error
              p.goal.configuration->tolerance_m = 0.01;
-             p.robot.controller.position_ki = 0;
+             test::gains_of(p.robot).position_ki = 0;
          }},
     };
     for (const auto& [cause, provoke] : all) {

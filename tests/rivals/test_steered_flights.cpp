@@ -125,7 +125,8 @@ TEST_CASE("a flight closes from nearby, at rest within the goal, hold included")
     }
     SECTION("a vehicle that differs in one bit is noticed") {
         std::vector<FlightPoint> wrong = moments;
-        wrong.back().vehicle.controller.arm_integral = std::nextafter(wrong.back().vehicle.controller.arm_integral, 1);
+        double& remembered = wrong.back().vehicle.memory.number[3];
+        remembered = std::nextafter(remembered, 1);
         CHECK_THROWS_AS(f.flights.verify(wrong, *end), std::logic_error);
         Closing wrong_end = *end;
         wrong_end.end.plant.q[2] = std::nextafter(wrong_end.end.plant.q[2], 1);
