@@ -20,7 +20,8 @@ inline constexpr int number_count = [] {
 template <class T, class Struct>
 [[nodiscard, gnu::always_inline]] inline T number_at(const Struct& from, int i) {
     T number;
-    __builtin_memcpy(&number, reinterpret_cast<const unsigned char*>(&from) + static_cast<unsigned>(i) * sizeof(T), sizeof(T));
+    __builtin_memcpy(&number, reinterpret_cast<const unsigned char*>(&from) + static_cast<unsigned>(i) * sizeof(T),
+                     sizeof(T));
     return number;
 }
 
@@ -33,7 +34,8 @@ template <class T, class Struct>
 /// Number by number those of `yes` where a condition holds, those of `no` elsewhere.
 /// @param condition of the lane type that lane::select() takes for T
 template <class T, template <class> class Struct, class Condition>
-[[nodiscard, gnu::always_inline]] inline Struct<T> select_each(const Condition& condition, const Struct<T>& yes, const Struct<T>& no) {
+[[nodiscard, gnu::always_inline]] inline Struct<T> select_each(const Condition& condition, const Struct<T>& yes,
+                                                               const Struct<T>& no) {
     Struct<T> result;
     for (int i = 0; i < number_count<T, Struct<T>>; ++i) {
         set_number_at(result, i, lane::select(condition, number_at<T>(yes, i), number_at<T>(no, i)));

@@ -19,8 +19,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const Bounds& extent,
-                           std::string title) {
+FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, const Bounds& extent, std::string title) {
     FieldFigure figure;
     figure.title = std::move(title);
     figure.subtitle = fmt::format("{}, {}", problem.name, problem.robot.name);

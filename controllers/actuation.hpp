@@ -25,9 +25,9 @@ struct Actuation {
 };
 
 /// The joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give. Where
-/// they give what was demanded this is row 4 with the accelerations of the inversion (docs/model.md 5.2). Where they lag or are
-/// clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the vehicle the
-/// wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
+/// they give what was demanded this is row 4 with the accelerations of the inversion (docs/model.md 5.2). Where they
+/// lag or are clipped it is not: a joint that pushes against a pitch acceleration that has yet to come would tip the
+/// vehicle the wrong way, and hover with a hanging arm would diverge from a lag of 10 ms on.
 template <class T>
 T joint_torque(const PlantModel& nominal, const dynamics::Motion<T>& motion, T arm_acceleration, T thrust_n,
                T pitch_torque_nm) {
@@ -40,15 +40,15 @@ T joint_torque(const PlantModel& nominal, const dynamics::Motion<T>& motion, T a
 template <class T>
 T thrust_saturation(const PlantModel& plant, const T demand_n[max_rotors]) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    T least_n(infinity);
-    T most_n(-infinity);
+    T min_n(infinity);
+    T max_n(-infinity);
     for (int i = 0; i < plant.rotor_count; ++i) {
-        least_n = lane::min(least_n, demand_n[i]);
-        most_n = lane::max(most_n, demand_n[i]);
+        min_n = lane::min(min_n, demand_n[i]);
+        max_n = lane::max(max_n, demand_n[i]);
     }
-    const T below = T(plant.min_thrust_n) - least_n;
+    const T below = T(plant.min_thrust_n) - min_n;
     const T missed = T(1) + below / T(plant.max_thrust_n - plant.min_thrust_n);
-    return lane::max(most_n / T(plant.max_thrust_n), lane::select(below > T(0), missed, T(0)));
+    return lane::max(max_n / T(plant.max_thrust_n), lane::select(below > T(0), missed, T(0)));
 }
 
 /// What a controller expects of the rotors in the middle of the tick: the commands, or where a lag will have brought
@@ -81,9 +81,9 @@ void actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen, con
     }
     const dynamics::RotorWrench<T> wrench = expected_wrench(nominal, seen, given.command.thrust_n, tick_s);
     const T torque_nm = joint_torque(nominal, motion, demand.arm_acceleration, wrench.thrust_n, wrench.pitch_torque_nm);
-    const T most_torque(nominal.max_joint_torque_nm);
-    given.saturation = lane::max(given.saturation, lane::abs(torque_nm) / most_torque);
-    given.command.joint_torque_nm = lane::clamp(torque_nm, -most_torque, most_torque);
+    const T max_torque_nm(nominal.max_joint_torque_nm);
+    given.saturation = lane::max(given.saturation, lane::abs(torque_nm) / max_torque_nm);
+    given.command.joint_torque_nm = lane::clamp(torque_nm, -max_torque_nm, max_torque_nm);
 }
 
 }  // namespace downwash::controllers

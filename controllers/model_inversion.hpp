@@ -11,8 +11,8 @@
 
 namespace downwash {
 
-/// Model-inversion PID of the multirotor and the arm (docs/model.md 5.1, 5.2; thesis figure C.2): its gains and its law, one
-/// template over the lane type. Acceleration of an axis: v = acc_ref + kd e' + kp e + ki integral e.
+/// Model-inversion PID of the multirotor and the arm (docs/model.md 5.1, 5.2; thesis figure C.2): its gains and its
+/// law, one template over the lane type. Acceleration of an axis: v = acc_ref + kd e' + kp e + ki integral e.
 struct ModelInversion {
     static constexpr const char* name = "model-inversion";
 
@@ -96,8 +96,7 @@ struct ModelInversion {
                    controllers::integral_action(position_ki, position_integral_limit_m_s2, memory.position_integral[i]);
         }
         const T arm_error = reference.position[2] - q[3];
-        const T v7 = reference.acceleration[2] + T(arm_kd) * (reference.velocity[2] - u[3]) +
-                     T(arm_kp) * arm_error +
+        const T v7 = reference.acceleration[2] + T(arm_kd) * (reference.velocity[2] - u[3]) + T(arm_kp) * arm_error +
                      controllers::integral_action(arm_ki, arm_integral_limit_rad_s2, memory.arm_integral);
 
         // D13^-1: the force that gives these accelerations, its direction as pitch reference.
@@ -108,14 +107,16 @@ struct ModelInversion {
         const T least_force_z(min_vertical_force_ratio * nominal.total_mass_kg * standard_gravity_m_s2);
         const T wanted_pitch = lane::atan2(force_x, lane::max(force_z, least_force_z));
         const T pitch_reference = lane::clamp(wanted_pitch, T(-max_tilt_rad), T(max_tilt_rad));
-        const auto is_force_clipped = lane::max(lane::abs(wanted_pitch - pitch_reference), least_force_z - force_z) > T(0);
+        const auto is_force_clipped =
+            lane::max(lane::abs(wanted_pitch - pitch_reference), least_force_z - force_z) > T(0);
         step.demand.thrust_n = force_x * a.sin_pitch + force_z * a.cos_pitch;
 
         // K5^-1: pitch rate reference, from a filtered backward difference of the pitch reference.
         const T raw_rate = (pitch_reference - memory.pitch_reference_rad) / dt_s;
         const T blend = dt_s / (T(pitch_rate_filter_s) + dt_s);
         step.frozen.pitch_reference_rad = pitch_reference;
-        step.frozen.pitch_reference_rate = memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
+        step.frozen.pitch_reference_rate =
+            memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
         const T rate_reference = step.frozen.pitch_reference_rate + T(attitude_k5) * (pitch_reference - q[2]);
         step.frozen.rate_reference = rate_reference;
 
@@ -138,12 +139,13 @@ struct ModelInversion {
 
         step.integrated = step.frozen;
         for (int i = 0; i < 2; ++i) {
-            const T integral = controllers::integrate(position_ki, position_integral_limit_m_s2, memory.position_integral[i],
-                                         error[i], dt_s);
-            step.integrated.position_integral[i] = lane::select(is_force_clipped, memory.position_integral[i], integral);
+            const T integral = controllers::integrate(position_ki, position_integral_limit_m_s2,
+                                                      memory.position_integral[i], error[i], dt_s);
+            step.integrated.position_integral[i] =
+                lane::select(is_force_clipped, memory.position_integral[i], integral);
         }
         step.integrated.pitch_rate_integral = controllers::integrate(attitude_kiu5, attitude_integral_limit_rad_s2,
-                                                        memory.pitch_rate_integral, rate_error, dt_s);
+                                                                     memory.pitch_rate_integral, rate_error, dt_s);
         step.integrated.arm_integral =
             controllers::integrate(arm_ki, arm_integral_limit_rad_s2, memory.arm_integral, arm_error, dt_s);
         return step;
@@ -162,8 +164,7 @@ struct ModelInversion {
         const double v7 = (command.joint_torque_nm - torque_at_rest_nm) / torque_per_v7;
         const dynamics::RotationalSystem<double> s = dynamics::rotational_system(nominal, equations, force);
         const double v5 = (s.g5 - s.s57 * v7) / s.s55;
-        const auto rate =
-            controllers::settled_pid(v5, attitude_ku5, attitude_kiu5, attitude_integral_limit_rad_s2);
+        const auto rate = controllers::settled_pid(v5, attitude_ku5, attitude_kiu5, attitude_integral_limit_rad_s2);
         controllers::Rest<Memory> rest;
         rest.pitch_reference_rad = controllers::error_for(rate.error, attitude_k5);
         double sine = 0;
@@ -179,8 +180,8 @@ struct ModelInversion {
         rest.error[1] = z.error;
         rest.error[2] = arm.error;
         rest.memory = {{x.integral, z.integral}, rate.integral, arm.integral, rest.pitch_reference_rad, 0, rate.error};
-        rest.feeds_back = {{x.feeds_back, z.feeds_back}, rate.feeds_back, arm.feeds_back, true, true,
-                           rate_feed_forward};
+        rest.feeds_back = {
+            {x.feeds_back, z.feeds_back}, rate.feeds_back, arm.feeds_back, true, true, rate_feed_forward};
         rest.height_gain_1_s2 = position_kp;
         rest.pitch_gain_1_s2 = attitude_k5 * attitude_ku5;
         if (!(std::abs(rest.pitch_reference_rad) < max_tilt_rad)) {

@@ -25,8 +25,8 @@ double ratio_at(const ReferencePoint& p, const MotionLimits& limits) {
 }
 
 std::int64_t samples_of(const ReferenceSegment& segment) {
-    constexpr std::int64_t most_samples = 64;
-    return std::min(most_samples, segment.ticks());
+    constexpr std::int64_t max_samples = 64;
+    return std::min(max_samples, segment.ticks());
 }
 
 /// The largest ratio of a speed or an acceleration to its limit at a sample. Sample 0 is the segment's beginning.
@@ -140,11 +140,11 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     const auto segment_in = [&](std::int64_t count) { return ReferenceSegment(from, to, count, tick_s); };
     std::int64_t suspect = 1;
     const auto is_enough = [&](std::int64_t count) { return keeps_limits_between(segment_in(count), limits, suspect); };
-    constexpr int most_stretches = 60;
+    constexpr int max_stretches = 60;
     std::vector<std::int64_t> too_short;
     while (!is_enough(ticks)) {
         too_short.push_back(ticks);
-        if (too_short.size() == most_stretches) {
+        if (too_short.size() == max_stretches) {
             const auto ratio_in = [&](std::int64_t count) { return worst_ratio(segment_in(count), limits); };
             return *std::min_element(too_short.begin(), too_short.end(),
                                      [&](std::int64_t a, std::int64_t b) { return ratio_in(a) < ratio_in(b); });

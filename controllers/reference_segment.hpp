@@ -51,16 +51,16 @@ struct ReferenceKnot {
     ReferencePoint point;
 };
 
-/// The fewest ticks in which the quintic between two points keeps the limits; 1 when nothing moves.
-/// Where an end moves the limits are sampled (kept to 0.3 %), and one tick less breaks them. Ends between which no
-/// duration keeps them are given the one that breaks them least: keeps_limits() tells.
+/// The fewest ticks in which the quintic between two points keeps the limits; 1 if nothing moves.
+/// If an end moves, the limits are checked at samples (kept to 0.3 %), and one tick less breaks them. If no duration
+/// keeps them, the result is the one that breaks them least: check with keeps_limits().
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
                                                           const MotionLimits& limits, double tick_s);
 
-/// Whether speeds and accelerations at a point keep the limits. No segment that ends where they do not keeps them.
+/// Whether speeds and accelerations at a point keep the limits. If they do not, no segment that ends there does.
 [[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferencePoint& point, const MotionLimits& limits);
 
-/// Whether a segment keeps the limits wherever they are sampled, its ends included.
+/// Whether a segment keeps the limits at all samples, its ends included.
 [[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const MotionLimits& limits);
 
 /// Duration [s] of the rest-to-rest quintic over a distance [m] and an arm angle [rad] (peak speed 15/8 of the mean,

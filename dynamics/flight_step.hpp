@@ -6,7 +6,7 @@
 
 namespace downwash::dynamics {
 
-/// What the plant remembers.
+/// The state of the plant.
 template <class T>
 struct PlantState {
     T q[4];                  ///< x, z [m], pitch, arm [rad]
@@ -15,7 +15,7 @@ struct PlantState {
     T energy_j;              ///< rotor and arm energy spent so far
 };
 
-/// What is commanded and held over one tick.
+/// The commands, constant over one tick.
 template <class T>
 struct PlantCommand {
     T thrust_n[max_rotors];  ///< free-air thrust of each rotor, within its limits
@@ -52,8 +52,8 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
 /// centre between them (docs/model.md 4.3).
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body()
 template <class T, class Factor, class P>
-RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m, const T thrust_n[max_rotors],
-                            Factor&& factor) {
+RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m,
+                            const T thrust_n[max_rotors], Factor&& factor) {
     RotorWrench<T> wrench{T(0), T(0)};
     T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
@@ -177,10 +177,10 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
     return next;
 }
 
-/// The same where the motion of the state is not known yet.
+/// The same if the motion of the state is not known yet.
 template <class T, class Factor, class P>
-PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const PlantCommand<T>& command, T dt_s,
-                          Factor&& factor) {
+PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const PlantCommand<T>& command,
+                          T dt_s, Factor&& factor) {
     return flight_step(model, state, motion_at(model, state.q, state.u), command, dt_s, factor);
 }
 
@@ -194,12 +194,12 @@ struct OneStep {
     }
 };
 
-/// The tick in as many steps as it takes; for flights that are reported. Where a disc passes an obstacle's edge K is
-/// not smooth, and one step of 10 ms can miss 2e-5 in a rate. A step is halved until both halves together agree with
-/// it.
+/// The tick in as many steps as it needs; for flights that are reported. Where a rotor disc passes the edge of an
+/// obstacle K is not smooth, and one step of 10 ms can be wrong by 2e-5 in a rate. A step is halved until both halves
+/// agree with the whole.
 struct RefinedStep {
     double tolerance = 1e-7;  ///< of every coordinate and rate, SI units
-    int most_halvings = 8;
+    int max_halvings = 8;
 
     /// The state after `dt_s`; see flight_step().
     template <class Factor>
@@ -207,7 +207,7 @@ struct RefinedStep {
                                   const Motion<double>& motion, const PlantCommand<double>& command, double dt_s,
                                   Factor&& factor) const {
         return refined(model, state, command, dt_s, factor, flight_step(model, state, motion, command, dt_s, factor),
-                       most_halvings);
+                       max_halvings);
     }
 
  private:

@@ -94,7 +94,8 @@ struct RotationalSystem {
 
 /// The system under the generalised forces Q of x, z and pitch [N, N, N m].
 template <class T, class P>
-RotationalSystem<T> rotational_system(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[3]) {
+RotationalSystem<T> rotational_system(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e,
+                                      const T force[3]) {
     RotationalSystem<T> s;
     const T reduced_mass(model.reduced_mass_kg);
     const T ratio(model.arm_mass_ratio);
@@ -112,7 +113,8 @@ RotationalSystem<T> rotational_system(const BasicPlantModel<P>& model, const Equ
 
 /// du/dt under the generalised forces Q [N, N, N m, N m].
 template <class T, class P>
-void forward_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[4], T acceleration[4]) {
+void forward_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[4],
+                      T acceleration[4]) {
     const RotationalSystem<T> s = rotational_system(model, e, force);
     const T g7 = force[3] - e.bias[3] - s.arm_coupling;
     const T inverse_determinant = T(1) / (s.s55 * s.s77 - s.s57 * s.s57);
@@ -126,7 +128,8 @@ void forward_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T
 
 /// The generalised forces Q [N, N, N m, N m] that produce du/dt.
 template <class T, class P>
-void inverse_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T acceleration[4], T force[4]) {
+void inverse_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T acceleration[4],
+                      T force[4]) {
     const T mass(model.total_mass_kg);
     const T arm_mass(model.arm_mass_kg);
     const T* du = acceleration;
@@ -139,7 +142,8 @@ void inverse_dynamics(const BasicPlantModel<P>& model, const EquationsOfMotion<T
 /// The joint torque [N m] that gives the arm the acceleration `arm_acceleration` [rad/s2] while the other generalised
 /// forces are `force` [N, N, N m]: forward dynamics with du7 given.
 template <class T, class P>
-T joint_torque_for(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[3], T arm_acceleration) {
+T joint_torque_for(const BasicPlantModel<P>& model, const EquationsOfMotion<T>& e, const T force[3],
+                   T arm_acceleration) {
     const RotationalSystem<T> s = rotational_system(model, e, force);
     const T pitch_acceleration = (s.g5 - s.s57 * arm_acceleration) / s.s55;
     return s.s57 * pitch_acceleration + s.s77 * arm_acceleration + s.arm_coupling + e.bias[3];

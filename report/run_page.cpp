@@ -83,28 +83,29 @@ bool has_pages() noexcept {
 std::string run_page_data(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
     const Problem& problem = run.problem;
     const Json solution = Json::parse(run.solution_text);
-    const Json page{{"schema", "downwash/report/v1"},
-                    {"version", version()},
-                    {"command", command_of(problem, solution)},
-                    {"solution", solution},
-                    {"effective_yaml", run.problem_text},
-                    {"description", problem.description},
-                    {"scene", scene_json(problem, Scene(problem.obstacles))},
-                    {"robot", robot_json(problem.robot)},
-                    {"start",
-                     {{"x_m", problem.start.x_m},
-                      {"z_m", problem.start.z_m},
-                      {"pitch_rad", problem.start.pitch_rad},
-                      {"arm_rad", problem.start.arm_rad}}},
-                    {"goals", goals_json(problem)},
-                    {"goal_order", goal_order(problem)},
-                    {"limits",
-                     {{"safety_margin_m", problem.planner.safety_margin_m},
-                      {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
-                      {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
-                    {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
-                    {"flight", flight_json(run.flight)},
-                    {"tree", tree_json(run.tree)}};
+    const Json page{
+        {"schema", "downwash/report/v1"},
+        {"version", version()},
+        {"command", command_of(problem, solution)},
+        {"solution", solution},
+        {"effective_yaml", run.problem_text},
+        {"description", problem.description},
+        {"scene", scene_json(problem, Scene(problem.obstacles))},
+        {"robot", robot_json(problem.robot)},
+        {"start",
+         {{"x_m", problem.start.x_m},
+          {"z_m", problem.start.z_m},
+          {"pitch_rad", problem.start.pitch_rad},
+          {"arm_rad", problem.start.arm_rad}}},
+        {"goals", goals_json(problem)},
+        {"goal_order", goal_order(problem)},
+        {"limits",
+         {{"safety_margin_m", problem.planner.safety_margin_m},
+          {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
+          {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}}},
+        {"map", map != nullptr ? map_json(problem, model, *map) : Json()},
+        {"flight", flight_json(run.flight)},
+        {"tree", tree_json(run.tree)}};
     return page_data(page);
 }
 

@@ -161,7 +161,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     const QuietOmpl quiet;
     QueryCounts counts;
     // A motion is checked so densely that the margin covers what happens between two checks.
-    const double step_m = std::min(greatest_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
+    const double step_m = std::min(max_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
     const FreeAirCost free_air_cost(task);
     const Configuration start = problem.start.configuration();
@@ -211,8 +211,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
         if (is_exact || waypoints.size() > 1) {
             result.status = is_exact ? Status::solved : Status::approximate;
             result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
-            result.plan = timed_plan(waypoints, reference_at(problem.start), problem.motion,
-                                     task.model.tick().tick_s);
+            result.plan = timed_plan(waypoints, reference_at(problem.start), problem.motion, task.model.tick().tick_s);
             if (is_exact && !best_cost) {
                 improve(cost_of(waypoints, free_air_cost, space));
             }

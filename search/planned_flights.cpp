@@ -145,7 +145,7 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
             statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
             statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
         }
-        if (const FlightLeg* leg = job.refused_leg()) {
+        if (const FlightLeg* leg = job.rejected_leg()) {
             reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
         }
     }

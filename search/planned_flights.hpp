@@ -75,7 +75,7 @@ class PlannedFlights {
     const SearchTask& task_;
     MotionLimits limits_;
     double tick_s_;
-    FlightCrew crew_;
+    FlightPool crew_;
     FlightStatistics statistics_;
 };
 

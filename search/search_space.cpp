@@ -257,8 +257,7 @@ Rejection SearchSpace::rejection_at(const Configuration& c) const {
     if (!is_inside(c)) {
         return Rejection::bounds;
     }
-    return model_.collisions().is_nearer_than(level_at(c), margin_m_) ? Rejection::collision
-                                                                                       : Rejection::none;
+    return model_.collisions().is_nearer_than(level_at(c), margin_m_) ? Rejection::collision : Rejection::none;
 }
 
 double SearchSpace::extent_m() const noexcept {

@@ -45,7 +45,7 @@ double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPo
 }
 
 bool comes_nearer_between(const FlightModel& model, const PlanarPose& from, const PlanarPose& to, double margin_m) {
-    const double pieces = std::ceil(motion_m(model, from, to) / greatest_unseen_motion_m(margin_m));
+    const double pieces = std::ceil(motion_m(model, from, to) / max_unseen_motion_m(margin_m));
     for (double i = 1; i < pieces; ++i) {
         if (model.collisions().is_nearer_than(between(from, to, i / pieces), margin_m)) {
             return true;

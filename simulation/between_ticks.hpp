@@ -1,7 +1,6 @@
 #pragma once
 
-// What happens between two control ticks: where the robot was looked at twice, and what it may have touched on the way.
-// Private: not installed.
+// What the robot may touch between two control ticks, given the poses at both. Private: not installed.
 
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/motion_reach.hpp"
@@ -14,15 +13,15 @@ namespace downwash::simulation {
 /// No point of the robot's surface moves farther between two poses whose coordinates all change evenly [m].
 [[nodiscard]] double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept;
 
-/// Whether the robot is nearer than a margin to an obstacle at some pose between two at which it is not. Looks at as
-/// many that it moves by at most greatest_unseen_motion_m(margin_m) from one to the next; at none, where that is the
-/// case already.
+/// Whether the robot is nearer than a margin to an obstacle at some pose between two poses at which it is not. Checks
+/// intermediate poses that are at most max_unseen_motion_m(margin_m) apart; none, if the two poses are that near
+/// already.
 [[nodiscard]] bool comes_nearer_between(const FlightModel& model, const PlanarPose& from, const PlanarPose& to,
                                         double margin_m);
 
-/// A clearance of zero or less that the robot has between two poses; that of the nearer pose where there is none.
-/// Two clearances whose sum is no less than the motion between them leave no room for contact; other stretches are
-/// halved until that shows or a corner is cut by half a millimetre at most.
+/// A clearance of zero or less that the robot has between two poses; without one, the lesser clearance of both poses.
+/// If the sum of two clearances is at least the motion between them, no contact is possible. Other intervals are halved
+/// until that holds, or until a corner can be cut by half a millimetre at most.
 /// @param from_m,to_m the clearances at both poses [m], above 0
 [[nodiscard]] double least_clearance_between_m(const FlightModel& model, const PlanarPose& from, double from_m,
                                                const PlanarPose& to, double to_m);

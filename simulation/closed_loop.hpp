@@ -16,8 +16,8 @@ struct TickModel {
     double tick_s;  ///< control period, 1 / rate_hz
 };
 
-/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, and every integrator. All members
-/// are T: numbers_of() reads them as an array.
+/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, and every integrator. Nothing but
+/// T: see base/numbers.hpp.
 template <class T>
 struct State {
     dynamics::PlantState<T> plant;
@@ -45,9 +45,8 @@ DOWNWASH_IN_ONE_PIECE State<T> tick(const TickModel& model, const Law& law, cons
                                     Factor&& factor, controllers::Actuation<T>& given,
                                     const Integrate& integrate = {}) {
     State<T> next;
-    next.memory = controllers::remembered(law.control(model.plant, state.plant, motion,
-                                                      controllers::recalled<Law>(state.memory), reference,
-                                                      model.tick_s, given));
+    next.memory = controllers::remembered(law.control(
+        model.plant, state.plant, motion, controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
     next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
     return next;
 }
@@ -62,9 +61,9 @@ State<T> tick_of_other_plant(const TickModel& model, const Law& law, const Basic
                              const BasicReferencePoint<T>& reference, Factor&& factor, controllers::Actuation<T>& given,
                              const Integrate& integrate = {}) {
     State<T> next;
-    next.memory = controllers::remembered(law.control(model.plant, seen, dynamics::motion_at(model.plant, seen.q, seen.u),
-                                                      controllers::recalled<Law>(state.memory), reference,
-                                                      model.tick_s, given));
+    next.memory =
+        controllers::remembered(law.control(model.plant, seen, dynamics::motion_at(model.plant, seen.q, seen.u),
+                                            controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
     next.plant = integrate(plant, state.plant, dynamics::motion_at(plant, state.plant.q, state.plant.u), given.command,
                            T(model.tick_s), factor);
     return next;

@@ -96,7 +96,7 @@ class Recorder {
     }
 
     Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
-                           const FlightState& next, const ReferencePoint& next_reference) {
+                         const FlightState& next, const ReferencePoint& next_reference) {
         add_row(before, reference, given);
         execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
         const Rejection rejection = judge(next, next_reference, &before);
@@ -191,18 +191,16 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         if (rejection != Rejection::none) {
             break;
         }
-        rejection = simulation::fly_ticks(
-            model.tick(), segment, factor, dynamics::RefinedStep{}, state,
-            [&](const FlightState& before, const ReferencePoint& at, const Given& given,
-                const FlightState& next, const ReferencePoint& next_reference) {
-                reference = next_reference;
-                return recorder.after_tick(before, at, given, next, next_reference);
-            });
+        rejection = simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state,
+                                          [&](const FlightState& before, const ReferencePoint& at, const Given& given,
+                                              const FlightState& next, const ReferencePoint& next_reference) {
+                                              reference = next_reference;
+                                              return recorder.after_tick(before, at, given, next, next_reference);
+                                          });
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     Given given{};
-    static_cast<void>(
-        simulation::tick(model.tick(), state, reference, factor, given));
+    static_cast<void>(simulation::tick(model.tick(), state, reference, factor, given));
     recorder.add_row(state, reference, given);
 
     execution.outcome = outcome_of(rejection);

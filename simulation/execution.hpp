@@ -38,10 +38,10 @@ struct FlightRow {
     double energy_j = 0;  ///< spent since the start
 };
 
-/// What became of one goal of a flight.
+/// The outcome of one goal of a flight.
 struct GoalVisit {
-    bool is_met = false;  ///< throughout the last second of its hold
-    double error_m = 0;   ///< worst over that second; where the flight ended, if it was not held for so long
+    bool is_met = false;  ///< throughout the last second of its hover
+    double error_m = 0;   ///< worst over that second, or where the flight ended before
 };
 
 /// A plan flown from start to the end of the hold.
@@ -64,8 +64,9 @@ struct Execution {
 
 /// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
-/// @param goals at least one, in the order in which they are to be visited. The last one is held after the last knot,
-/// the others between two knots that are the same point at rest, which meets the goal, for at least its hold
+/// @param goals at least one, in the order of the visits. The vehicle hovers at the last one after the last knot. It
+/// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold
+/// apart
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
                                                 const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,
@@ -77,7 +78,7 @@ struct Execution {
     return execute(model, start, knots, std::span(&goal, 1), aero);
 }
 
-/// Control ticks for which a reference point is held as a goal: of several alternatives the nearest one's hold.
+/// How many control ticks a reference point is held as a goal; among alternatives, the hold of the nearest.
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const Goal& goal, const FlightModel& model,
                                                       const ReferencePoint& at);
 

@@ -15,8 +15,8 @@ constexpr std::int64_t ticks_between_questions = 4096;
 
 /// The rules, cheapest first.
 Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                        const simulation::RuleLimits& limits, const Given& given,
-                        const FlightState& before, const FlightState& state, const ReferencePoint& reference) {
+                      const simulation::RuleLimits& limits, const Given& given, const FlightState& before,
+                      const FlightState& state, const ReferencePoint& reference) {
     const double broken = simulation::broken_rule(limits, given.saturation, state, reference);
     if (broken > 0) {
         return static_cast<Rejection>(static_cast<int>(broken));
@@ -70,7 +70,8 @@ SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRule
     if (map == nullptr) {
         return fly_with(model, map, rules, segment, state, simulation::NoEffect{});
     }
-    return fly_with(model, map, rules, segment, state, simulation::MapEffect<double>(simulation::rotor_maps(model, *map)));
+    return fly_with(model, map, rules, segment, state,
+                    simulation::MapEffect<double>(simulation::rotor_maps(model, *map)));
 }
 
 }  // namespace downwash

@@ -11,52 +11,52 @@
 
 namespace downwash {
 
-/// Why a flight was refused or ended early.
+/// Why a flight was rejected or ended early.
 enum class Rejection : std::uint8_t {
     none,
     collision,     ///< nearer to an obstacle than allowed
     flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (docs/model.md 4.4)
     saturation,    ///< a rotor or the joint was asked for more than it has
-    tracking,      ///< the vehicle or the arm strayed too far from its reference
+    tracking,      ///< the vehicle or the arm was too far from its reference
     unstable,      ///< tumbling, or numbers that are not finite
     bounds,        ///< the centre of mass left the bounds, or the arm its limits
-    goal_missed,   ///< held at the goal and did not meet it
+    goal_missed,   ///< hovered at the goal but did not meet it
     interrupted,   ///< ended from outside; says nothing about the flight
 };
 
 /// Beyond this pitch a multirotor is lost, whatever its controller does next [rad] (80 degrees).
 inline constexpr double unstable_pitch_rad = 1.3962634015954636;
-/// Farther than this from its reference a flight has nothing to do with its plan any more [m].
+/// A flight that is farther than this from its reference has lost its plan [m].
 inline constexpr double unstable_error_m = 3.0;
 
-/// So far may a robot move between two looks for collisions [m]: a robot that keeps the margin at both then touches
-/// nothing on the way, as each of its points is within half of that from where it was seen. Below a margin of 2.5 mm
-/// corners may be cut by so much.
-[[nodiscard]] inline double greatest_unseen_motion_m(double margin_m) noexcept {
+/// How far a robot may move between two collision checks [m]. If it keeps the margin at both, it touches nothing on the
+/// way, because each of its points stays within half of that distance from a checked pose. With a margin below 2.5 mm
+/// it may cut corners by this distance.
+[[nodiscard]] inline double max_unseen_motion_m(double margin_m) noexcept {
     return std::max(2 * margin_m, 0.005);
 }
 
-/// What refuses a flight while planning.
+/// The rules of a planned flight.
 struct FlightRules {
-    double margin_m = 0.05;             ///< least clearance; also between ticks: see greatest_unseen_motion_m
+    double margin_m = 0.05;             ///< least clearance, also between ticks: see max_unseen_motion_m
     Bounds bounds;                      ///< of the centre of mass
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
-    std::function<bool()> is_over;      ///< asked now and then; true ends the flight as interrupted
+    std::function<bool()> is_over;      ///< polled now and then; true ends the flight as interrupted
     bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
 };
 
-/// What a flight along one segment came to.
+/// The outcome of a flight along one segment.
 struct SegmentFlight {
     Rejection rejection = Rejection::none;
-    std::int64_t ticks = 0;         ///< flown, the refused one included
+    std::int64_t ticks = 0;         ///< simulated, the rejected one included
     double length_m = 0;            ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2), w = half the arm's length
     double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
 };
 
-/// Flies one reference segment in closed loop and refuses it at the first tick that breaks a rule.
-/// @param map surface effects while planning; nullptr flies as if there were none and knows no flyable area
-/// @param state vehicle at the beginning, replaced by the vehicle at the end (or where the flight was refused)
+/// Flies one reference segment in closed loop and rejects it at the first tick that breaks a rule.
+/// @param map surface effects while planning; nullptr: no surface effects and no flyable area
+/// @param state vehicle at the beginning, replaced by the vehicle at the end, or where the flight was rejected
 [[nodiscard]] DOWNWASH_EXPORT SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                                                 const ReferenceSegment& segment, FlightState& state);
 

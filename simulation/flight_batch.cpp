@@ -22,7 +22,7 @@ using simulation::FlightLanes;
 using simulation::FlightWorld;
 using simulation::lane_count;
 
-constexpr int most_ticks_per_call = 1024;
+constexpr int max_ticks_per_call = 1024;
 
 /// The kernel for many lanes, and the one for so few that half a wide register would do.
 struct Kernels {
@@ -54,7 +54,8 @@ FlightKernelModel make_kernel_model(const FlightWorld& world) {
     kernel.limits = simulation::rule_limits(world.rules, world.model.robot().arm);
     kernel.reach = simulation::motion_reach(world.model);
     for (int i = 0; i < plant.rotor_count; ++i) {
-        const double hub_m = std::sqrt(plant.rotor_x_m[i] * plant.rotor_x_m[i] + plant.rotor_z_m[i] * plant.rotor_z_m[i]);
+        const double hub_m =
+            std::sqrt(plant.rotor_x_m[i] * plant.rotor_x_m[i] + plant.rotor_z_m[i] * plant.rotor_z_m[i]);
         kernel.reach.body_m = std::max(kernel.reach.body_m, hub_m);
     }
     kernel.has_map = world.map != nullptr;
@@ -66,7 +67,7 @@ FlightKernelModel make_kernel_model(const FlightWorld& world) {
 
 }  // namespace
 
-const FlightLeg* FlightJob::refused_leg() const noexcept {
+const FlightLeg* FlightJob::rejected_leg() const noexcept {
     const auto refused = std::find_if(legs.begin(), legs.end(),
                                       [](const FlightLeg& leg) { return leg.flight.rejection != Rejection::none; });
     return refused != legs.end() ? &*refused : nullptr;
@@ -83,7 +84,7 @@ std::span<const Instructions> known_instructions() noexcept {
     return {all, known};
 }
 
-struct FlightCrew::Impl {
+struct FlightPool::Impl {
     Impl(const FlightModel& model, const AeroMap* map, FlightRules the_rules, const Goal* goal,
          Instructions instructions)
         : rules(std::move(the_rules)),
@@ -91,7 +92,7 @@ struct FlightCrew::Impl {
           kernel_model(make_kernel_model(world)),
           kernels(kernels_for(instructions, model.tick().law.index())) {}
 
-    /// Flies jobs until none is left; several threads may do so at once.
+    /// Flies jobs until none is left. Several threads may call it at once.
     void work() {
         FlightLanes lanes{};
         std::vector<FlightLane> flights;
@@ -118,7 +119,7 @@ struct FlightCrew::Impl {
                     lane.idle_like(flights.front());
                 }
             }
-            (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, most_ticks_per_call);
+            (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, max_ticks_per_call);
             const bool is_interrupted = rules.is_over && rules.is_over();
             for (FlightLane& lane : flights) {
                 if (!lane.is_free()) {
@@ -143,15 +144,15 @@ struct FlightCrew::Impl {
         return busy;
     }
 
-    /// Waits for batches until the crew is dismissed.
+    /// Waits for batches until the pool is closed.
     /// @param number of the thread, 1 for the first beside the calling one
     void stand_by(std::size_t number) {
         std::uint64_t seen = 0;
         for (;;) {
             {
                 std::unique_lock lock(mutex);
-                called.wait(lock, [&] { return is_dismissed || batch != seen; });
-                if (is_dismissed) {
+                called.wait(lock, [&] { return is_closed || batch != seen; });
+                if (is_closed) {
                     return;
                 }
                 seen = batch;
@@ -182,11 +183,11 @@ struct FlightCrew::Impl {
     std::atomic<std::size_t> allowed{0};  ///< threads beside the calling one that may fly
     std::size_t helpers = 0;              ///< that fly this batch
     std::size_t working = 0;              ///< of them, still at it
-    bool is_dismissed = false;
+    bool is_closed = false;
     std::vector<std::jthread> others;
 };
 
-FlightCrew::FlightCrew(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
+FlightPool::FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
                        Instructions instructions)
     : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions)) {
     for (int i = 1; i < threads; ++i) {
@@ -195,44 +196,44 @@ FlightCrew::FlightCrew(const FlightModel& model, const AeroMap* map, FlightRules
     use_threads(threads);
 }
 
-FlightCrew::~FlightCrew() {
+FlightPool::~FlightPool() {
     {
         const std::scoped_lock lock(impl_->mutex);
-        impl_->is_dismissed = true;
+        impl_->is_closed = true;
     }
     impl_->called.notify_all();
     impl_->others.clear();  // joins
 }
 
-void FlightCrew::use_threads(int threads) {
+void FlightPool::use_threads(int threads) {
     impl_->allowed = std::min(static_cast<std::size_t>(threads - 1), impl_->others.size());
 }
 
-const FlightRules& FlightCrew::rules() const noexcept {
+const FlightRules& FlightPool::rules() const noexcept {
     return impl_->rules;
 }
 
-void FlightCrew::fly(std::span<FlightJob> jobs) {
-    Impl& crew = *impl_;
-    crew.jobs = jobs;
-    crew.next_job = 0;
-    // The pace of one or two lanes is the same: two flights are not worth waking others for.
-    const std::size_t helpers = jobs.size() <= 2 ? 0 : crew.allowed.load();
-    crew.lanes_used = std::clamp<std::size_t>((jobs.size() + helpers) / (helpers + 1), 1, lane_count);
+void FlightPool::fly(std::span<FlightJob> jobs) {
+    Impl& pool = *impl_;
+    pool.jobs = jobs;
+    pool.next_job = 0;
+    // One lane takes as long as two: two flights are not worth waking other threads.
+    const std::size_t helpers = jobs.size() <= 2 ? 0 : pool.allowed.load();
+    pool.lanes_used = std::clamp<std::size_t>((jobs.size() + helpers) / (helpers + 1), 1, lane_count);
     if (helpers == 0) {
-        crew.work();
+        pool.work();
         return;
     }
     {
-        const std::scoped_lock lock(crew.mutex);
-        ++crew.batch;
-        crew.helpers = helpers;
-        crew.working = helpers;
+        const std::scoped_lock lock(pool.mutex);
+        ++pool.batch;
+        pool.helpers = helpers;
+        pool.working = helpers;
     }
-    crew.called.notify_all();
-    crew.work();
-    std::unique_lock lock(crew.mutex);
-    crew.done.wait(lock, [&crew] { return crew.working == 0; });
+    pool.called.notify_all();
+    pool.work();
+    std::unique_lock lock(pool.mutex);
+    pool.done.wait(lock, [&pool] { return pool.working == 0; });
 }
 
 }  // namespace downwash

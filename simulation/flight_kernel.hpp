@@ -28,20 +28,19 @@ struct alignas(64) FlightLanes {
     double inverse_duration_1_s[lane_count];
     double tick[lane_count], ticks[lane_count];
 
-    // Until the robot has moved so far from a pose nothing but the rules of flight_rules.hpp has to be looked at.
+    // While the robot is this near to a pose, the kernel checks nothing but the rules of flight_rules.hpp.
     LaneRows<PlanarPose> anchor;
-    double free_motion_m[lane_count];  ///< negative: look after every tick
-    double look_tick[lane_count];      ///< from this tick of the segment on as well; infinite: never
-    double max_speed_m_s[lane_count];  ///< in (x, z): from this speed on as well; infinite: never
+    double free_motion_m[lane_count];  ///< negative: check after every tick
+    double look_tick[lane_count];      ///< check from this tick of the segment on; infinite: never
+    double max_speed_m_s[lane_count];  ///< in (x, z): check from this speed on; infinite: never
 
     double length_m[lane_count];
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.
-    LaneRows<PlanarPose> before;  ///< at the tick before
-    double rejection[lane_count];      ///< number of a Rejection
-    /// 1 where a closer look is due: the flyable area, motion beyond free_motion_m, look_tick or max_speed_m_s ask for
-    /// it.
+    LaneRows<PlanarPose> before;   ///< at the tick before
+    double rejection[lane_count];  ///< number of a Rejection
+    /// 1 if a check is due because of the flyable area, free_motion_m, look_tick or max_speed_m_s.
     double is_unclear[lane_count];
 };
 
@@ -57,7 +56,7 @@ struct FlightKernelModel {
 
 /// Flies all lanes tick by tick until an active one breaks a rule, is unclear, or is at the end of its segment, or
 /// until so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
-using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks);
+using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks);
 
 // For each set of instructions the kernel of a control law, by its number in ControlLaw.
 [[nodiscard]] FlightKernel baseline_kernel(std::size_t law);

@@ -82,7 +82,7 @@ inline BasicReferencePoint<Pack> reference_at(const LaneGroup& group, Pack tick,
 }
 
 template <class Law, class Effect>
-void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_ticks, Effect effect) {
+void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect) {
     FlightLanes& lanes = group.lanes;
     const PackMask is_active = group.load(lanes.is_active) > Pack(0);
     if (!any(is_active)) {
@@ -103,7 +103,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int most_
     const Pack max_speed_m_s = group.load(lanes.max_speed_m_s);
     const Pack ticks = group.load(lanes.ticks);
     dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
-    for (int n = 0; n < most_ticks; ++n) {
+    for (int n = 0; n < max_ticks; ++n) {
         controllers::Actuation<Pack> given;
         const State<Pack> next = tick(*model.tick, law, state, motion, reference, effect, given);
         tick_count = tick_count + Pack(1);
@@ -144,12 +144,12 @@ template <class Law>
 [[gnu::flatten]]
 #endif
 void
-fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int most_ticks) {
+fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
     for (int first = 0; first < lane_count; first += lane::pack_width) {
         if (model.has_map) {
-            fly_group<Law>(model, {lanes, first}, most_ticks, MapEffect<Pack>(model.maps));
+            fly_group<Law>(model, {lanes, first}, max_ticks, MapEffect<Pack>(model.maps));
         } else {
-            fly_group<Law>(model, {lanes, first}, most_ticks, NoEffect{});
+            fly_group<Law>(model, {lanes, first}, max_ticks, NoEffect{});
         }
     }
 }

@@ -15,12 +15,12 @@
 
 namespace downwash::simulation {
 
-/// How much clearance beyond the margin is asked for at first, then less and less [m]: a large one lets the robot fly
-/// far until the next look, a small one is found sooner.
+/// Clearances beyond the margin, tried one after the other [m]. A large one lets the robot fly far before the next
+/// check; a small one is found more often.
 inline constexpr double free_motions_m[] = {0.4, 0.1, 0.025};
 inline constexpr int no_free_motion = 3;
 
-/// Queries of clearance are certain but for so much [m].
+/// Clearance queries are exact to this [m].
 inline constexpr double clearance_error_m = 1e-7;
 
 /// What the flights of a batch have in common.
@@ -39,7 +39,7 @@ class FlightLane {
 
     [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
 
-    /// Takes on a job. One that is refused before its first tick leaves the lane free.
+    /// Takes a job. A job that is rejected before its first tick leaves the lane free.
     void begin(FlightJob& job) {
         job_ = &job;
         leg_ = 0;
@@ -50,7 +50,7 @@ class FlightLane {
         begin_leg();
     }
 
-    /// Copies another lane, so that a lane without a job computes nothing that is odd.
+    /// Copies another lane, so that a lane without a job computes with ordinary numbers.
     void idle_like(const FlightLane& other) {
         copy_numbers(other);
         lanes_->is_active[number_] = 0;
@@ -65,7 +65,7 @@ class FlightLane {
         lanes_->is_active[other.number_] = 0;
     }
 
-    /// Judges where the kernel stopped.
+    /// Decides how the flight goes on where the kernel stopped.
     void look(bool is_interrupted) {
         FlightLeg& leg = job_->legs[leg_];
         leg.flight.ticks = static_cast<std::int64_t>(lanes_->tick[number_]);
@@ -147,8 +147,8 @@ class FlightLane {
                                       job_->legs.back().segment.ticks();
     }
 
-    /// Whether the goal is met now; if so, the robot may move no farther and no faster without a look than it surely
-    /// stays so.
+    /// Whether the vehicle meets the goal now. If so, limits how far and how fast it may move before the next check, so
+    /// that it surely still meets the goal.
     Rejection goal_rejection() {
         const FlightState now = state();
         if (!meets_goal(*world_->goal, plant(), now)) {

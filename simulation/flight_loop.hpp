@@ -5,11 +5,11 @@
 #include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/map_effect.hpp"
 
-// What planning and execution share of flying a segment: the loop over ticks and the sources of surface effect.
+// What planning and execution share: the loop over the ticks of a segment and the sources of surface effects.
 
 namespace downwash::simulation {
 
-/// The effect evaluated exactly.
+/// The effect, evaluated directly.
 struct DirectFactor {
     const FlightModel& model;
     /// K at the hub of a rotor, or of the body, in the plane.
@@ -47,7 +47,7 @@ inline bool is_flyable(const FlightModel& model, const AeroMap& map, const Plana
 /// @param after callable (before, reference, given, next, next_reference) -> Rejection
 template <class Factor, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, Factor&& factor,
-                      const Integrate& integrate, FlightState& state, After&& after) {
+                    const Integrate& integrate, FlightState& state, After&& after) {
     return std::visit(
         [&](const auto& law) {
             ReferencePoint reference = segment.from();

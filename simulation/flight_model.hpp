@@ -49,8 +49,8 @@ class DOWNWASH_EXPORT FlightModel {
                                                           const std::function<void(double)>& on_progress = {},
                                                           const std::filesystem::path& cache = {}) const;
 
-    /// The vehicle at a pose with the speeds u of its coordinates [m/s, m/s, rad/s, rad/s], controller rested, no energy
-    /// spent.
+    /// The vehicle at a pose with the speeds u of its coordinates [m/s, m/s, rad/s, rad/s], controller rested, no
+    /// energy spent.
     [[nodiscard]] FlightState state_at(const PlanarPose& pose, const double (&u)[4] = {0, 0, 0, 0}) const noexcept;
 
  private:

@@ -54,8 +54,7 @@ T instability(const State<T>& state, T tracking_error_m) {
 /// Rejection; 0 for none.
 /// @param saturation of the tick   @param state,reference at its end
 template <class T>
-T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state,
-              const BasicReferencePoint<T>& reference) {
+T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state, const BasicReferencePoint<T>& reference) {
     const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);

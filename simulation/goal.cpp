@@ -68,7 +68,9 @@ const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const Planar
     if (goal.any_of.empty()) {
         return goal;
     }
-    const auto share = [&](const Goal& each) { return tolerance_of(each).used_share(goal_deviation(each, model, pose)); };
+    const auto share = [&](const Goal& each) {
+        return tolerance_of(each).used_share(goal_deviation(each, model, pose));
+    };
     return *std::min_element(goal.any_of.begin(), goal.any_of.end(),
                              [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
 }

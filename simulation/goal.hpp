@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "downwash/base/export.hpp"
 #include "downwash/base/bounds.hpp"
+#include "downwash/base/export.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/pose.hpp"
 
@@ -35,11 +35,12 @@ struct ConfigurationGoal {
 struct Goal {
     std::optional<EndEffectorGoal> end_effector;
     std::optional<ConfigurationGoal> configuration;
-    double hold_s = 5;         ///< the last reference point is held for so long, >= 1
-    std::vector<Goal> any_of;  ///< reaching any of these will do, held for as long as that one says; not nested
+    double hold_s = 5;  ///< the last reference point is held for so long, >= 1
+    std::vector<Goal>
+        any_of;  ///< alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested
 };
 
-/// The goals of which any will do: the goal itself, unless it names others.
+/// The alternatives of a goal: the goal itself if it names none.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const Goal> alternatives(const Goal& goal) noexcept;
 
 /// How far a vehicle is from a goal, coordinate by coordinate; 0 where the goal leaves it free.
@@ -54,7 +55,7 @@ struct GoalTolerance {
     bool is_disc = true;
     double angle_rad = 0;
 
-    /// The greatest share of it that a deviation uses up; 1 at its rim.
+    /// The greatest share of the tolerance that a deviation uses; 1 at its boundary.
     [[nodiscard]] DOWNWASH_EXPORT double used_share(const GoalDeviation& deviation) const noexcept;
 };
 
@@ -69,30 +70,31 @@ struct GoalTolerance {
 struct GoalError {
     double distance_m = 0;  ///< Euclidean, over the coordinates that the goal gives
     double angle_rad = 0;   ///< of the arm or its direction, modulo a turn; 0 when the goal leaves it free
-    double used_share = 0;  ///< the greatest share of a tolerance that is used up; see is_met()
+    double used_share = 0;  ///< the greatest share of a tolerance that is used; see is_met()
 };
 
 /// The error of a pose; among alternatives that of the nearest.
 [[nodiscard]] DOWNWASH_EXPORT GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose);
 
-/// The alternative of which a pose uses up the least share of the tolerances; the first of equals.
-[[nodiscard]] DOWNWASH_EXPORT const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const PlanarPose& pose);
+/// The alternative whose tolerances a pose uses least; the first of equals.
+[[nodiscard]] DOWNWASH_EXPORT const Goal& nearest_goal(const Goal& goal, const PlantModel& model,
+                                                       const PlanarPose& pose);
 
 /// Whether the error lies within the goal's tolerances.
 [[nodiscard]] inline bool is_met(const GoalError& error) noexcept {
     return error.used_share <= 1;
 }
 
-/// How far any point of the robot may move, at the most, so that a pose that meets the goal surely still does
-/// [m]; negative where it does not.
+/// The greatest motion of any point of the robot after which a pose surely still meets the goal [m]; negative if it
+/// does not meet the goal now.
 /// @param body_reach_m a turn of the body moves some point of the robot with this reach [m], > 0
-[[nodiscard]] DOWNWASH_EXPORT double motion_within_goal_m(const Goal& goal, const PlantModel& model, const PlanarPose& pose,
-                                                          double body_reach_m);
+[[nodiscard]] DOWNWASH_EXPORT double motion_within_goal_m(const Goal& goal, const PlantModel& model,
+                                                          const PlanarPose& pose, double body_reach_m);
 
-/// The share of each tolerance that a reference may use up while planning; the rest is left to the flight.
+/// The share of each tolerance that a planned reference may use. The rest is for the tracking error of the flight.
 inline constexpr double usable_tolerance_share = 0.9;
 
-/// The goal must be met over so long at the end of the hold [s], ...
+/// The vehicle must meet the goal during this time at the end of the hold [s], ...
 inline constexpr double goal_settling_s = 1.0;
 /// ... with the vehicle's centre of mass slower than this [m/s].
 inline constexpr double goal_max_speed_m_s = 0.05;

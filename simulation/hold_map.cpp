@@ -25,10 +25,10 @@ HoldMap empty_map(const Bounds& bounds, double step_m, double arm_rad) {
     }
     const double columns = nodes_between(bounds.x_low_m, bounds.x_high_m, step_m);
     const double rows = nodes_between(bounds.z_low_m, bounds.z_high_m, step_m);
-    if (!(columns * rows <= most_hold_nodes)) {
+    if (!(columns * rows <= max_hold_nodes)) {
         throw InputError(
             {KeyError{"step_m", "is " + to_text(step_m) + ", which would give " + to_text(columns * rows, 3) +
-                                    " nodes: expected a step that gives at most " + to_text(most_hold_nodes)}});
+                                    " nodes: expected a step that gives at most " + to_text(max_hold_nodes)}});
     }
     HoldMap map{arm_rad,
                 bounds.x_low_m,

@@ -20,8 +20,8 @@ struct HoldMap {
     std::vector<double> growth_rates_1_s;
 };
 
-/// The most nodes a hold map may have.
-inline constexpr double most_hold_nodes = 1048576;
+/// The maximum number of nodes of a hold map.
+inline constexpr double max_hold_nodes = 1048576;
 
 /// Analyses hover at every node x_low + i step, z_low + k step within the bounds.
 /// @param threads at least 1; the result does not depend on it
@@ -34,9 +34,9 @@ struct HoldPoint {
     double x_m = 0, z_m = 0;
 };
 
-/// The lines between stable and unstable hover, as their crossings with the grid, each found to 1e-4 m along its edge.
-/// Where either side is bounded by something else (not flyable, no equilibrium, unknown) there is no line. A closed
-/// line ends with its first point.
+/// The lines between stable and unstable hover, as their crossings with the edges of the grid, to 1e-4 m. There is no
+/// line where either side borders on another verdict (not flyable, no equilibrium, unknown). A closed line ends with
+/// its first point.
 /// @param model,map the map was made from this model
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::vector<HoldPoint>> stability_boundary(const FlightModel& model,
                                                                                      const HoldMap& map);

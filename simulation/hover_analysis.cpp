@@ -130,8 +130,7 @@ void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearE
         dynamics::equations_of_motion(plant, dynamics::attitude(plant, 0.0, q[3]), trim.state.plant.u);
     const double nothing[3] = {};
     const double inertia_kg_m2 = dynamics::rotational_system(plant, equations, nothing).s55;
-    stability.torque_gain_nm_rad =
-        inertia_kg_m2 * trim.pitch_gain_1_s2 * wrench(q[1], 0, unit_n).pitch_torque_nm;
+    stability.torque_gain_nm_rad = inertia_kg_m2 * trim.pitch_gain_1_s2 * wrench(q[1], 0, unit_n).pitch_torque_nm;
 }
 
 /// Whether what is above a rotor pulls it in a way that K does not tell: some of it is so near that its part of K is

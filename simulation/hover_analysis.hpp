@@ -12,12 +12,12 @@ namespace downwash {
 
 /// Whether a vehicle can hover at a point.
 enum class HoldVerdict : std::uint8_t {
-    not_flyable,     ///< a rotor disc nearer to an obstacle than the effects are known (docs/model.md 4.4)
+    not_flyable,     ///< a rotor disc is nearer to an obstacle than the effects are known (docs/model.md 4.4)
     in_collision,    ///< touches an obstacle
-    no_equilibrium,  ///< no reference makes the controller ask for what balances weight and surfaces
-    unstable,        ///< balanced, but the smallest disturbance grows
-    unknown,         ///< balanced, and stable but for a ceiling whose pull is beyond the model: capped, or not measured
-    stable,          ///< balanced, and small disturbances decay
+    no_equilibrium,  ///< no reference makes the controller balance weight and surface effects
+    unstable,        ///< an equilibrium, but the smallest disturbance grows
+    unknown,         ///< stable, unless a ceiling pulls more than the model knows: K is capped or was not measured
+    stable,          ///< an equilibrium, and small disturbances decay
 };
 
 /// Name in files: "no_equilibrium".
@@ -27,10 +27,10 @@ enum class HoldVerdict : std::uint8_t {
 
 /// How a vehicle hovers: the equilibrium of its closed loop near surfaces.
 struct HoverTrim {
-    HoldLimit limit = HoldLimit::none;  ///< anything else: there is no equilibrium, and the rest shows why
+    HoldLimit limit = HoldLimit::none;  ///< anything else: there is no equilibrium; the other members show why
     FlightState state{};                ///< fixed point of the tick: at rest and level, integrators settled
-    /// What the controller has to be given to hold the vehicle there. It differs from where the vehicle is on axes
-    /// without integrator, and where an integrator has reached its limit.
+    /// The reference that makes the controller hold the vehicle there. It differs from the vehicle's place on axes
+    /// without an integrator, and where an integrator has reached its limit.
     ReferencePoint reference;
     double rotor_command_n[max_rotors] = {};
     double joint_torque_nm = 0;
@@ -42,12 +42,12 @@ struct HoverTrim {
     simulation::State<bool> feeds_back{};
 };
 
-/// How a small disturbance of a hover develops, and what competes there.
+/// How a small disturbance of a hover develops, and the stiffnesses that compete.
 struct HoverStability {
     /// Of the Jacobian of one tick at the fixed point; stable below 1. Infinite where numbers are too large to tell.
     double spectral_radius = 0;
     double growth_rate_1_s = 0;  ///< of the slowest decay, or fastest growth: ln(spectral radius) / tick
-    double frequency_rad_s = 0;  ///< of that mode; 0 when it does not swing
+    double frequency_rad_s = 0;  ///< of that mode; 0 if it does not oscillate
     int growing_modes = 0;       ///< eigenvalues outside the unit circle
 
     double force_slope_n_m = 0;      ///< dF/dz at the trim commands; positive pulls away from the height that is held
@@ -56,7 +56,7 @@ struct HoverStability {
     double torque_gain_nm_rad = 0;   ///< what k5 ku5 set against it: torque in effect per radian of error
 };
 
-/// Whether a vehicle can hover at a point with its own controller, and in what manner.
+/// Whether and how a vehicle can hover at a point with its own controller.
 struct HoverAnalysis {
     HoldVerdict verdict = HoldVerdict::not_flyable;
     HoverTrim trim;            ///< from no_equilibrium on
@@ -64,7 +64,7 @@ struct HoverAnalysis {
 };
 
 /// Whether the vehicle can hover with its centre of mass at (x, z) and the arm at an angle, with surface effects
-/// evaluated directly. Linear theory: it says what becomes of disturbances of a millimetre, not how far they may be.
+/// evaluated directly. Linear theory: it tells how disturbances of a millimetre develop, not how large they may be.
 /// @param x_m,z_m,arm_rad finite; where the vehicle itself should be (not its reference)
 [[nodiscard]] DOWNWASH_EXPORT HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m,
                                                           double arm_rad);

@@ -6,9 +6,9 @@ namespace downwash::simulation {
 
 /// How far from the multirotor's centre of mass the points of a robot are [m].
 struct MotionReach {
-    double body_m;       ///< those of the multirotor, at most
-    double joint_m;      ///< the joint
-    double arm_m;        ///< the arm's, from the joint, at most
+    double body_m;   ///< those of the multirotor, at most
+    double joint_m;  ///< the joint
+    double arm_m;    ///< the arm's, from the joint, at most
 };
 
 /// No point of the robot moves farther between two poses (x, z, pitch, arm) whose coordinates all change evenly [m].

@@ -85,11 +85,11 @@ std::vector<KeyError> too_little_thrust(const Robot& robot) {
 
 std::vector<KeyError> too_much_thrust(const Robot& robot) {
     const double count = static_cast<double>(robot.rotors.positions_m.size());
-    const double least_n = count * robot.rotors.min_thrust_n;
-    if (least_n < weight_n(robot)) {
+    const double min_n = count * robot.rotors.min_thrust_n;
+    if (min_n < weight_n(robot)) {
         return {};
     }
-    return {{"rotors.min_thrust_n", "gives " + rounded(least_n) + " N with " + rounded(count) +
+    return {{"rotors.min_thrust_n", "gives " + rounded(min_n) + " N with " + rounded(count) +
                                         " rotors, more than the weight of " + rounded(weight_n(robot)) +
                                         " N: the vehicle could not descend"}};
 }

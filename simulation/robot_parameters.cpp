@@ -161,7 +161,7 @@ class LawRows {
 
     /// A key that another law has, too, is one row that serves whichever law flies the robot.
     void add(Parameter<Robot> row) {
-        if constexpr (std::variant_size_v<ControlLaw> > 1) {
+        if constexpr (std::variant_size_v < ControlLaw >> 1) {
             row.condition = std::string("controller.type is ") + Law::name;
             row.applies = is_flown;
             const auto known =
@@ -208,7 +208,9 @@ class LawRows {
     }
     template <class Number>
     static auto place(Number Law::*member) {
-        return [member](auto& robot) -> auto& { return std::get<Law>(robot.controller.law).*member; };
+        return [member](auto& robot) -> auto& {
+            return std::get<Law>(robot.controller.law).*member;
+        };
     }
 
     Rows& rows_;
@@ -247,11 +249,11 @@ void add_laws(Rows& rows, const std::variant<Laws...>* laws) {
 
 void add_controller(Rows& rows) {
     rows.push_back(group("controller", "the model-inversion controllers of multirotor and arm"));
-    rows.push_back(number(
-                       "controller.rate_hz", "control ticks per second",
-                       [](auto& r) -> auto& { return r.controller.rate_hz; })
-                       .at_least(10)
-                       .at_most(1000));
+    rows.push_back(
+        number(
+            "controller.rate_hz", "control ticks per second", [](auto& r) -> auto& { return r.controller.rate_hz; })
+            .at_least(10)
+            .at_most(1000));
     add_laws(rows, static_cast<const ControlLaw*>(nullptr));
 }
 

@@ -5,16 +5,17 @@
 
 namespace downwash {
 
-/// What surfaces do to the whole vehicle at one pose, with the commands that carry its weight and turn nothing in free
-/// air (for rotors placed symmetrically: equal ones). Forces act along b3, torques about +y (positive: nose down).
+/// The effect of surfaces on the whole vehicle at one pose. The rotor commands are those that carry its weight without
+/// a pitch torque in free air (equal ones, for rotors placed symmetrically). Forces act along b3, torques about +y
+/// (positive: nose down).
 struct VehicleEffect {
     double force_factor = 1;         ///< sum K_i T_i / sum T_i
     double pitch_torque_nm = 0;      ///< parasitic, -sum x_i K_i T_i (thesis 3.2, figures 3.1 and 3.2)
     double pitch_torque_factor = 0;  ///< the same over weight * R
 };
 
-/// The effect at a pose (the arm does not matter), evaluated directly. Defined everywhere; where the vehicle is not
-/// flyable it is of no use.
+/// The effect at a pose (the arm does not matter), evaluated directly. It is defined everywhere, but means nothing
+/// where the vehicle is not flyable.
 [[nodiscard]] DOWNWASH_EXPORT VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose);
 
 /// Whether every rotor of a vehicle at this pose is inside the flyable area (docs/model.md 4.4), decided exactly.

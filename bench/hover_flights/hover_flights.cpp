@@ -30,7 +30,7 @@ constexpr double critical_rate_1_s = 0.05;
 /// Of the hovers that are stable by more, one in so many is flown.
 constexpr int clear_ones = 50;
 /// Places looked at per row: where few hovers are unstable, fewer are flown.
-constexpr int most_places = 30000;
+constexpr int max_places = 30000;
 
 struct Options {
     std::vector<std::string> problems;
@@ -78,8 +78,7 @@ bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& d
     double in_the_end = 0;
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<double> given{};
-        state = simulation::tick(model.tick(), state, trim.reference,
-                                 simulation::DirectFactor{model}, given);
+        state = simulation::tick(model.tick(), state, trim.reference, simulation::DirectFactor{model}, given);
         const double d = distance(state, trim.state);
         if (!(d < disturbance.leaving)) {
             return true;
@@ -181,8 +180,8 @@ class Campaign {
             "| problem | robot | disturbance, leaving | called unstable: grew | called stable: decayed | critical | "
             "unknown "
             "|\n|---|---|---|---|---|---|---|\n",
-            options_.commit, __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, most_places, critical_rate_1_s,
-            clear_ones, flight_s, critical_rate_1_s);
+            options_.commit, __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, max_places, critical_rate_1_s, clear_ones,
+            flight_s, critical_rate_1_s);
         Count all{"all", "", {}};
         for (const Count& c : rows_) {
             print_row(c, fmt::format("{:g}, {:g}", c.disturbance.size, c.disturbance.leaving));
@@ -205,7 +204,7 @@ class Campaign {
     void add_row(Count row, const std::vector<Problem>& problems) {
         for (std::size_t i = 0; i < problems.size(); ++i) {
             const std::size_t until = options_.flights * (i + 1) / problems.size();
-            fly(problems[i], until, most_places / static_cast<int>(problems.size()), row);
+            fly(problems[i], until, max_places / static_cast<int>(problems.size()), row);
         }
         fmt::print(stderr, "{}, {}: {} flights\n", row.problem, row.robot, row.unstable + row.stable);
         rows_.push_back(row);

@@ -105,8 +105,7 @@ void collision_check(benchmark::State& state) {
     const std::vector<PlanarPose> queries = random_queries(bridge.problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
         for (const PlanarPose& q : queries) {
-            benchmark::DoNotOptimize(
-                bridge.model->collisions().is_nearer_than(q, 0.05));
+            benchmark::DoNotOptimize(bridge.model->collisions().is_nearer_than(q, 0.05));
         }
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
@@ -201,7 +200,7 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     const Bridge& bridge = Bridge::get();
     FlightRules rules;
     rules.bounds = bridge.problem.bounds;
-    FlightCrew crew(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, nullptr, threads, instructions);
+    FlightPool pool(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, nullptr, threads, instructions);
     const double tick_s = bridge.model->tick().tick_s;
     std::vector<FlightJob> edges;
     const std::vector<PlanarPose> from = random_queries(bridge.problem.bounds);
@@ -215,7 +214,7 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
     std::int64_t ticks = 0;
     for ([[maybe_unused]] auto _ : state) {
         std::vector<FlightJob> jobs = edges;
-        crew.fly(jobs);
+        pool.fly(jobs);
         for (const FlightJob& job : jobs) {
             ticks += job.legs[0].flight.ticks;
         }
@@ -290,7 +289,7 @@ void edge(benchmark::State& state, bool is_aware) {
         const SegmentFlight flight =
             fly(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, slot_segment(), vehicle);
         if (flight.rejection != Rejection::none) {
-            state.SkipWithError("the edge was refused");
+            state.SkipWithError("the edge was rejected");
             break;
         }
         ticks += flight.ticks;

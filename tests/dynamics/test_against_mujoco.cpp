@@ -53,8 +53,8 @@ double worst_difference(const Robot& robot, double flight_s, double& greatest_pi
         memory = control.integrated;
         dynamics::PlantCommand<double> command{};
         dynamics::allocate(plant, control.demand.thrust_n, control.demand.pitch_torque_nm, command.thrust_n);
-        command.joint_torque_nm = controllers::joint_torque(plant, motion, control.demand.arm_acceleration, control.demand.thrust_n,
-                                                            control.demand.pitch_torque_nm);
+        command.joint_torque_nm = controllers::joint_torque(plant, motion, control.demand.arm_acceleration,
+                                                            control.demand.thrust_n, control.demand.pitch_torque_nm);
         std::copy(command.thrust_n, command.thrust_n + plant.rotor_count, data->ctrl);
         data->ctrl[plant.rotor_count] = command.joint_torque_nm;
         for (int i = 0; i < steps_per_tick; ++i) {

@@ -66,7 +66,7 @@ SegmentFlight planned(const Problem& problem, double margin_m) {
     FlightState one = rising(*model);
     const SegmentFlight flight = fly(*model, nullptr, rules, rise(*model), one);
     std::vector<FlightJob> jobs(3, FlightJob{rising(*model), {{rise(*model)}}});
-    FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
+    FlightPool(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
         CHECK(job.legs.front().flight.rejection == flight.rejection);
         CHECK(job.legs.front().flight.ticks == flight.ticks);
@@ -153,7 +153,7 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
             }
         }
         std::vector<FlightJob> flown = jobs;
-        FlightCrew(*model, nullptr, rules, nullptr, 2).fly(flown);
+        FlightPool(*model, nullptr, rules, nullptr, 2).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             FlightState state = jobs[i].start;
             const SegmentFlight flight = fly(*model, nullptr, rules, jobs[i].legs.front().segment, state);

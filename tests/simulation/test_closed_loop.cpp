@@ -13,14 +13,14 @@
 namespace {
 
 using downwash::ModelInversion;
+using downwash::number_at;
+using downwash::number_count;
 using downwash::ReferencePoint;
 using downwash::Robot;
+using downwash::set_number_at;
 using downwash::test::gains_of;
 using downwash::test::plant_of;
 using downwash::test::test_robot;
-using downwash::number_at;
-using downwash::number_count;
-using downwash::set_number_at;
 namespace controllers = downwash::controllers;
 namespace simulation = downwash::simulation;
 using State = simulation::State<double>;
@@ -138,8 +138,8 @@ std::vector<double> ideal_arm(const ModelInversion& g, int ticks) {
 }
 
 /// One coordinate over a flight.
-std::vector<double> response_of(const simulation::TickModel& model, State state, const ReferencePoint& reference, int ticks,
-                                int coordinate) {
+std::vector<double> response_of(const simulation::TickModel& model, State state, const ReferencePoint& reference,
+                                int ticks, int coordinate) {
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
         response.push_back(state.plant.q[coordinate]);

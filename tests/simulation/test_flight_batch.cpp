@@ -86,7 +86,7 @@ std::map<Rejection, int> rejections_of_equal_flights(const Problem& problem, boo
     fly_one_by_one(*model, map.get(), rules, expected);
     for (const auto& [instructions, threads] : ways_to_fly()) {
         std::vector<FlightJob> flown = jobs;
-        FlightCrew(*model, map.get(), rules, nullptr, threads, instructions).fly(flown);
+        FlightPool(*model, map.get(), rules, nullptr, threads, instructions).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             INFO("job " << i << " with instructions " << static_cast<int>(instructions) << ", threads " << threads);
             REQUIRE(flown[i].rejection() == expected[i].rejection());
@@ -152,7 +152,7 @@ TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as o
     ReferencePoint at;
     at.position[1] = 2;
     std::vector<FlightJob> jobs{{model->state_at(tumbling), {{{at, at, 100, model->tick().tick_s}}}}};
-    FlightCrew(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
+    FlightPool(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
     CHECK(jobs[0].rejection() == Rejection::unstable);
     CHECK(jobs[0].legs[0].flight.ticks == 1);
 }
@@ -173,7 +173,7 @@ TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
     at_once.legs[0].segment = {at, at, 50, model->tick().tick_s};
     std::vector<FlightJob> jobs{held, missed, at_once};
     rules.max_tracking_error_m = 1;
-    FlightCrew(*model, nullptr, rules, &problem.goal).fly(jobs);
+    FlightPool(*model, nullptr, rules, &problem.goal).fly(jobs);
     CHECK(jobs[0].rejection() == Rejection::none);
     CHECK(jobs[0].legs[0].flight.ticks == 500);
     CHECK(jobs[1].rejection() == Rejection::goal_missed);
@@ -229,7 +229,7 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
     REQUIRE(met > 20);
     for (const auto& [instructions, threads] : ways_to_fly()) {
         std::vector<FlightJob> flown = jobs;
-        FlightCrew(*model, nullptr, rules, &goal, threads, instructions).fly(flown);
+        FlightPool(*model, nullptr, rules, &goal, threads, instructions).fly(flown);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             CAPTURE(i, static_cast<int>(instructions), missed_at[i]);
             REQUIRE(flown[i].rejection() == (missed_at[i] < 0 ? Rejection::none : Rejection::goal_missed));
@@ -239,20 +239,20 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
     }
 }
 
-TEST_CASE("a crew flies one batch after the other, empty ones too, and can be dismissed without any") {
+TEST_CASE("a pool flies one batch after the other, empty ones too, and can be dismissed without any") {
     const Problem problem = ceiling_problem();
     const auto model = make_flight_model(problem);
-    FlightCrew crew(*model, nullptr, rules_of(problem), nullptr, 3);
+    FlightPool pool(*model, nullptr, rules_of(problem), nullptr, 3);
     for (const int count : {40, 0, 1, 7, 25}) {
         std::vector<FlightJob> jobs = random_jobs(problem, *model, count, 11);
         std::vector<FlightJob> expected = jobs;
         fly_one_by_one(*model, nullptr, rules_of(problem), expected);
-        crew.fly(jobs);
+        pool.fly(jobs);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             CHECK(is_same(jobs[i].legs[0], expected[i].legs[0]));
         }
     }
-    const FlightCrew idle(*model, nullptr, rules_of(problem), nullptr, 4);
+    const FlightPool idle(*model, nullptr, rules_of(problem), nullptr, 4);
 }
 
 TEST_CASE("a batch can be ended from outside") {
@@ -264,8 +264,9 @@ TEST_CASE("a batch can be ended from outside") {
     ReferencePoint at;
     at.position[0] = 0;
     at.position[1] = 2;
-    std::vector<FlightJob> jobs(5, FlightJob{model->state_at({0, 2, 0, 0}), {{{at, at, 100000000, model->tick().tick_s}}}});
-    FlightCrew(*model, nullptr, rules, nullptr).fly(jobs);
+    std::vector<FlightJob> jobs(
+        5, FlightJob{model->state_at({0, 2, 0, 0}), {{{at, at, 100000000, model->tick().tick_s}}}});
+    FlightPool(*model, nullptr, rules, nullptr).fly(jobs);
     for (const FlightJob& job : jobs) {
         CHECK(job.rejection() == Rejection::interrupted);
     }

@@ -121,7 +121,7 @@ TEST_CASE("within the motion that a goal leaves it stays met, and not much more 
             goal.configuration->arm_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
         }
         const PlanarPose q{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.05, 0.05),
-                             random.uniform(-0.05, 0.05)};
+                           random.uniform(-0.05, 0.05)};
         const double motion_m = motion_within_goal_m(goal, plant, q, reach_m);
         REQUIRE((motion_m >= 0) == is_met(goal_error(goal, plant, q)));
         if (motion_m < 0) {
@@ -135,7 +135,7 @@ TEST_CASE("within the motion that a goal leaves it stays met, and not much more 
             const double pitch = left_m / std::max(reach_m, joint_reach_m) * random.uniform(-1, 1);
             const double arm = (left_m - joint_reach_m * std::abs(pitch)) / plant.arm_length_m * random.uniform(-1, 1);
             const PlanarPose to{q.x_m + way_m * std::cos(angle), q.z_m + way_m * std::sin(angle), q.pitch_rad + pitch,
-                                  q.arm_rad + arm - pitch};
+                                q.arm_rad + arm - pitch};
             return is_met(goal_error(goal, plant, to));
         };
         REQUIRE(moved(1 - 1e-9));

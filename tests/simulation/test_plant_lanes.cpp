@@ -19,13 +19,14 @@ using lane::Pack;
 /// What a world has beside its plant, in every lane.
 template <class T>
 struct Surroundings {
-    T effect_scale;   ///< of K - 1
-    T scene_offset_m; ///< by which the surfaces are higher than the controller's map has them
+    T effect_scale;    ///< of K - 1
+    T scene_offset_m;  ///< by which the surfaces are higher than the controller's map has them
     T thrust_scale;
 
     /// K falls off from a ground at z = 0.
     T operator()(int /*rotor*/, T /*x_m*/, T z_m) const {
-        return thrust_scale * (T(1) + effect_scale * (T(0.1) / (T(1) + (z_m - scene_offset_m) * (z_m - scene_offset_m))));
+        return thrust_scale *
+               (T(1) + effect_scale * (T(0.1) / (T(1) + (z_m - scene_offset_m) * (z_m - scene_offset_m))));
     }
 };
 
@@ -89,14 +90,16 @@ TEST_CASE("lanes with vehicles and surfaces of their own fly each as it flies al
     }();
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<Pack> given{};
-        lanes = simulation::tick_of_other_plant(known, law, plant_lanes, lanes, lanes.plant, reference_lanes, world_lanes, given);
+        lanes = simulation::tick_of_other_plant(known, law, plant_lanes, lanes, lanes.plant, reference_lanes,
+                                                world_lanes, given);
     }
     for (int lane = 0; lane < lane::width<Pack>; ++lane) {
         simulation::State<double> alone = start;
         for (int i = 0; i < ticks; ++i) {
             controllers::Actuation<double> given{};
-            alone = simulation::tick_of_other_plant(known, law, plants[static_cast<std::size_t>(lane)], alone, alone.plant,
-                                              reference, worlds[static_cast<std::size_t>(lane)], given);
+            alone =
+                simulation::tick_of_other_plant(known, law, plants[static_cast<std::size_t>(lane)], alone, alone.plant,
+                                                reference, worlds[static_cast<std::size_t>(lane)], given);
         }
         INFO("lane " << lane);
         for (int i = 0; i < number_count<double, simulation::State<double>>; ++i) {
@@ -119,7 +122,8 @@ TEST_CASE("a plant as its controller knows it flies the tick of the closed loop"
     for (int i = 0; i < 200; ++i) {
         controllers::Actuation<double> given{};
         one = simulation::tick(known, one, reference, free_air, given);
-        other = simulation::tick_of_other_plant(known, law, known.plant, other, other.plant, reference, free_air, given);
+        other =
+            simulation::tick_of_other_plant(known, law, known.plant, other, other.plant, reference, free_air, given);
     }
     CHECK(std::memcmp(&one, &other, sizeof one) == 0);
     CHECK(one.plant.q[0] > 0.1);
