@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "downwash/controllers/configuration.hpp"
 #include "downwash/controllers/quintic.hpp"
 
 namespace downwash {
