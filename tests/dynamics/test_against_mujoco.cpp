@@ -39,15 +39,15 @@ double worst_difference(const Robot& robot, double flight_s, double& greatest_pi
     std::copy(u, u + 4, data->qvel);
 
     // The controller only makes up commands, from our state: a dash sideways while the arm swings overhead and back.
-    const ModelInversion law = downwash::test::gains_of(robot);
-    auto memory = ModelInversion::rested(q[2]);
+    const downwash::ModelInversion law = downwash::test::gains_of(robot);
+    auto memory = downwash::ModelInversion::rested(q[2]);
     double worst = 0;
     greatest_pitch = 0;
     double least_arm = q[3];
     double greatest_arm = q[3];
     const int ticks = static_cast<int>(std::lround(flight_s / (step_s * steps_per_tick)));
     for (int tick = 0; tick < ticks; ++tick) {
-        const ReferencePoint reference{{0.8, 1.8, 2 * tick < ticks ? -1.0 : 1.6}, {0, 0, 0}, {0, 0, 0}};
+        const downwash::ReferencePoint reference{{0.8, 1.8, 2 * tick < ticks ? -1.0 : 1.6}, {0, 0, 0}, {0, 0, 0}};
         const auto motion = dynamics::motion_at(plant, state.q, state.u);
         const auto control = law.demanded(plant, state, motion, memory, reference, step_s * steps_per_tick);
         memory = control.integrated;

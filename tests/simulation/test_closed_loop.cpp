@@ -262,7 +262,7 @@ TEST_CASE("A flight that is split and resumed from a copied state ends in the sa
         gains_of(robot).arm_ki = 4;
         gains_of(robot).rate_feed_forward = true;
         const auto model = model_of(robot);
-        const Setpoint reference = hold(0.2, 2.2, 0.1);
+        const ReferencePoint reference = hold(0.2, 2.2, 0.1);
         const State start = resting_at(0, 2, 0.3);
         const State whole = flown(model, start, reference, 300);
         const State middle = flown(model, start, reference, 137);
@@ -283,7 +283,7 @@ TEST_CASE("Every number of the state matters to what follows") {
     gains_of(robot).arm_ki = 4;
     gains_of(robot).rate_feed_forward = true;
     const auto model = model_of(robot);
-    const Setpoint reference = hold(0.2, 2.2, 0.1);
+    const ReferencePoint reference = hold(0.2, 2.2, 0.1);
     const State state = flown(model, resting_at(0, 2, 0.3), reference, 50);
     const State next = flown(model, state, reference, 2);
     simulation::State<bool> is_missing{};
