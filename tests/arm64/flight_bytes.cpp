@@ -72,13 +72,13 @@ int main() {
         std::vector<FlightJob> jobs;
         for (int i = 0; i < flights; ++i) {
             const ReferencePoint from = random_rest(problem.bounds, random);
-            const double q[4] = {from.position[0], from.position[1], 0, from.position[2]};
-            const double u[4] = {};
             const ReferencePoint to = random_rest(problem.bounds, random);
-            jobs.push_back({model.state_at(q, u), {{{from, to, random.integer(300, 1500), model.tick().tick_s}}}, 0});
+            jobs.push_back({model.state_at(level_at(configuration_of(from))),
+                            {{{from, to, random.integer(300, 1500), model.tick().tick_s}}},
+                            0});
         }
         const std::vector<FlightJob> before = jobs;
-        FlightCrew(model, map.get(), rules, nullptr).fly(jobs);
+        FlightPool(model, map.get(), rules, nullptr).fly(jobs);
         for (int i = 0; i < flights; ++i) {
             const auto& job = jobs[static_cast<std::size_t>(i)];
             Digest digest;
