@@ -1,3 +1,4 @@
+#include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "edits.hpp"
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <random>
 
+#include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
