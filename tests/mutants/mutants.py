@@ -30,7 +30,7 @@ class Error(Exception):
 
 
 def run(command, **options):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace", check=False, **options)
 
 
 # --- the copy -----------------------------------------------------------------------------------------------------
