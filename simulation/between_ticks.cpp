@@ -16,7 +16,7 @@ PlanarPose between(const PlanarPose& from, const PlanarPose& to, double share) {
 
 /// @param unseen_m the motion between both poses
 double min_clearance_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
-                         double to_m, double unseen_m) {
+                       double to_m, double unseen_m) {
     constexpr double least_motion_m = 0.001;
     if (from_m + to_m >= unseen_m || unseen_m <= least_motion_m) {
         return std::min(from_m, to_m);

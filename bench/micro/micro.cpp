@@ -194,7 +194,8 @@ void search(benchmark::State& state, std::uint64_t iterations, int threads, std:
     return true;
 }();
 
-/// How soon searches end that have a time limit of 0.1 s: of every algorithm, and one whose edges are flights of minutes.
+/// How soon searches end that have a time limit of 0.1 s: of every algorithm, and one whose edges are flights of
+/// minutes.
 void limited_search(benchmark::State& state, const Problem& problem) {
     for ([[maybe_unused]] auto _ : state) {
         benchmark::DoNotOptimize(solve(problem).planning.iterations);

@@ -185,6 +185,6 @@ TEST_CASE("Every line of what is wrong says which program found it") {
     const Result result = work.run("aeromap info grid.csv");
     CHECK(result.code == 2);
     CHECK(result.err ==
-          "downwash: grid.csv:2:5: factor is 'a': expected a number\n"
-          "downwash: grid.csv:3:5: factor is 'b': expected a number\n");
+          "downwash: grid.csv:2:5: factor is 'a': expected a number from 0 to 100\n"
+          "downwash: grid.csv:3:5: factor is 'b': expected a number from 0 to 100\n");
 }

@@ -50,7 +50,8 @@ TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without
         Words found;
         const auto answer = work.run("aeromap hold", work / "capped.yaml",
                                      "--arm-deg 90 --at 1 9.7 --at 1 9.86 --at 1 9.87 --at 1 9.88 --json");
-        for (const auto& point : answer.json().at("points")) {
+        const nlohmann::json points = answer.json().at("points");
+        for (const auto& point : points) {
             CHECK(point.at("stability").is_object());
             found.push_back(point.at("verdict"));
         }

@@ -111,7 +111,7 @@ TEST_CASE("What cannot be plotted is rejected with a remedy, and leaves no file"
     for (const auto& [arguments, reason] : {
              std::pair{"a.bmp", "ends in .svg, .png or .pdf"},
              {"no-such-folder/a.svg", "no-such-folder/a.svg"},
-             {"a.svg --flow --z-over-r 1", "wants one of PROBLEM"},
+             {"a.svg --flow --z-over-r 1", "needs one of PROBLEM"},
              {"a.svg --what facter", "factor"},
              {"a.svg --rotor 0", "--rotor 0"},
              {"a.svg --rotor 99", "--rotor 99"},
@@ -119,7 +119,7 @@ TEST_CASE("What cannot be plotted is rejected with a remedy, and leaves no file"
              {"a.svg --x 2 2", "--x 2 2"},
              {"a.svg --z 1 1e9", "--z 1"},
              {"a.svg --x 0 1000 --z 0 1", "40 times"},
-             {"a.svg --width 20", "--width 20"},
+             {"a.svg --width 20", "--width: Value 20 not in range 400 to 8000"},
              {"a.svg --arm-deg 90", "--arm-deg changes nothing in this picture: it goes with PROBLEM"},
              {"a.svg --what hold --rotor 2", "--rotor changes nothing"},
              {"a.svg --what force --lateral 0", "--lateral changes nothing"},
@@ -132,7 +132,7 @@ TEST_CASE("What cannot be plotted is rejected with a remedy, and leaves no file"
         check(words(problem_file("open_air"), "-o", arguments), reason);
     }
     for (const auto& [arguments, reason] : {
-             std::pair{"", "wants one of PROBLEM"},
+             std::pair{"", "needs one of PROBLEM"},
              {"--model he --what factor", "--what changes nothing"},
              {"--model he --x 0 1", "--x changes nothing"},
              {"--model he --surface ground", "it goes with --data"},

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/fitting/effect_comparison.hpp"
 #include "downwash/effects/measurements.hpp"
+#include "downwash/fitting/effect_comparison.hpp"
 
 /// Whatever is read as measurements can be compared and fitted, or is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
