@@ -59,14 +59,10 @@ void tick_with_direct_effect(benchmark::State& state) {
 }
 BENCHMARK(tick_with_direct_effect);
 
-struct Query {
-    double x_m, z_m, pitch_rad, arm_rad;
-};
-
-std::vector<Query> random_queries(const Bounds& bounds) {
+std::vector<PlanarPose> random_queries(const Bounds& bounds) {
     test::Random random(1);
-    std::vector<Query> queries(4096);
-    for (Query& q : queries) {
+    std::vector<PlanarPose> queries(4096);
+    for (PlanarPose& q : queries) {
         q = {random.uniform(bounds.x_low_m, bounds.x_high_m), random.uniform(bounds.z_low_m, bounds.z_high_m),
              random.uniform(-0.2, 0.2), random.uniform(-3, 3)};
     }
@@ -76,9 +72,9 @@ std::vector<Query> random_queries(const Bounds& bounds) {
 /// One query of something, at random poses within the bounds.
 template <class Ask>
 void each_query(benchmark::State& state, const Ask& ask) {
-    const std::vector<Query> queries = random_queries(Bridge::get().problem.bounds);
+    const std::vector<PlanarPose> queries = random_queries(Bridge::get().problem.bounds);
     for ([[maybe_unused]] auto _ : state) {
-        for (const Query& q : queries) {
+        for (const PlanarPose& q : queries) {
             benchmark::DoNotOptimize(ask(q));
         }
     }
@@ -86,27 +82,27 @@ void each_query(benchmark::State& state, const Ask& ask) {
 }
 
 void map_look_up(benchmark::State& state) {
-    each_query(state, [&map = *Bridge::get().map](const Query& q) { return map.factor(0, q.x_m, q.z_m); });
+    each_query(state, [&map = *Bridge::get().map](const PlanarPose& q) { return map.factor(0, q.x_m, q.z_m); });
 }
 BENCHMARK(map_look_up);
 
 void direct_effect(benchmark::State& state) {
-    each_query(state, [&effect = Bridge::get().model->effect(0)](const Query& q) {
+    each_query(state, [&effect = Bridge::get().model->effect(0)](const PlanarPose& q) {
         return effect.factor({q.x_m, 0.32, q.z_m});
     });
 }
 BENCHMARK(direct_effect);
 
 void collision_check(benchmark::State& state) {
-    each_query(state, [&collisions = Bridge::get().model->collisions()](const Query& q) {
-        return collisions.is_nearer_than({q.x_m, q.z_m, q.pitch_rad, q.arm_rad}, 0.05);
+    each_query(state, [&collisions = Bridge::get().model->collisions()](const PlanarPose& q) {
+        return collisions.is_nearer_than(q, 0.05);
     });
 }
 BENCHMARK(collision_check);
 
 void clearance(benchmark::State& state) {
-    each_query(state, [&collisions = Bridge::get().model->collisions()](const Query& q) {
-        return collisions.clearance_m({q.x_m, q.z_m, q.pitch_rad, q.arm_rad});
+    each_query(state, [&collisions = Bridge::get().model->collisions()](const PlanarPose& q) {
+        return collisions.clearance_m(q);
     });
 }
 BENCHMARK(clearance);
