@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,7 @@ struct UsageError : std::runtime_error {
 template <class Table>
 [[nodiscard]] std::vector<std::string_view> names_of(const Table& table) {
     std::vector<std::string_view> names;
+    names.reserve(std::size(table));
     for (const auto& entry : table) {
         names.emplace_back(entry.name);
     }
