@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <stdexcept>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
