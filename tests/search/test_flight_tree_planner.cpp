@@ -23,19 +23,21 @@ Problem with_wall() {
     return problem;
 }
 
-/// Searches a problem, asking `counts` about every better plan.
-struct Search {
-    Search(
-        std::uint64_t iterations, std::function<bool(const planning::Candidate&)> survives,
-        const std::function<bool()>& is_over = [] { return false; }, int threads = 1,
-        Problem searched = test::ceiling_problem())
-        : problem(std::move(searched)), planner(ompl.information, task, threads) {
+/// The planner as somebody else's program uses it: all that the contract of ompl::base::Planner offers, nothing else.
+struct AsPlanner {
+    explicit AsPlanner(Problem given = test::ceiling_problem(), int threads = 1)
+        : problem(std::move(given)), planner(ompl.information, task, threads) {
         planner.setProblemDefinition(ompl.definition);
-        planner.set_hooks({std::move(survives), {}});
-        planner.set_max_iterations(iterations);
-        static_cast<void>(planner.solve(ompl::base::PlannerTerminationCondition(is_over)));
     }
-    [[nodiscard]] const planning::FlightTree& tree() const { return planner.tree(); }
+    /// After so many evaluations of its termination condition the search is over.
+    ompl::base::PlannerStatus solve(int looks) {
+        return planner.solve(ompl::base::PlannerTerminationCondition([&looks] { return --looks < 0; }));
+    }
+    [[nodiscard]] std::size_t vertices() const {
+        ompl::base::PlannerData data(planner.getSpaceInformation());
+        planner.getPlannerData(data);
+        return data.numVertices();
+    }
 
     Problem problem;
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
@@ -44,6 +46,20 @@ struct Search {
     planning::Random random{1};
     planning::OmplTask ompl{task, random};
     planning::FlightTreePlanner planner;
+};
+
+/// Searches a problem, asking `survives` about every better plan.
+struct Search : AsPlanner {
+    Search(
+        std::uint64_t iterations, std::function<bool(const planning::Candidate&)> survives,
+        const std::function<bool()>& is_over = [] { return false; }, int threads = 1,
+        Problem searched = test::ceiling_problem())
+        : AsPlanner(std::move(searched), threads) {
+        planner.set_hooks({std::move(survives), {}});
+        planner.set_max_iterations(iterations);
+        static_cast<void>(planner.solve(::ompl::base::PlannerTerminationCondition(is_over)));
+    }
+    [[nodiscard]] const planning::FlightTree& tree() const { return planner.tree(); }
 };
 
 }  // namespace
@@ -169,34 +185,6 @@ TEST_CASE("where nothing is in the way every flight begins at the start") {
     REQUIRE(nodes.size() > 30);
     CHECK(10 * from_start >= static_cast<std::ptrdiff_t>(9 * nodes.size()));
 }
-
-namespace {
-
-/// The planner as somebody else's program uses it: all that the contract of ompl::base::Planner offers, nothing else.
-struct AsPlanner {
-    explicit AsPlanner(Problem given = test::ceiling_problem()) : problem(std::move(given)) {
-        planner.setProblemDefinition(ompl.definition);
-    }
-    /// After so many evaluations of its termination condition the search is over.
-    ompl::base::PlannerStatus solve(int looks) {
-        return planner.solve(ompl::base::PlannerTerminationCondition([&looks] { return --looks < 0; }));
-    }
-    [[nodiscard]] std::size_t vertices() const {
-        ompl::base::PlannerData data(planner.getSpaceInformation());
-        planner.getPlannerData(data);
-        return data.numVertices();
-    }
-
-    Problem problem;
-    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
-    planning::SearchTask task{problem, *model, map.get()};
-    planning::Random random{1};
-    planning::OmplTask ompl{task, random};
-    planning::FlightTreePlanner planner{ompl.information, task};
-};
-
-}  // namespace
 
 TEST_CASE("a solution is handed to the problem definition with its cost, every moment of it on the way") {
     AsPlanner search;
