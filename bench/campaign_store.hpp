@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/campaign_schema.hpp"
 #include "downwash/bench/database.hpp"
-#include "downwash/bench/results_layout.hpp"
 
 namespace downwash::bench {
 

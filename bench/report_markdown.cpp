@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "downwash/bench/campaign_report.hpp"
-#include "downwash/bench/results_layout.hpp"
+#include "downwash/bench/campaign_schema.hpp"
 
 namespace downwash::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "downwash/bench/campaign_report.hpp"
-#include "downwash/bench/results_layout.hpp"
+#include "downwash/bench/campaign_schema.hpp"
 
 namespace downwash::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "downwash/base/embedded_file.hpp"
-#include "downwash/cli/command_table.hpp"
+#include "downwash/cli/command_walk.hpp"
 
 DOWNWASH_EMBED_FILE(downwash_completion, DOWNWASH_COMPLETION);
 

@@ -13,7 +13,7 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
-#include "downwash/cli/command_table.hpp"
+#include "downwash/cli/command_walk.hpp"
 #include "downwash/cli/commands.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"

@@ -8,7 +8,7 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
-#include "downwash/cli/command_table.hpp"
+#include "downwash/cli/command_walk.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/output.hpp"

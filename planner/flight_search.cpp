@@ -9,7 +9,7 @@
 #include "downwash/search/flight_space.hpp"
 #include "downwash/search/flight_tree_planner.hpp"
 #include "downwash/search/quiet_ompl.hpp"
-#include "downwash/search/search_tree.hpp"
+#include "downwash/search/tree_record.hpp"
 
 namespace downwash::planning {
 namespace {

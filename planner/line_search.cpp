@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "downwash/planner/search_clock.hpp"
-#include "downwash/rivals/mp_arm.hpp"
+#include "downwash/rivals/geometric_planners.hpp"
 #include "downwash/search/planned_flights.hpp"
 
 namespace downwash::planning {

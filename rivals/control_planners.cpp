@@ -14,7 +14,7 @@
 #include "downwash/rivals/ompl_parameters.hpp"
 #include "downwash/rivals/seeded.hpp"
 #include "downwash/search/quiet_ompl.hpp"
-#include "downwash/search/search_tree.hpp"
+#include "downwash/search/tree_record.hpp"
 
 namespace downwash::planning {
 namespace {

@@ -11,7 +11,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/scene/convex.hpp"
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

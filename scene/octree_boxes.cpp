@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

@@ -11,7 +11,7 @@
 #include "downwash/scene/mesh_surface.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/octree_boxes.hpp"
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "downwash/scene/scene.hpp"
+#include "downwash/scene/scene_solids.hpp"
 #include "downwash/scene/seen_from_above.hpp"
-#include "downwash/scene/solids.hpp"
 
 namespace downwash {
 namespace {

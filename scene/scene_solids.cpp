@@ -1,4 +1,4 @@
-#include "downwash/scene/solids.hpp"
+#include "downwash/scene/scene_solids.hpp"
 
 #include <algorithm>
 

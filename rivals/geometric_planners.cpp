@@ -1,4 +1,4 @@
-#include "downwash/rivals/mp_arm.hpp"
+#include "downwash/rivals/geometric_planners.hpp"
 
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/ProblemDefinition.h>
@@ -19,7 +19,7 @@
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/search/ompl_space.hpp"
 #include "downwash/search/quiet_ompl.hpp"
-#include "downwash/search/search_tree.hpp"
+#include "downwash/search/tree_record.hpp"
 #include "downwash/simulation/flight.hpp"
 
 namespace downwash::planning {

@@ -1,4 +1,4 @@
-#include "downwash/search/search_tree.hpp"
+#include "downwash/search/tree_record.hpp"
 
 #include <ompl/base/PlannerData.h>
 

@@ -1,4 +1,4 @@
-#include "downwash/bench/results_layout.hpp"
+#include "downwash/bench/campaign_schema.hpp"
 
 #include "downwash/base/version.hpp"
 
