@@ -117,8 +117,7 @@ std::vector<KeyError> configurations_outside_bounds(const Problem& p) {
 std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
     return in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
         if (!goal.configuration || !goal.configuration->arm_rad ||
-            arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad,
-                            usable_tolerance_share * goal.configuration->tolerance_rad)) {
+            arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad, tolerance_of(goal).usable().angle_rad)) {
             return {};
         }
         return {
@@ -128,7 +127,7 @@ std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
 
 std::vector<KeyError> configurations_in_collision(const ProblemCheck& check) {
     return in_each_goal(check, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
-        if (!goal.configuration || has_clear_configuration(check, goal)) {
+        if (!goal.configuration || reach_of(check, goal) != Reach::blocked) {
             return {};
         }
         return {{key + ".configuration",
@@ -147,7 +146,7 @@ std::vector<KeyError> end_effector_out_of_reach(const ProblemCheck& check, const
         return {{key, "is out of reach: from anywhere within the bounds the arm of " + to_text(p.robot.arm.length_m) +
                           " m misses it by " + rounded(missing_m) + " m; widen environment.bounds or move the goal"}};
     }
-    switch (reach_of_end_effector(check, goal)) {
+    switch (reach_of(check, goal)) {
         case Reach::clear:
             return {};
         case Reach::none:

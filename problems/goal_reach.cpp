@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/plant_model.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -22,8 +24,7 @@ struct Offset {
 /// show that there is no pose.
 constexpr double widest_m = 2;
 
-/// Offsets within the usable part of a tolerance: rings around its centre or, where x and z have tolerances of their
-/// own, a grid.
+/// Offsets within a tolerance: rings around its centre or, where x and z have tolerances of their own, a grid.
 std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
     const auto steps = [](double half_width_m) {
         constexpr double step_m = 0.25;
@@ -34,7 +35,7 @@ std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
     std::vector<Offset> offsets{{0, 0}};
     if (tolerance.is_disc) {
         for (int ring = 1; ring <= nx; ++ring) {
-            const double radius_m = usable_tolerance_share * tolerance.x_m * ring / nx;
+            const double radius_m = tolerance.x_m * ring / nx;
             const int places = 8 * ring;
             for (int i = 0; i < places; ++i) {
                 const double angle = i * turn_rad / places;
@@ -45,8 +46,7 @@ std::vector<Offset> offsets_within(const GoalTolerance& tolerance) {
     }
     for (int i = -nx; i <= nx; ++i) {
         for (int k = -nz; k <= nz; ++k) {
-            offsets.push_back(
-                {usable_tolerance_share * tolerance.x_m * i / nx, usable_tolerance_share * tolerance.z_m * k / nz});
+            offsets.push_back({tolerance.x_m * i / nx, tolerance.z_m * k / nz});
         }
     }
     return offsets;
@@ -56,11 +56,11 @@ bool is_too_wide_to_try(const GoalTolerance& tolerance) {
     return std::max(tolerance.x_m, tolerance.z_m) > widest_m;
 }
 
-/// Angles that the arm can turn to within the usable part of a tolerance around another, at most half a degree apart,
-/// the ends of the tolerance and limits of the arm among them; more than half a turn leaves every angle.
+/// Angles that the arm can turn to within a tolerance around another, at most half a degree apart, the ends of the
+/// tolerance and limits of the arm among them; more than half a turn leaves every angle.
 std::vector<double> angles_within(double middle_rad, double tolerance_rad, const ArmParameters& arm) {
     constexpr double step_rad = turn_rad / 720;
-    const double max_rad = std::min(usable_tolerance_share * tolerance_rad, turn_rad / 2);
+    const double max_rad = std::min(tolerance_rad, turn_rad / 2);
     const int steps = static_cast<int>(std::ceil(max_rad / step_rad));
     std::vector<double> angles{middle_rad};
     for (int i = 1; i <= steps; ++i) {
@@ -76,9 +76,9 @@ std::vector<double> angles_within(double middle_rad, double tolerance_rad, const
     return angles;
 }
 
-bool is_within(const Bounds& bounds, double x_m, double z_m) {
-    return x_m >= bounds.x_low_m - rounding_m && x_m <= bounds.x_high_m + rounding_m &&
-           z_m >= bounds.z_low_m - rounding_m && z_m <= bounds.z_high_m + rounding_m;
+bool is_within(const Bounds& bounds, const Configuration& at) {
+    return at.x_m >= bounds.x_low_m - rounding_m && at.x_m <= bounds.x_high_m + rounding_m &&
+           at.z_m >= bounds.z_low_m - rounding_m && at.z_m <= bounds.z_high_m + rounding_m;
 }
 
 }  // namespace
@@ -114,48 +114,34 @@ double missing_reach_m(const Problem& problem, const Goal& wanted) {
     return std::max(too_far_m, too_near_m);
 }
 
-Reach reach_of_end_effector(const ProblemCheck& check, const Goal& wanted) {
+Reach reach_of(const ProblemCheck& check, const Goal& wanted) {
     const Problem& problem = check.problem();
-    const EndEffectorGoal& goal = *wanted.end_effector;
     const ArmParameters& arm = problem.robot.arm;
     const CollisionChecker& checker = check.collisions();
-    const double tolerance_rad = goal.direction_rad ? goal.direction_tolerance_rad : turn_rad;
-    const std::vector<double> angles = angles_within(goal.direction_rad.value_or(0), tolerance_rad, arm);
+    const GoalTolerance tolerance = tolerance_of(wanted);
+    const auto& configuration = wanted.configuration;
+    if (configuration && !(configuration->x_m && configuration->z_m && configuration->arm_rad)) {
+        return Reach::clear;
+    }
+    // Where the arm reaches does not depend on the rotors, which may have errors of their own.
+    const PlantModel plant = make_plant_model(problem.robot.multirotor, arm, {});
+    const std::optional<double> angle_rad = level_arm_rad(wanted);
+    const std::vector<double> angles =
+        angles_within(angle_rad.value_or(0), angle_rad ? tolerance.usable().angle_rad : turn_rad, arm);
     Reach reach = Reach::none;
-    for (const Offset& offset : offsets_within(tolerance_of(wanted))) {
-        for (const double angle_rad : angles) {
-            const double x_m = goal.x_m + offset.x - arm.length_m * std::cos(angle_rad) - arm.joint_x_m;
-            const double z_m = goal.z_m + offset.z + arm.length_m * std::sin(angle_rad) - arm.joint_z_m;
-            if (!is_within(problem.bounds, x_m, z_m)) {
+    for (const Offset& offset : offsets_within(tolerance.usable())) {
+        for (const double arm_rad : angles) {
+            const Configuration at = placed_at(wanted, plant, {0, 0, arm_rad}, offset.x, offset.z);
+            if (!is_within(problem.bounds, at)) {
                 continue;
             }
-            if (!checker.is_nearer_than({x_m, z_m, 0, angle_rad}, problem.planner.safety_margin_m)) {
+            if (!checker.is_nearer_than(level_at(at), problem.planner.safety_margin_m)) {
                 return Reach::clear;
             }
             reach = Reach::blocked;
         }
     }
-    return is_too_wide_to_try(tolerance_of(wanted)) ? Reach::clear : reach;
-}
-
-bool has_clear_configuration(const ProblemCheck& check, const Goal& wanted) {
-    const Problem& problem = check.problem();
-    const ConfigurationGoal& goal = *wanted.configuration;
-    const GoalTolerance tolerance = tolerance_of(wanted);
-    if (!goal.x_m || !goal.z_m || !goal.arm_rad || is_too_wide_to_try(tolerance)) {
-        return true;
-    }
-    const CollisionChecker& checker = check.collisions();
-    const std::vector<double> angles = angles_within(*goal.arm_rad, goal.tolerance_rad, problem.robot.arm);
-    for (const Offset& offset : offsets_within(tolerance)) {
-        for (const double angle_rad : angles) {
-            const PlanarPose pose{*goal.x_m + offset.x, *goal.z_m + offset.z, 0, angle_rad};
-            if (!checker.is_nearer_than(pose, problem.planner.safety_margin_m)) {
-                return true;
-            }
-        }
-    }
-    return false;
+    return is_too_wide_to_try(tolerance) ? Reach::clear : reach;
 }
 
 }  // namespace downwash

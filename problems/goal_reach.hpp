@@ -18,11 +18,8 @@ enum class Reach {
 /// within reach. Exact, obstacles and limits of the arm apart. @pre wanted.end_effector is set
 [[nodiscard]] double missing_reach_m(const Problem& problem, const Goal& wanted);
 
-/// Tries poses around an end-effector goal, half a degree of arm apart. @pre wanted.end_effector is set
-[[nodiscard]] Reach reach_of_end_effector(const ProblemCheck& check, const Goal& wanted);
-
-/// Tries poses within the tolerances of a configuration goal; true when a coordinate is free, as then there are too
-/// many to say no. @pre wanted.configuration is set
-[[nodiscard]] bool has_clear_configuration(const ProblemCheck& check, const Goal& wanted);
+/// Tries poses within the part of a goal's tolerances that a plan may use, half a degree of arm apart. A configuration
+/// goal that leaves a coordinate free counts as clear: it has too many poses to try. @pre wanted has no alternatives
+[[nodiscard]] Reach reach_of(const ProblemCheck& check, const Goal& wanted);
 
 }  // namespace downwash

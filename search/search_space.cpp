@@ -6,7 +6,6 @@
 #include <span>
 
 #include "downwash/base/lane_math.hpp"
-#include "downwash/dynamics/rigid_body.hpp"
 
 namespace downwash::planning {
 
@@ -113,88 +112,36 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
     // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance: where an
     // obstacle, a bound or a limit stands at the goal, only those can do.
     const GoalTolerance tolerance = tolerance_of(goal);
-    const double share = random.chance(0.5) ? usable_tolerance_share : 0;
-    double dx = random.uniform(-1, 1);
-    double dz = random.uniform(-1, 1);
-    const double stretch = tolerance.is_disc ? share / std::max(1.0, std::sqrt(dx * dx + dz * dz)) : share;
-    dx *= stretch * tolerance.x_m;
-    dz *= stretch * tolerance.z_m;
-    const double turn = usable_tolerance_share * tolerance.angle_rad * random.uniform(-1, 1);
-    if (goal.end_effector) {
-        const EndEffectorGoal& point = *goal.end_effector;
-        if (point.direction_rad) {
-            c.arm_rad = into_arm_range(*point.direction_rad + turn, c.arm_rad);
-        }
-        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
-        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
-        c.x_m = point.x_m + dx - tip.x;
-        c.z_m = point.z_m + dz - tip.z;
-        return c;
+    const bool is_beside = random.chance(0.5);
+    const double dx = random.uniform(-1, 1);
+    const double dz = random.uniform(-1, 1);
+    const double turn = tolerance.usable().angle_rad * random.uniform(-1, 1);
+    if (const std::optional<double> angle_rad = level_arm_rad(goal)) {
+        c.arm_rad = into_arm_range(*angle_rad + (goal.end_effector || is_beside ? turn : 0), c.arm_rad);
     }
-    const ConfigurationGoal& pose = *goal.configuration;
-    if (pose.x_m) {
-        c.x_m = *pose.x_m + dx;
-    }
-    if (pose.z_m) {
-        c.z_m = *pose.z_m + dz;
-    }
-    if (pose.arm_rad) {
-        c.arm_rad = into_arm_range(*pose.arm_rad + (share > 0 ? turn : 0), c.arm_rad);
-    }
-    return c;
+    const double radius = tolerance.is_disc ? std::max(1.0, std::sqrt(dx * dx + dz * dz)) : 1;
+    const GoalTolerance beside = tolerance.times(is_beside ? usable_tolerance_share / radius : 0);
+    return placed_at(goal, model_.tick().plant, c, beside.x_m * dx, beside.z_m * dz);
 }
 
 Configuration SearchSpace::moved_into_goal(Configuration c, double share) const {
     return moved_into(nearest_goal(goal_, model_.tick().plant, level_at(c)), c, share);
 }
 
-Configuration SearchSpace::moved_into(const Goal& wanted, Configuration c, double share) const {
-    const GoalTolerance tolerance = tolerance_of(wanted);
-    const auto nearest_angle = [&](double from_rad, double goal_rad) {
-        const double most = share * tolerance.angle_rad;
-        return into_arm_range(goal_rad + std::clamp(lane::wrap_angle(from_rad - goal_rad), -most, most), from_rad);
-    };
-    // What may stay of the deviation from the goal.
-    const auto keep = [&](double& dx, double& dz) {
-        if (!tolerance.is_disc) {
-            dx = std::clamp(dx, -share * tolerance.x_m, share * tolerance.x_m);
-            dz = std::clamp(dz, -share * tolerance.z_m, share * tolerance.z_m);
-            return;
-        }
-        const double most = share * tolerance.x_m;
-        const double distance = std::sqrt(dx * dx + dz * dz);
-        const double part = distance > most ? most / distance : 1;
-        dx *= part;
-        dz *= part;
-    };
-    if (wanted.end_effector) {
-        const EndEffectorGoal& goal = *wanted.end_effector;
-        if (goal.direction_rad) {
-            c.arm_rad = nearest_angle(c.arm_rad, *goal.direction_rad);
-        }
-        const auto attitude = dynamics::attitude(model_.tick().plant, 0.0, c.arm_rad);
-        const auto tip = dynamics::end_effector_position(model_.tick().plant, attitude, 0.0, 0.0);
-        double dx = c.x_m + tip.x - goal.x_m;
-        double dz = c.z_m + tip.z - goal.z_m;
-        keep(dx, dz);
-        c.x_m = goal.x_m + dx - tip.x;
-        c.z_m = goal.z_m + dz - tip.z;
-        return c;
+Configuration SearchSpace::moved_into(const Goal& goal, Configuration c, double share) const {
+    const GoalTolerance limit = tolerance_of(goal).times(share);
+    if (const std::optional<double> angle_rad = level_arm_rad(goal)) {
+        const double turn = std::clamp(lane::wrap_angle(c.arm_rad - *angle_rad), -limit.angle_rad, limit.angle_rad);
+        c.arm_rad = into_arm_range(*angle_rad + turn, c.arm_rad);
     }
-    const ConfigurationGoal& goal = *wanted.configuration;
-    double dx = goal.x_m ? c.x_m - *goal.x_m : 0;
-    double dz = goal.z_m ? c.z_m - *goal.z_m : 0;
-    keep(dx, dz);
-    if (goal.x_m) {
-        c.x_m = *goal.x_m + dx;
+    const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c));
+    if (!limit.is_disc) {
+        return placed_at(goal, model_.tick().plant, c, std::clamp(d.x_m, -limit.x_m, limit.x_m),
+                         std::clamp(d.z_m, -limit.z_m, limit.z_m));
     }
-    if (goal.z_m) {
-        c.z_m = *goal.z_m + dz;
-    }
-    if (goal.arm_rad) {
-        c.arm_rad = nearest_angle(c.arm_rad, *goal.arm_rad);
-    }
-    return c;
+    const double distance = std::sqrt(d.x_m * d.x_m + d.z_m * d.z_m);
+    const double part = distance > limit.x_m ? limit.x_m / distance : 1;
+    return placed_at(goal, model_.tick().plant, c, part * d.x_m, part * d.z_m);
 }
 
 std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
@@ -238,13 +185,12 @@ double SearchSpace::goal_distance_m(const Configuration& c) const {
 GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configuration& c) const {
     const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c));
     const GoalTolerance tolerance = tolerance_of(goal);
-    const auto beyond = [](double deviation, double most) {
-        return std::max(0.0, std::abs(deviation) - usable_tolerance_share * most);
-    };
+    const GoalTolerance usable = tolerance.usable();
+    const auto beyond = [](double deviation, double limit) { return std::max(0.0, std::abs(deviation) - limit); };
     const auto length = [](double x, double z) { return std::sqrt(x * x + z * z); };
-    return {tolerance.is_disc ? beyond(length(d.x_m, d.z_m), tolerance.x_m)
-                              : length(beyond(d.x_m, tolerance.x_m), beyond(d.z_m, tolerance.z_m)),
-            beyond(d.angle_rad, tolerance.angle_rad), tolerance.used_share(d)};
+    return {usable.is_disc ? beyond(length(d.x_m, d.z_m), usable.x_m)
+                           : length(beyond(d.x_m, usable.x_m), beyond(d.z_m, usable.z_m)),
+            beyond(d.angle_rad, usable.angle_rad), tolerance.used_share(d)};
 }
 
 bool SearchSpace::is_inside(const Configuration& c) const noexcept {

@@ -96,7 +96,7 @@ class SearchSpace {
 
  private:
     [[nodiscard]] Configuration moved_to(const Goal& goal, Configuration configuration, Random& random) const;
-    [[nodiscard]] Configuration moved_into(const Goal& wanted, Configuration configuration, double share) const;
+    [[nodiscard]] Configuration moved_into(const Goal& goal, Configuration configuration, double share) const;
     /// The same direction of the arm as an angle within its limits, of several the one nearest to another angle; where
     /// none is within, and without limits, the least that is no smaller than arm_low_rad().
     [[nodiscard]] double into_arm_range(double arm_rad, double near_rad) const noexcept;

@@ -41,6 +41,14 @@ std::span<const Goal> alternatives(const Goal& goal) noexcept {
     return goal.any_of.empty() ? std::span<const Goal>(&goal, 1) : std::span<const Goal>(goal.any_of);
 }
 
+GoalTolerance GoalTolerance::times(double share) const noexcept {
+    return {share * x_m, share * z_m, is_disc, share * angle_rad};
+}
+
+GoalTolerance GoalTolerance::usable() const noexcept {
+    return times(usable_tolerance_share);
+}
+
 double GoalTolerance::used_share(const GoalDeviation& d) const noexcept {
     const double of_place = is_disc ? distance_m(d) / x_m : std::max(std::abs(d.x_m) / x_m, std::abs(d.z_m) / z_m);
     return std::max(of_place, d.angle_rad / angle_rad);
@@ -56,6 +64,19 @@ GoalTolerance tolerance_of(const Goal& goal) noexcept {
 
 GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
     return goal.end_effector ? deviation(*goal.end_effector, model, pose) : deviation(*goal.configuration, pose);
+}
+
+std::optional<double> level_arm_rad(const Goal& goal) noexcept {
+    return goal.end_effector ? goal.end_effector->direction_rad : goal.configuration->arm_rad;
+}
+
+Configuration placed_at(const Goal& goal, const PlantModel& model, Configuration c, double dx_m, double dz_m) {
+    if (goal.end_effector) {
+        const auto tip = dynamics::end_effector_position(model, dynamics::attitude(model, 0.0, c.arm_rad), 0.0, 0.0);
+        return {goal.end_effector->x_m + dx_m - tip.x, goal.end_effector->z_m + dz_m - tip.z, c.arm_rad};
+    }
+    const ConfigurationGoal& pose = *goal.configuration;
+    return {pose.x_m ? *pose.x_m + dx_m : c.x_m, pose.z_m ? *pose.z_m + dz_m : c.z_m, c.arm_rad};
 }
 
 GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
@@ -85,10 +106,8 @@ double motion_within_goal_m(const Goal& goal, const PlantModel& model, const Pla
     // The arm's direction turns by at most motion / length, the body by motion / reach, and their difference is the
     // arm's angle.
     const double turn_per_m = 1 / model.arm_length_m + (nearest.configuration ? 1 / body_reach_m : 0);
-    const bool has_angle = nearest.configuration ? nearest.configuration->arm_rad.has_value()
-                                                 : nearest.end_effector->direction_rad.has_value();
     const double angle_left_m = (tolerance.angle_rad - d.angle_rad) / turn_per_m;
-    return has_angle ? std::min(distance_left_m, angle_left_m) : distance_left_m;
+    return level_arm_rad(nearest) ? std::min(distance_left_m, angle_left_m) : distance_left_m;
 }
 
 }  // namespace downwash

@@ -55,6 +55,12 @@ struct GoalTolerance {
     bool is_disc = true;
     double angle_rad = 0;
 
+    /// So large a part of it.
+    [[nodiscard]] DOWNWASH_EXPORT GoalTolerance times(double share) const noexcept;
+
+    /// The part that a planned reference may use: usable_tolerance_share.
+    [[nodiscard]] DOWNWASH_EXPORT GoalTolerance usable() const noexcept;
+
     /// The greatest share of the tolerance that a deviation uses; 1 at its boundary.
     [[nodiscard]] DOWNWASH_EXPORT double used_share(const GoalDeviation& deviation) const noexcept;
 };
@@ -65,6 +71,15 @@ struct GoalTolerance {
 /// The deviation of a pose from a goal without alternatives.
 [[nodiscard]] DOWNWASH_EXPORT GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model,
                                                            const PlanarPose& pose);
+
+/// The arm angle with which the level vehicle has the angle that a goal without alternatives asks for; empty when the
+/// goal leaves it free.
+[[nodiscard]] DOWNWASH_EXPORT std::optional<double> level_arm_rad(const Goal& goal) noexcept;
+
+/// Inverse kinematics: the level vehicle that deviates by (dx, dz) [m] from a goal without alternatives, with its arm
+/// as it stands. What the goal leaves free is kept.
+[[nodiscard]] DOWNWASH_EXPORT Configuration placed_at(const Goal& goal, const PlantModel& model,
+                                                      Configuration configuration, double dx_m, double dz_m);
 
 /// How far a vehicle is from a goal.
 struct GoalError {

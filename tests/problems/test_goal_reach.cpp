@@ -26,12 +26,12 @@ TEST_CASE("a pose between the angles of a coarse grid is found") {
     arm.lower_limit_rad = 10.1 / degrees_per_radian;
     arm.upper_limit_rad = 10.4 / degrees_per_radian;
     problem.goal.end_effector->z_m = 3;
-    CHECK(reach_of_end_effector(ProblemCheck(problem), problem.goal) == Reach::clear);
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::clear);
     problem.goal.end_effector->direction_rad = 10.7 / degrees_per_radian;
     problem.goal.end_effector->direction_tolerance_rad = 0.4 / degrees_per_radian;  // nine tenths of it reach 10.34
-    CHECK(reach_of_end_effector(ProblemCheck(problem), problem.goal) == Reach::clear);
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::clear);
     problem.goal.end_effector->direction_rad = 10.8 / degrees_per_radian;
-    CHECK(reach_of_end_effector(ProblemCheck(problem), problem.goal) == Reach::none);
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::none);
 }
 
 TEST_CASE("of a wide tolerance of the arm the one angle that is clear is found") {
@@ -50,9 +50,9 @@ TEST_CASE("of a wide tolerance of the arm the one angle that is clear is found")
                                                   {std::cos(angle_rad), 0, 2.5 - std::sin(angle_rad)}));
         }
     }
-    CHECK(has_clear_configuration(ProblemCheck(problem), problem.goal));
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::clear);
     problem.obstacles.push_back(test::box("beam 45", {0.15, 8, 0.15}, {std::sqrt(0.5), 0, 2.5 - std::sqrt(0.5)}));
-    CHECK_FALSE(has_clear_configuration(ProblemCheck(problem), problem.goal));
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::blocked);
 }
 
 TEST_CASE("a gap anywhere in a wide disc is found, and a very wide one is left to the search") {
@@ -65,9 +65,9 @@ TEST_CASE("a gap anywhere in a wide disc is found, and a very wide one is left t
     goal.tolerance_m = 1.5;
     problem.obstacles.push_back(test::box("left", {6, 8, 5}, {0.4 - 3, 0, 2.5}));
     problem.obstacles.push_back(test::box("right", {6, 8, 5}, {1.7 + 3, 0, 2.5}));
-    CHECK(has_clear_configuration(ProblemCheck(problem), problem.goal));
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::clear);
     problem.obstacles.push_back(test::box("between", {2, 8, 5}, {1, 0, 2.5}));
-    CHECK_FALSE(has_clear_configuration(ProblemCheck(problem), problem.goal));
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::blocked);
     goal.tolerance_m = 3;
-    CHECK(has_clear_configuration(ProblemCheck(problem), problem.goal));
+    CHECK(reach_of(ProblemCheck(problem), problem.goal) == Reach::clear);
 }
