@@ -10,8 +10,17 @@ std::string Experiment::name() const {
     return problem + ", " + objective;
 }
 
+std::string text_of(const ParameterValues& parameters) {
+    std::string text;
+    for (const auto& [name, value] : parameters) {
+        text += (text.empty() ? "" : ", ") + name + " " + to_text(value);
+    }
+    return text;
+}
+
 std::string PlannerSetup::name() const {
     return std::string(downwash::name_of(variant)) + " " + algorithm +
+           (parameters.empty() ? "" : ", " + text_of(parameters)) +
            (margin_m ? ", margin " + to_text(*margin_m) + " m" : "");
 }
 

@@ -21,13 +21,17 @@ struct Experiment {
     bool operator==(const Experiment&) const = default;
 };
 
+/// "goal_bias 0.2, range_share 0.3"; empty for none.
+[[nodiscard]] std::string text_of(const ParameterValues& parameters);
+
 /// One way to plan.
 struct PlannerSetup {
     Variant variant = Variant::mp_arm_ada;
     std::string algorithm;
-    std::optional<double> margin_m;  ///< empty: the problem's own
+    std::optional<double> margin_m = {};  ///< empty: the problem's own
+    ParameterValues parameters = {};      ///< over the problem's own
 
-    [[nodiscard]] std::string name() const;  ///< "mp-arm-ada rrt-star, margin 0.1 m"
+    [[nodiscard]] std::string name() const;  ///< "mp-arm-ada rrt-star, goal_bias 0.2, margin 0.1 m"
     bool operator==(const PlannerSetup&) const = default;
 };
 

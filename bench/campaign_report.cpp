@@ -238,24 +238,27 @@ std::optional<double> safe_margin(const CampaignReport& report, const std::vecto
 
 void find_margins(CampaignReport& report) {
     const std::vector<PlannerSetup>& planners = report.plan.planners;
-    std::vector<std::pair<Variant, std::string>> kinds;
+    const auto without_margin = [](PlannerSetup planner) {
+        planner.margin_m.reset();
+        return planner;
+    };
+    std::vector<PlannerSetup> kinds;
     for (const PlannerSetup& planner : planners) {
-        const std::pair kind(planner.variant, planner.algorithm);
-        if (planner.margin_m && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
-            kinds.push_back(kind);
+        if (planner.margin_m && std::find(kinds.begin(), kinds.end(), without_margin(planner)) == kinds.end()) {
+            kinds.push_back(without_margin(planner));
         }
     }
-    for (const auto& kind : kinds) {
+    for (const PlannerSetup& kind : kinds) {
         std::vector<std::size_t> of_kind;
         for (std::size_t p = 0; p < planners.size(); ++p) {
-            if (planners[p].variant == kind.first && planners[p].algorithm == kind.second) {
+            if (without_margin(planners[p]) == kind) {
                 of_kind.push_back(p);
             }
         }
         if (of_kind.size() < 2) {
             continue;
         }
-        MarginFinding finding{kind.first, kind.second, safe_margin(report, of_kind, {}), {}, {}};
+        MarginFinding finding{kind, safe_margin(report, of_kind, {}), {}, {}};
         for (std::size_t e = 0; e < report.plan.experiments.size(); ++e) {
             if (finding.safe_margin_m) {
                 finding.solved_when_safe.push_back(solved_with(report, of_kind, e, *finding.safe_margin_m));

@@ -87,8 +87,7 @@ struct SafeMargin {
 
 /// The results of a variant and algorithm for increasing margins.
 struct MarginFinding {
-    Variant variant = Variant::mp_arm;
-    std::string algorithm;
+    PlannerSetup planner;  ///< without its margin
     /// The minimum margin from which on no flight failed on any problem; empty when there is none.
     std::optional<double> safe_margin_m;
     /// Solved shares at that margin by experiment; empty without one.

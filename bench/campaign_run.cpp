@@ -11,6 +11,7 @@
 #include "downwash/base/version.hpp"
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/bench/machine.hpp"
+#include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
 namespace downwash::bench {
@@ -23,6 +24,11 @@ std::string listed(const Values& values, const Text& text) {
         list += (list.empty() ? "" : " ") + std::string(text(value));
     }
     return list;
+}
+
+/// "{goal_bias 0.2} {}"
+std::string listed_sets(const std::vector<ParameterValues>& sets) {
+    return listed(sets, [](const ParameterValues& set) { return "{" + text_of(set) + "}"; });
 }
 
 std::string target_text(const CampaignExpectation& target) {
@@ -72,6 +78,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"objectives",
          c.objectives ? listed(*c.objectives, [](Objective o) { return downwash::name_of(o); }) : "each problem's own"},
         {"margins_m", c.margins_m ? listed(*c.margins_m, [](double m) { return to_text(m); }) : "each problem's own"},
+        {"parameters", c.parameters.empty() ? "each problem's own" : listed_sets(c.parameters)},
         {"seeds", seeds_text(c.seeds.all())}};
     for (const Problem& problem : read.problems) {
         settings.emplace_back("problem " + problem.name, problem_sha256(problem));
@@ -96,11 +103,23 @@ void apply(const PlannerSetup& planner, Problem& problem) {
     if (planner.margin_m) {
         problem.planner.safety_margin_m = *planner.margin_m;
     }
+    // Parameters of the problem may be those of another algorithm.
+    std::erase_if(problem.planner.parameters, [&](const auto& parameter) {
+        return algorithm_parameter(problem.planner, parameter.first) == nullptr;
+    });
+    for (const auto& [name, value] : planner.parameters) {
+        problem.planner.parameters[name] = value;
+    }
 }
 
-/// Why a variant cannot be planned with an algorithm; empty when it can.
+/// Why a variant cannot be planned with an algorithm and parameters; empty when it can.
 std::string error_of_combination(Problem problem, const PlannerSetup& planner) {
     apply(planner, problem);
+    for (const auto& [name, value] : planner.parameters) {
+        if (algorithm_parameter(problem.planner, name) == nullptr) {
+            return planner.name() + ": the algorithm has no parameter " + name + " for this variant";
+        }
+    }
     for (const KeyError& error : problem_errors(problem)) {
         if (error.key == "planner.algorithm" || error.key == "planner.variant") {
             return planner.name() + ": " + error.key + " " + error.message;
@@ -204,19 +223,24 @@ CampaignPlan plan_of(const ReadCampaign& read) {
             plan.experiments.push_back({problem.name, text_of(objective)});
         }
     }
+    const std::vector<ParameterValues> parameter_sets =
+        c.parameters.empty() ? std::vector<ParameterValues>(1) : c.parameters;
     for (const Variant variant : c.variants) {
         for (const std::string& algorithm : c.algorithms) {
-            if (std::string error = error_of_combination(read.problems.at(0), {variant, algorithm, {}});
-                !error.empty()) {
-                plan.left_out.push_back(std::move(error));
-                continue;
-            }
-            if (!c.margins_m) {
-                plan.planners.push_back({variant, algorithm, {}});
-                continue;
-            }
-            for (const double margin_m : *c.margins_m) {
-                plan.planners.push_back({variant, algorithm, margin_m});
+            for (const ParameterValues& parameters : parameter_sets) {
+                PlannerSetup planner{variant, algorithm, {}, parameters};
+                if (std::string error = error_of_combination(read.problems.at(0), planner); !error.empty()) {
+                    plan.left_out.push_back(std::move(error));
+                    continue;
+                }
+                if (!c.margins_m) {
+                    plan.planners.push_back(planner);
+                    continue;
+                }
+                for (const double margin_m : *c.margins_m) {
+                    planner.margin_m = margin_m;
+                    plan.planners.push_back(planner);
+                }
             }
         }
     }

@@ -7,7 +7,7 @@ namespace {
 
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 3;
+constexpr std::uint64_t layout_version = 4;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -21,6 +21,9 @@ CREATE TABLE experiments (
 CREATE TABLE plannerConfigs (
   id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512) NOT NULL, settings TEXT,
   variant TEXT NOT NULL, algorithm TEXT NOT NULL, margin_m REAL);
+CREATE TABLE planner_parameters (
+  plannerid INTEGER, name TEXT, value REAL NOT NULL, PRIMARY KEY (plannerid, name),
+  FOREIGN KEY (plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);
 CREATE TABLE enums (name VARCHAR(512), value INTEGER, description TEXT, PRIMARY KEY (name, value));
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER, plannerid INTEGER,
@@ -37,10 +40,10 @@ CREATE TABLE flights (
   runid INTEGER PRIMARY KEY, outcome TEXT NOT NULL, cost REAL, energy_j REAL, duration_s REAL, length_m REAL,
   min_clearance_m REAL, goal_error_m REAL,
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
-CREATE TABLE refusals (
+CREATE TABLE rejections (
   runid INTEGER, cause TEXT, edges INTEGER NOT NULL, PRIMARY KEY (runid, cause),
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
-CREATE TABLE faults (
+CREATE TABLE errors (
   runid INTEGER PRIMARY KEY, message TEXT NOT NULL,
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
 CREATE TABLE campaign (place INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
@@ -82,9 +85,14 @@ void write_what_runs(const Database& database, const CampaignPlan& plan) {
             "Downwash " + std::string(version()), setting(plan, "host"), setting(plan, "processor"),
             std::to_string(plan.seeds.at(0)), all_settings(plan), experiment.problem, experiment.objective);
     }
-    for (const PlannerSetup& planner : plan.planners) {
-        database.insert("plannerConfigs (name, settings, variant, algorithm, margin_m)", planner.name(), "",
-                        downwash::name_of(planner.variant), planner.algorithm, planner.margin_m);
+    for (std::size_t i = 0; i < plan.planners.size(); ++i) {
+        const PlannerSetup& planner = plan.planners[i];
+        database.insert("plannerConfigs (name, settings, variant, algorithm, margin_m)", planner.name(),
+                        text_of(planner.parameters), downwash::name_of(planner.variant), planner.algorithm,
+                        planner.margin_m);
+        for (const auto& [name, value] : planner.parameters) {
+            database.insert("planner_parameters", std::uint64_t{i + 1}, name, value);
+        }
     }
 }
 
@@ -139,8 +147,12 @@ CampaignPlan read_plan(const Database& database) {
     database.for_each<Text, Text, OptionalNumber>(
         "SELECT variant, algorithm, margin_m FROM plannerConfigs ORDER BY id",
         [&](const Text& variant, const Text& algorithm, const OptionalNumber& margin_m) {
-            plan.planners.push_back({variant_of(variant), algorithm, margin_m});
+            plan.planners.push_back({variant_of(variant), algorithm, margin_m, {}});
         });
+    database.for_each<std::uint64_t, Text, double>("SELECT plannerid, name, value FROM planner_parameters",
+                                                   [&](std::uint64_t planner, const Text& name, double value) {
+                                                       plan.planners.at(planner - 1).parameters[name] = value;
+                                                   });
     database.for_each<std::uint64_t>("SELECT seed FROM campaign_seeds ORDER BY place", [&](std::uint64_t seed) {
         plan.seeds.push_back(static_cast<std::uint32_t>(seed));
     });

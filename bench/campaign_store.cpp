@@ -38,7 +38,7 @@ void require_equal_settings(const CampaignPlan& begun, const CampaignPlan& now, 
     }
 }
 
-/// The columns of runs, flights and faults that read_results() reads, in the order of its function.
+/// The columns of runs, flights and errors that read_results() reads, in the order of its function.
 constexpr const char* run_columns =
     "id, experimentid, plannerid, seed, time, status, time_to_first_solution, best_cost, iterations, edges_simulated, "
     "states_checked, simulated_time, discarded_plans, message, solution_difference";
@@ -104,7 +104,7 @@ void CampaignStore::add(const Run& run) {
     }
     for (const auto& [cause, edges] : run.rejections) {
         if (edges > 0) {
-            database_.insert("refusals", key, cause, edges);
+            database_.insert("rejections", key, cause, edges);
         }
     }
     if (run.flight) {
@@ -113,7 +113,7 @@ void CampaignStore::add(const Run& run) {
                          flight.duration_s, flight.length_m, flight.min_clearance_m, flight.goal_error_m);
     }
     if (!run.error.empty()) {
-        database_.insert("faults", key, run.error);
+        database_.insert("errors", key, run.error);
     }
     database_.run("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?", run.wall_s,
                   std::uint64_t{run.experiment + 1});
@@ -136,7 +136,7 @@ CampaignResults read_results(const std::filesystem::path& folder) {
     std::map<Count, std::size_t> place_of;
     database.for_each<Count, Count, Count, Count, double, Count, OptionalNumber, OptionalNumber, Count, Count, Count,
                       double, Count, std::optional<Text>, OptionalNumber>(
-        "SELECT " + std::string(run_columns) + " FROM runs LEFT JOIN faults ON runs.id = faults.runid ORDER BY id",
+        "SELECT " + std::string(run_columns) + " FROM runs LEFT JOIN errors ON runs.id = errors.runid ORDER BY id",
         [&](Count key, Count experiment, Count planner, Count seed, double wall_s, Count status,
             const OptionalNumber& first_solution_s, const OptionalNumber& cost, Count iterations, Count edges,
             Count states, double simulated_s, Count discarded, const std::optional<Text>& error,
@@ -184,7 +184,7 @@ CampaignResults read_results(const std::filesystem::path& folder) {
     of_runs.operator()<double, Count, double, OptionalNumber>(
         "SELECT runid, time, iterations, best_cost, flown_cost FROM progress ORDER BY runid, time",
         [](Run& run, const auto&... columns) { run.improvements.push_back({columns...}); });
-    of_runs.operator()<Text, Count>("SELECT runid, cause, edges FROM refusals",
+    of_runs.operator()<Text, Count>("SELECT runid, cause, edges FROM rejections",
                                     [](Run& run, const Text& cause, Count edges) { run.rejections[cause] = edges; });
     return results;
 }

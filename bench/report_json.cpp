@@ -78,6 +78,7 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
             {"planner", planner.name()},
             {"variant", downwash::name_of(planner.variant)},
             {"algorithm", planner.algorithm},
+            {"parameters", planner.parameters},
             {"margin_m", optional_json(planner.margin_m)},
             {"missing", cell.missing},
             {"solved", share_json(cell.solved)},
@@ -98,10 +99,15 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
 
 Json totals_json(const CampaignPlan& plan, const PlannerTotals& totals) {
     const PlannerSetup& planner = plan.planners[totals.planner];
-    return {{"planner", planner.name()},           {"variant", downwash::name_of(planner.variant)},
-            {"algorithm", planner.algorithm},      {"margin_m", optional_json(planner.margin_m)},
-            {"solved", share_json(totals.solved)}, {"failed_flights", share_json(totals.failed_flights)},
-            {"held", share_json(totals.held)},     {"discarded", totals.discarded}};
+    return {{"planner", planner.name()},
+            {"variant", downwash::name_of(planner.variant)},
+            {"algorithm", planner.algorithm},
+            {"parameters", planner.parameters},
+            {"margin_m", optional_json(planner.margin_m)},
+            {"solved", share_json(totals.solved)},
+            {"failed_flights", share_json(totals.failed_flights)},
+            {"held", share_json(totals.held)},
+            {"discarded", totals.discarded}};
 }
 
 Json comparison_json(const CampaignPlan& plan, const PlannerComparison& comparison) {
@@ -129,8 +135,9 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
                             {"solved_when_safe_everywhere",
                              e < finding.solved_when_safe.size() ? share_json(finding.solved_when_safe[e]) : Json()}});
     }
-    return {{"variant", downwash::name_of(finding.variant)},
-            {"algorithm", finding.algorithm},
+    return {{"variant", downwash::name_of(finding.planner.variant)},
+            {"algorithm", finding.planner.algorithm},
+            {"parameters", finding.planner.parameters},
             {"safe_margin_m", optional_json(finding.safe_margin_m)},
             {"experiments", problems}};
 }

@@ -232,7 +232,7 @@ class Document {
         add("## Inflated obstacles\n\nThe minimum safety margin from which on no flight failed, and the goals that are "
             "reached with it.\n\n");
         for (const MarginFinding& finding : report_.margins) {
-            add("**{} {}**: ", downwash::name_of(finding.variant), finding.algorithm);
+            add("**{}**: ", finding.planner.name());
             if (finding.safe_margin_m) {
                 add("safe on all problems from a margin of {} on, with which it solves:\n\n",
                     number_text(*finding.safe_margin_m, " m"));

@@ -101,7 +101,8 @@ std::string latex_of(const CampaignReport& report) {
 std::string csv_of(const CampaignReport& report) {
     const CampaignPlan& plan = report.plan;
     std::string text =
-        "problem,objective,variant,algorithm,margin_m,attempted,missing,solved,solved_low,solved_high,failed_flights,"
+        "problem,objective,variant,algorithm,parameters,margin_m,attempted,missing,solved,solved_low,solved_high,"
+        "failed_flights,"
         "failed_flights_low,failed_flights_high,held,held_low,held_high,discarded,least_clearance_m";
     for (const char* spread : {"first_solution_s", "verified_s", "whole_run_s", "flown_cost"}) {
         for (const char* quantile : {"0", "25", "50", "75", "95"}) {
@@ -112,12 +113,13 @@ std::string csv_of(const CampaignReport& report) {
     for (const CellFigures& cell : report.cells) {
         const Experiment& experiment = plan.experiments[cell.experiment];
         const PlannerSetup& planner = plan.planners[cell.planner];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
                             in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
-                            planner.margin_m ? csv_number(*planner.margin_m) : "", cell.solved.attempts, cell.missing,
-                            csv_share(cell.solved), csv_share(cell.failed_flights), csv_share(cell.held),
-                            cell.discarded, csv_number(cell.min_clearance_m), csv_spread(cell.first_solution_s),
-                            csv_spread(cell.verified_s), csv_spread(cell.answer_s), csv_spread(cell.flown_cost));
+                            in_csv(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
+                            cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
+                            csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m),
+                            csv_spread(cell.first_solution_s), csv_spread(cell.verified_s), csv_spread(cell.answer_s),
+                            csv_spread(cell.flown_cost));
     }
     return text;
 }

@@ -1,6 +1,8 @@
-#include <array>
-
 #include "downwash/problems/algorithms.hpp"
+
+#include <array>
+#include <map>
+#include <utility>
 
 namespace downwash {
 namespace {
@@ -105,6 +107,29 @@ constexpr std::array table{
 
 std::span<const AlgorithmInfo> algorithms() {
     return table;
+}
+
+const std::vector<KnownParameter>& known_parameters() {
+    static const std::vector<KnownParameter> known = [] {
+        std::map<std::string_view, KnownParameter> by_name;
+        for (const AlgorithmInfo& algorithm : table) {
+            for (const auto& parameters : {algorithm.line_parameters, algorithm.flight_parameters}) {
+                for (const AlgorithmParameter& parameter : parameters) {
+                    std::vector<std::string_view>& names =
+                        by_name.try_emplace(parameter.name, KnownParameter{&parameter, {}}).first->second.algorithms;
+                    if (names.empty() || names.back() != algorithm.name) {
+                        names.push_back(algorithm.name);
+                    }
+                }
+            }
+        }
+        std::vector<KnownParameter> all;
+        for (auto& [name, parameter] : by_name) {
+            all.push_back(std::move(parameter));
+        }
+        return all;
+    }();
+    return known;
 }
 
 std::span<const AlgorithmParameter> algorithm_parameters(const PlannerSettings& settings) {

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/base/parameter.hpp"
@@ -40,6 +41,16 @@ struct AlgorithmInfo {
 
 /// Every algorithm that a problem may name.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const AlgorithmInfo> algorithms();
+
+/// A parameter by its name, and the algorithms that have it.
+struct KnownParameter {
+    const AlgorithmParameter* parameter;
+    std::vector<std::string_view> algorithms;
+};
+
+/// Every name that `planner.parameters` may have, in alphabetical order. Algorithms differ in the default of a name at
+/// most, not in what it means.
+[[nodiscard]] DOWNWASH_EXPORT const std::vector<KnownParameter>& known_parameters();
 
 /// The parameters of a problem's algorithm and variant; none for an algorithm that does not exist.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const AlgorithmParameter> algorithm_parameters(const PlannerSettings& settings);

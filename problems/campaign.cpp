@@ -55,6 +55,28 @@ void add_what_runs(Rows& rows) {
             .at_most(100));
 }
 
+void add_algorithm_parameters(Rows& rows) {
+    rows.push_back(parameters::list<Campaign>(
+        "parameters", "sets of algorithm parameters, see `downwash planners`; without it each problem's own",
+        [](auto& c) -> auto& { return c.parameters; }));
+    for (const auto& [parameter, algorithms] : known_parameters()) {
+        auto row = parameters::row<Campaign>(ParameterKind::number, "parameters[]." + std::string(parameter->name),
+                                             parameter->description);
+        row.range = {parameter->low, parameter->high};
+        row.nullable = true;
+        row.get = [name = parameter->name](const Campaign& c, std::size_t i) {
+            const auto set = c.parameters[i].find(name);
+            return set != c.parameters[i].end() ? Value(set->second) : Value();
+        };
+        row.set = [name = std::string(parameter->name)](Campaign& c, std::size_t i, const Value& value) {
+            if (const double* number = std::get_if<double>(&value)) {
+                c.parameters[i][name] = *number;
+            }
+        };
+        rows.push_back(std::move(row));
+    }
+}
+
 void add_seeds(Rows& rows) {
     constexpr double highest = 4294967295.0;
     auto seeds = parameters::group<Campaign>("seeds", "seeds that every search is run with").at_least(0);
@@ -157,6 +179,7 @@ Rows all_rows() {
     rows.push_back(parameters::text<Campaign>(
         "description", "what the campaign is about", [](auto& c) -> auto& { return c.description; }));
     add_what_runs(rows);
+    add_algorithm_parameters(rows);
     add_seeds(rows);
     add_limits(rows);
     add_expectations(rows);

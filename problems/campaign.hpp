@@ -39,7 +39,7 @@ struct CampaignExpectation {
     std::optional<double> cheaper_than_after_s;
 };
 
-/// Problems x objectives x variants x algorithms x margins x seeds, each of which is one run.
+/// Problems x objectives x variants x algorithms x parameters x margins x seeds, each of which is one run.
 struct Campaign {
     std::string name = "campaign";  ///< [A-Za-z0-9_-]{1,64}
     std::string description;
@@ -48,6 +48,8 @@ struct Campaign {
     std::vector<std::string> algorithms{"rrt-star"};
     std::optional<std::vector<Objective>> objectives;  ///< empty: each problem's own, which may be a sum
     std::optional<std::vector<double>> margins_m;      ///< safety margins [m]; empty: each problem's own
+    /// Sets of the algorithms' parameters, each over the problem's own; empty: the problem's own alone.
+    std::vector<ParameterValues> parameters;
     CampaignSeeds seeds;
     /// Wall time of one search [s]. Empty: default_time_limit_s, or none where max_iterations is set.
     std::optional<double> time_limit_s;

@@ -1,11 +1,14 @@
 #include "downwash/problems/campaign_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "downwash/base/text.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/tree_reader.hpp"
 
@@ -15,16 +18,16 @@ namespace {
 std::uint64_t run_count(const Campaign& c) {
     const std::uint64_t seeds = c.seeds.list.empty() ? c.seeds.count : c.seeds.list.size();
     double product = static_cast<double>(seeds);
-    for (const std::size_t factor : {c.problems.size(), c.variants.size(), c.algorithms.size(),
-                                     c.objectives ? c.objectives->size() : 1, c.margins_m ? c.margins_m->size() : 1}) {
+    for (const std::size_t factor :
+         {c.problems.size(), c.variants.size(), c.algorithms.size(), c.objectives ? c.objectives->size() : 1,
+          c.margins_m ? c.margins_m->size() : 1, std::max<std::size_t>(c.parameters.size(), 1)}) {
         product *= static_cast<double>(factor);
     }
     return product < 1e18 ? static_cast<std::uint64_t>(product) : std::numeric_limits<std::uint64_t>::max();
 }
 
-/// Rules over several values of a campaign.
-/// What a bar asks for that the campaign cannot tell.
-void add_errors_of(const Campaign& c, std::size_t i, std::vector<KeyError>& errors) {
+/// What a target asks for that the campaign cannot tell.
+void add_errors_of_target(const Campaign& c, std::size_t i, std::vector<KeyError>& errors) {
     const CampaignExpectation& bar = c.expect[i];
     const std::string path = "expect[" + std::to_string(i) + "].";
     for (const auto& [key, algorithm] : {std::pair{"algorithm", bar.algorithm}, {"cheaper_than", bar.cheaper_than}}) {
@@ -48,6 +51,29 @@ void add_errors_of(const Campaign& c, std::size_t i, std::vector<KeyError>& erro
     }
 }
 
+/// What is wrong with a set of parameters: no algorithm of the campaign has one, or two sets are the same.
+void add_errors_of_parameters(const Campaign& c, std::size_t i, std::vector<KeyError>& errors) {
+    const std::string path = "parameters[" + std::to_string(i) + "]";
+    for (const auto& [parameter, algorithms] : known_parameters()) {
+        const auto set = c.parameters[i].find(parameter->name);
+        if (set == c.parameters[i].end()) {
+            continue;
+        }
+        const std::string key = path + "." + set->first;
+        if (std::find_first_of(c.algorithms.begin(), c.algorithms.end(), algorithms.begin(), algorithms.end()) ==
+            c.algorithms.end()) {
+            errors.push_back({key, "has a meaning only with " + joined_names(algorithms) + ": remove it"});
+        } else if (parameter->is_whole && set->second != std::floor(set->second)) {
+            errors.push_back({key, "is " + to_text(set->second) + ": expected a whole number"});
+        }
+    }
+    const auto begin = c.parameters.begin();
+    if (const auto same = std::find(begin, c.parameters.end(), c.parameters[i]); same - begin < std::ptrdiff_t(i)) {
+        errors.push_back(
+            {path, "is the same as parameters[" + std::to_string(same - begin) + "]: expected every set once"});
+    }
+}
+
 std::vector<KeyError> campaign_errors(const Campaign& c) {
     std::vector<KeyError> errors;
     if (c.seeds.list.empty() && c.seeds.first + c.seeds.count - 1 > std::numeric_limits<std::uint32_t>::max()) {
@@ -56,11 +82,14 @@ std::vector<KeyError> campaign_errors(const Campaign& c) {
     if (run_count(c) > max_campaign_runs) {
         errors.push_back(
             {"seeds", "make more than " + std::to_string(max_campaign_runs) +
-                          " runs with all problems, variants, algorithms, objectives and margins: expected "
-                          "fewer of one of them"});
+                          " runs with all problems, variants, algorithms, objectives, margins and parameters: "
+                          "expected fewer of one of them"});
+    }
+    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+        add_errors_of_parameters(c, i, errors);
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
-        add_errors_of(c, i, errors);
+        add_errors_of_target(c, i, errors);
         if (std::find(c.variants.begin(), c.variants.end(), c.expect[i].variant) == c.variants.end()) {
             errors.push_back({"expect[" + std::to_string(i) + "].variant",
                               "is " + std::string(name_of(c.expect[i].variant)) +

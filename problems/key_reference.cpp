@@ -42,6 +42,7 @@ template <>
 Campaign with_everything<Campaign>() {
     Campaign campaign;
     campaign.expect.resize(1);
+    campaign.parameters.resize(1);
     return campaign;
 }
 

@@ -44,6 +44,9 @@ struct Start {
 /// Wall time of a search that is limited by nothing else [s].
 inline constexpr double default_time_limit_s = 10;
 
+/// Parameters of an algorithm by the names that algorithms() lists.
+using ParameterValues = std::map<std::string, double, std::less<>>;
+
 /// How to search.
 struct PlannerSettings {
     Variant variant = Variant::mp_arm_ada;
@@ -54,8 +57,7 @@ struct PlannerSettings {
     std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
     std::uint32_t seed = 1;
     double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
-    /// Parameters of the algorithm that differ from their defaults, by the names that algorithms() lists.
-    std::map<std::string, double, std::less<>> parameters;
+    ParameterValues parameters;     ///< those that differ from their defaults
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.

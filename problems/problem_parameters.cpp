@@ -166,20 +166,9 @@ void add_objective(Rows& rows) {
 /// A row for each name; what it means depends on the algorithm, and so does its default.
 void add_algorithm_parameters(Rows& rows) {
     rows.push_back(group("planner.parameters", "parameters of the algorithm, see `downwash planners`"));
-    std::map<std::string_view, std::pair<const AlgorithmParameter*, std::vector<std::string_view>>> known;
-    for (const AlgorithmInfo& algorithm : algorithms()) {
-        for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
-            for (const AlgorithmParameter& parameter : algorithm.parameters_for(variant)) {
-                auto& [first, names] =
-                    known.try_emplace(parameter.name, &parameter, std::vector<std::string_view>{}).first->second;
-                if (names.empty() || names.back() != algorithm.name) {
-                    names.push_back(algorithm.name);
-                }
-            }
-        }
-    }
-    for (const auto& [name, found] : known) {
-        const AlgorithmParameter& parameter = *found.first;
+    for (const auto& [known, algorithms] : known_parameters()) {
+        const AlgorithmParameter& parameter = *known;
+        const std::string_view name = parameter.name;
         Parameter<Problem> row = parameters::row<Problem>(
             ParameterKind::number, "planner.parameters." + std::string(name), parameter.description);
         row.range = {parameter.low, parameter.high};
@@ -190,7 +179,7 @@ void add_algorithm_parameters(Rows& rows) {
             p.planner.parameters[name] = std::get<double>(value);
         };
         rows.push_back(std::move(row).only(
-            "with " + joined_names(found.second),
+            "with " + joined_names(algorithms),
             [name = name](const Problem& p, std::size_t) { return algorithm_parameter(p.planner, name) != nullptr; }));
     }
 }

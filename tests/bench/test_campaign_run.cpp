@@ -96,7 +96,9 @@ TEST_CASE("a campaign runs everything with every seed, whatever the number of th
 
 TEST_CASE("what is read from a file of results is what was written") {
     const ScratchFolder folder;
-    const CampaignPlan plan = plan_of(small_campaign());
+    ReadCampaign campaign = small_campaign();
+    campaign.campaign.parameters = {{{"goal_bias", 0.1 + 0.2}}};
+    const CampaignPlan plan = plan_of(campaign);
     Run written;
     written.planner = 1;
     written.seed = 2;
@@ -143,6 +145,34 @@ TEST_CASE("what is read from a file of results is what was written") {
     CHECK(read.flight->outcome == Outcome::left_flyable_area);
     CHECK(read.flight->min_clearance_m == HUGE_VAL);
     CHECK(read.error == written.error);
+}
+
+TEST_CASE("a campaign varies the parameters of its algorithms") {
+    const ScratchFolder folder;
+    ReadCampaign read = small_campaign(1);
+    read.problems[0].planner.parameters = {{"local_bias", 0.0}};  // mp-arm has none
+    read.campaign.parameters = {{}, {{"goal_bias", 0.9}}, {{"first_goal_bias", 0.9}}};
+    run_into(folder, read);
+    const CampaignResults results = results_in(folder);
+    std::vector<std::string> names;
+    for (const PlannerSetup& planner : results.plan.planners) {
+        names.push_back(planner.name());
+    }
+    CHECK(names == std::vector<std::string>{"mp-arm rrt-star", "mp-arm rrt-star, goal_bias 0.9", "mp-arm-da rrt-star",
+                                            "mp-arm-da rrt-star, goal_bias 0.9",
+                                            "mp-arm-da rrt-star, first_goal_bias 0.9"});
+    CHECK(results.plan.left_out ==
+          std::vector<std::string>{"mp-arm rrt-star, first_goal_bias 0.9: the algorithm has no "
+                                   "parameter first_goal_bias for this variant"});
+    // A set that matters makes a search of its own: goal_bias from the start for mp-arm, first_goal_bias for mp-arm-da.
+    std::vector<std::uint64_t> work(names.size());
+    for (const Run& run : results.runs) {
+        REQUIRE(run.status == RunStatus::solved);
+        work[run.planner] = run.states_checked + run.edges_simulated;
+    }
+    CHECK(work[0] != work[1]);
+    CHECK(work[2] != work[4]);
+    CHECK(answer(folder, "SELECT settings FROM plannerConfigs WHERE id = 2") == "goal_bias 0.9");
 }
 
 TEST_CASE("the file has the tables and columns that Planner Arena reads") {

@@ -67,6 +67,13 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
     CHECK_FALSE(campaign.expect[0].first_solution_95_s.has_value());
 }
 
+TEST_CASE("a campaign may vary the parameters of its algorithms") {
+    const CampaignFolder folder;
+    const Campaign campaign =
+        folder.read(std::string(good_campaign) + "parameters: [{}, {goal_bias: 0.2, batch_size: 16}]\n").campaign;
+    CHECK(campaign.parameters == std::vector<ParameterValues>{{}, {{"batch_size", 16}, {"goal_bias", 0.2}}});
+}
+
 TEST_CASE("the seeds of a campaign may be a list") {
     const CampaignFolder folder;
     CHECK(folder.read(edited(good_campaign, "{first: 3, count: 2}", "[7, 1, 4294967295]")).campaign.seeds.all() ==
@@ -104,7 +111,17 @@ TEST_CASE("what cannot be run in a campaign is refused with its place and a reme
              "campaign.yaml:7:1: seeds go beyond 4294967295, the highest seed: expected a smaller first or count"},
         Edit{"count: 2", "count: 200000",
              "campaign.yaml:7:1: seeds make more than 1000000 runs with all problems, variants, algorithms, "
-             "objectives and margins: expected fewer of one of them"},
+             "objectives, margins and parameters: expected fewer of one of them"},
+        Edit{"margins_m: [0.05, 0.2]", "parameters: [{}, {goal_bais: 0.2}]",
+             "campaign.yaml:6:19: unknown key 'goal_bais' in parameters[1]: did you mean 'goal_bias'?"},
+        Edit{"margins_m: [0.05, 0.2]", "parameters: [{goal_bias: 1.5}]",
+             "campaign.yaml:6:26: parameters[0].goal_bias is 1.5: expected a number from 0 to 1, or null"},
+        Edit{"margins_m: [0.05, 0.2]", "parameters: [{batch_size: 1.5}]",
+             "campaign.yaml:6:27: parameters[0].batch_size is 1.5: expected a whole number"},
+        Edit{"margins_m: [0.05, 0.2]", "parameters: [{pruning_radius: 1}]",
+             "campaign.yaml:6:31: parameters[0].pruning_radius has a meaning only with sst: remove it"},
+        Edit{"margins_m: [0.05, 0.2]", "parameters: [{}, {goal_bias: 0.2}, {}]",
+             "campaign.yaml:6:36: parameters[2] is the same as parameters[0]: expected every set once"},
         Edit{"variant: mp-arm-ada", "variant: mp-arm-da",
              "campaign.yaml:9:20: expect[0].variant is mp-arm-da, which is not run: expected one of the campaign's "
              "variants"},
