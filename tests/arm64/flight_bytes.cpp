@@ -1,6 +1,5 @@
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 
 #include "../support/random.hpp"
@@ -31,18 +30,6 @@ class Digest {
     std::uint64_t digest_ = 0xCBF29CE484222325U;
 };
 
-/// Surfaces above and below, whole and partial.
-Problem cluttered_problem() {
-    Problem problem = test::ceiling_problem();
-    problem.obstacles.push_back(test::box("slab", {2, 3, 0.4}, {0, 0, 3}));
-    Obstacle pipe;
-    pipe.name = "pipe";
-    pipe.shape = Cylinder{0.25, 6, {0, 1, 0}};
-    pipe.center_m = {3, 0, 2.5};
-    problem.obstacles.push_back(pipe);
-    return problem;
-}
-
 ReferencePoint random_rest(const Bounds& bounds, test::Random& random) {
     return at_rest({random.uniform(bounds.x_low_m, bounds.x_high_m), random.uniform(bounds.z_low_m, bounds.z_high_m),
                     random.uniform(-3, 3)});
@@ -58,7 +45,7 @@ void print(const char* kind, int number, Rejection rejection, std::int64_t ticks
 int main() {
     constexpr int flights = 60;
     for (const double lag_s : {0.0, 0.02}) {
-        Problem problem = cluttered_problem();
+        Problem problem = test::cluttered_problem();
         problem.robot.rotors.time_constant_s = lag_s;
         const FlightModel model(problem.robot, problem.plane, std::make_shared<const Scene>(problem.obstacles),
                                 problem.aero);

@@ -4,34 +4,30 @@
 
 #include "../support/random.hpp"
 #include "../support/test_robot.hpp"
+#include "downwash/controllers/configuration.hpp"
 #include "downwash/controllers/model_inversion.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
 
 namespace {
 
-using downwash::ModelInversion;
-using downwash::PlantModel;
-using downwash::ReferencePoint;
-using downwash::test::gains_of;
-using downwash::test::plant_of;
-using downwash::test::Random;
-using downwash::test::test_robot;
-namespace controllers = downwash::controllers;
-namespace dynamics = downwash::dynamics;
 using Memory = ModelInversion::Memory<double>;
 using Step = ModelInversion::Step<double>;
 
 constexpr double tick_s = 0.01;
-constexpr double quarter_turn = 1.57079632679489661923;
 
 /// A robot whose arm is not at its centre of mass, so that nothing cancels by luck.
-downwash::Robot offset_robot() {
-    auto robot = test_robot();
+Robot offset_robot() {
+    Robot robot = test_robot();
     robot.arm.joint_x_m = 0.1;
     robot.arm.joint_z_m = -0.07;
     gains_of(robot).attitude_kiu5 = 3;
     gains_of(robot).arm_ki = 5;
     return robot;
 }
+
+constexpr double still[4] = {0, 0, 0, 0};
 
 /// One control step before any limit.
 Step demanded(const ModelInversion& law, const PlantModel& model, const double (&q)[4], const double (&u)[4],
@@ -97,10 +93,6 @@ double wanted_acceleration(const ModelInversion& g, const Case& c, int axis) {
            limited(g.position_ki * c.memory.position_integral[axis], g.position_integral_limit_m_s2);
 }
 
-ReferencePoint hold(double x_m, double z_m, double arm_rad) {
-    return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
-}
-
 }  // namespace
 
 TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and nothing needs remembering") {
@@ -108,11 +100,10 @@ TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and n
     const PlantModel model = plant_of(robot);
     for (const double arm : {0.0, 0.7, quarter_turn, -2.0}) {
         const double q[4] = {1, 2, 0, arm};
-        const double u[4] = {0, 0, 0, 0};
-        const Step step = demanded(gains_of(robot), model, q, u, ModelInversion::rested(0.0), hold(1, 2, arm));
+        const Step step = demanded(gains_of(robot), model, q, still, ModelInversion::rested(0.0), at_rest({1, 2, arm}));
         const double gravity_torque_nm = -0.45 * 9.80665 * 0.72 * std::cos(arm);
         CHECK(step.demand.thrust_n == Approx(4.95 * 9.80665).epsilon(1e-14));
-        CHECK(controllers::joint_torque(model, dynamics::motion_at(model, q, u), step.demand.arm_acceleration,
+        CHECK(controllers::joint_torque(model, dynamics::motion_at(model, q, still), step.demand.arm_acceleration,
                                         step.demand.thrust_n, step.demand.pitch_torque_nm) ==
               Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
         CHECK(step.demand.pitch_torque_nm == Approx(gravity_torque_nm).epsilon(1e-14).margin(1e-14));
@@ -126,7 +117,7 @@ TEST_CASE("In hover the demand is the weight and the arm's gravity torque, and n
 
 TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") {
     Random random(1);
-    auto robot = offset_robot();
+    Robot robot = offset_robot();
     const PlantModel model = plant_of(robot);
     double worst = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -157,7 +148,7 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
 
 TEST_CASE("Once the vehicle has the pitch that is asked for, it accelerates exactly as wanted") {
     Random random(2);
-    auto robot = offset_robot();
+    Robot robot = offset_robot();
     gains_of(robot).attitude_ku5 = 0;  // the force is worked out for a pitch that does not accelerate
     gains_of(robot).attitude_kiu5 = 0;
     const PlantModel model = plant_of(robot);
@@ -188,33 +179,31 @@ TEST_CASE("The pitch reference leans towards the target and never beyond the gre
     const auto robot = test_robot();
     const PlantModel model = plant_of(robot);
     const double q[4] = {0, 2, 0, quarter_turn};
-    const double u[4] = {0, 0, 0, 0};
     const auto pitch_reference = [&](double x_m, double z_m) {
-        return demanded(gains_of(robot), model, q, u, ModelInversion::rested(0.0), hold(x_m, z_m, quarter_turn))
+        return demanded(gains_of(robot), model, q, still, ModelInversion::rested(0.0),
+                        at_rest({x_m, z_m, quarter_turn}))
             .integrated.pitch_reference_rad;
     };
-    CHECK(pitch_reference(0.1, 2) == Approx(std::atan2(0.1 * 2.0, 9.80665)));
-    CHECK(pitch_reference(-0.1, 2) == Approx(-std::atan2(0.1 * 2.0, 9.80665)));
-    CHECK(pitch_reference(100, 2) == gains_of(robot).max_tilt_rad);
-    CHECK(pitch_reference(-100, 2) == -gains_of(robot).max_tilt_rad);
+    for (const double side : {1, -1}) {
+        CHECK(pitch_reference(side * 0.1, 2) == Approx(side * std::atan2(0.1 * 2.0, 9.80665)));
+        CHECK(pitch_reference(side * 100, 2) == side * gains_of(robot).max_tilt_rad);
+    }
     // Asked to dive faster than it can fall, it keeps its head up: f_min stands in for the downward force.
     CHECK(pitch_reference(0.1, -100) == Approx(std::atan2(0.1 * 2.0, 0.2 * 9.80665)));
 }
 
 TEST_CASE("Integrators add error over time and stop where their limit can use no more") {
-    auto robot = offset_robot();
+    Robot robot = offset_robot();
     const ModelInversion& g = gains_of(robot);
     const PlantModel model = plant_of(robot);
     const double q[4] = {0, 2, 0, 0.5};
-    const double u[4] = {0, 0, 0, 0};
-    const ReferencePoint far = hold(0.4, 1.7, 0.8);
-    Memory memory = ModelInversion::rested(0.0);
-    memory = demanded(g, model, q, u, memory, far).integrated;
+    const ReferencePoint far = at_rest({0.4, 1.7, 0.8});
+    Memory memory = demanded(g, model, q, still, ModelInversion::rested(0.0), far).integrated;
     CHECK(memory.position_integral[0] == Approx(0.4 * tick_s));
     CHECK(memory.position_integral[1] == Approx(-0.3 * tick_s));
     CHECK(memory.arm_integral == Approx(0.3 * tick_s));
     for (int i = 0; i < 10'000; ++i) {
-        memory = demanded(g, model, q, u, memory, far).integrated;
+        memory = demanded(g, model, q, still, memory, far).integrated;
     }
     CHECK(memory.position_integral[0] == g.position_integral_limit_m_s2 / g.position_ki);
     CHECK(memory.position_integral[1] == -g.position_integral_limit_m_s2 / g.position_ki);
@@ -222,7 +211,7 @@ TEST_CASE("Integrators add error over time and stop where their limit can use no
     CHECK(std::abs(memory.pitch_rate_integral) <= g.attitude_integral_limit_rad_s2 / g.attitude_kiu5);
 
     // Wound up to the limit, the integral leaves it with the first error of the other sign.
-    const auto back = demanded(g, model, q, u, memory, hold(-0.4, 2, 0.5));
+    const auto back = demanded(g, model, q, still, memory, at_rest({-0.4, 2, 0.5}));
     CHECK(back.integrated.position_integral[0] ==
           Approx(g.position_integral_limit_m_s2 / g.position_ki - 0.4 * tick_s));
 }
@@ -239,7 +228,7 @@ TEST_CASE("An integrator without gain stays where it is") {
 }
 
 TEST_CASE("A frozen step keeps all integrals but goes on following the pitch reference") {
-    const auto robot = offset_robot();
+    const Robot robot = offset_robot();
     const PlantModel model = plant_of(robot);
     Random random(4);
     for (int i = 0; i < 100; ++i) {
@@ -256,15 +245,14 @@ TEST_CASE("A frozen step keeps all integrals but goes on following the pitch ref
 }
 
 TEST_CASE("A clipped tilt stops the integrals of x and z, and of nothing else") {
-    const auto robot = offset_robot();
+    const Robot robot = offset_robot();
     const PlantModel model = plant_of(robot);
     const double q[4] = {0, 2, 0, 0.5};
-    const double u[4] = {0, 0, 0, 0};
     Memory memory = ModelInversion::rested(0.0);
     memory.position_integral[0] = 0.2;
     memory.position_integral[1] = -0.1;
     const auto integrated = [&](double x_m, double z_m) {
-        return demanded(gains_of(robot), model, q, u, memory, hold(x_m, z_m, 0.8)).integrated;
+        return demanded(gains_of(robot), model, q, still, memory, at_rest({x_m, z_m, 0.8})).integrated;
     };
     // Sideways beyond the greatest tilt; down faster than it can fall.
     for (const Memory& clipped : {integrated(100, 1.7), integrated(-100, 1.7), integrated(0.1, -100)}) {

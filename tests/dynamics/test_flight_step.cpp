@@ -7,31 +7,25 @@
 #include "downwash/dynamics/flight_step.hpp"
 #include "random_plant.hpp"
 
+using namespace downwash;
+using namespace downwash::test;
+
 namespace {
 
-using downwash::allocation_has_full_rank;
-using downwash::max_rotors;
-using downwash::PlantModel;
-using downwash::standard_gravity_m_s2;
-using downwash::test::plant_of;
-using downwash::test::Random;
-using downwash::test::RandomPlant;
-using downwash::test::test_robot;
-namespace dynamics = downwash::dynamics;
 using Command = dynamics::PlantCommand<double>;
 using State = dynamics::PlantState<double>;
 
-constexpr double quarter_turn = 1.57079632679489661923;
-
-struct FreeAir {
-    double operator()(int, double, double) const { return 1; }
-};
-
-State state_of(const double (&q)[4], const double (&u)[4]) {
+State state_of(const double (&q)[4], const double (&u)[4] = {0, 0, 0, 0}) {
     State state{};
     std::copy(q, q + 4, state.q);
     std::copy(u, u + 4, state.u);
     return state;
+}
+
+PlantModel model_with_lag(double time_constant_s) {
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = time_constant_s;
+    return plant_of(robot);
 }
 
 /// All rotors alike.
@@ -69,20 +63,23 @@ struct Invariants {
     }
 };
 
-downwash::RotorParameters rotors_at(const std::vector<double>& x_m) {
-    downwash::RotorParameters rotors;
-    for (const double x : x_m) {
-        rotors.positions_m.push_back({x, 0, 0});
+/// du/dt in free air with all rotors at the commanded thrust.
+struct Accelerations {
+    double u[4];
+    Accelerations(const PlantModel& model, const State& state, const Command& command) {
+        dynamics::accelerations(model, state.q, dynamics::motion_at(model, state.q, state.u), command.thrust_n,
+                                command.joint_torque_nm, FreeAir{}, u);
     }
-    return rotors;
-}
+};
+
+constexpr double weight_n = 4.95 * 9.80665;
 
 }  // namespace
 
 TEST_CASE("Ten seconds without forces keep energy, momentum and spin") {
     // At the control tick of 10 ms; the drift is of the order of 1e-9.
     for (const double offset_m : {0.0, 0.15}) {
-        auto robot = test_robot();
+        Robot robot = test_robot();
         robot.arm.joint_x_m = offset_m;
         robot.arm.joint_z_m = -offset_m;
         const PlantModel model = plant_of(robot);
@@ -113,31 +110,19 @@ TEST_CASE("Without thrust the manipulator falls along the parabola of the textbo
 
 TEST_CASE("Thrust of the weight with the arm hanging hovers") {
     const PlantModel model = plant_of(test_robot());
-    const State start = state_of({1, 2, 0, quarter_turn}, {0, 0, 0, 0});
-    const State state = flown(model, start, even_command(model, 4.95 * 9.80665, 0), 0.01, 100);
+    const State start = state_of({1, 2, 0, quarter_turn});
+    const State state = flown(model, start, even_command(model, weight_n, 0), 0.01, 100);
     for (int i = 0; i < 4; ++i) {
         CHECK(state.q[i] == Approx(start.q[i]).margin(1e-9));
         CHECK(state.u[i] == Approx(0).margin(1e-9));
     }
 }
 
-/// du/dt in free air.
-struct Accelerations {
-    double u[4];
-    Accelerations(const PlantModel& model, const State& state, const Command& command) {
-        dynamics::accelerations(model, state.q, dynamics::motion_at(model, state.q, state.u), state.thrust_n,
-                                command.joint_torque_nm, FreeAir{}, u);
-    }
-};
-
 TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
     const PlantModel model = plant_of(test_robot());
-    Command command = even_command(model, 4.95 * 9.80665, 0);
+    Command command = even_command(model, weight_n, 0);
     command.thrust_n[0] += 1;
-    const State start = state_of({0, 2, 0, quarter_turn}, {0, 0, 0, 0});
-    State at_rest = start;
-    std::copy(command.thrust_n, command.thrust_n + max_rotors, at_rest.thrust_n);
-    const Accelerations rate(model, at_rest, command);
+    const Accelerations rate(model, state_of({0, 2, 0, quarter_turn}), command);
     CHECK(rate.u[1] == Approx(1 / 4.95));
     CHECK(rate.u[2] == Approx(-0.32 * 1 / 0.20));  // the hanging arm pulls through the centre of mass
     // Pitch and arm angle change together: the arm stays hanging.
@@ -147,10 +132,8 @@ TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
 TEST_CASE("Thrust acts along the body's axis") {
     const PlantModel model = plant_of(test_robot());
     const double pitch = 0.4;
-    State state = state_of({0, 2, pitch, quarter_turn - pitch}, {0, 0, 0, 0});
-    const Command command = even_command(model, 60, 0);
-    std::copy(command.thrust_n, command.thrust_n + max_rotors, state.thrust_n);
-    const Accelerations rate(model, state, command);
+    const State state = state_of({0, 2, pitch, quarter_turn - pitch});
+    const Accelerations rate(model, state, even_command(model, 60, 0));
     // Vertical pull goes through the hanging arm's centre of mass: the whole mass rises; sideways the arm swings.
     CHECK(rate.u[1] == Approx(60 * std::cos(pitch) / 4.95 - 9.80665));
     const double swung_mass_kg = 4.5 + 0.45 * 0.06 / (0.06 + 0.45 * 0.72 * 0.72);
@@ -160,10 +143,7 @@ TEST_CASE("Thrust acts along the body's axis") {
 
 TEST_CASE("A step of joint torque swings the arm and pushes the vehicle the other way round") {
     const PlantModel model = plant_of(test_robot());
-    const State start = state_of({0, 2, 0, quarter_turn}, {0, 0, 0, 0});
-    State state = start;
-    std::fill(state.thrust_n, state.thrust_n + 4, 4.95 * 9.80665 / 4);
-    const Accelerations rate(model, state, even_command(model, 4.95 * 9.80665, 1));
+    const Accelerations rate(model, state_of({0, 2, 0, quarter_turn}), even_command(model, weight_n, 1));
     // The arm's absolute angular acceleration: torque about a joint that the vehicle's mass holds back sideways.
     const double reduced_kg = 4.5 * 0.45 / 4.95;
     CHECK(rate.u[2] + rate.u[3] == Approx(1 / (0.06 + reduced_kg * 0.72 * 0.72)));
@@ -221,20 +201,24 @@ TEST_CASE("In a symmetric layout each rotor takes its part of the thrust and its
 }
 
 TEST_CASE("A layout whose rotors share one lever cannot command thrust and torque apart") {
-    CHECK(allocation_has_full_rank(rotors_at({0.3, -0.3})));
-    CHECK(allocation_has_full_rank(rotors_at({0.1, 0.2, 0.3})));
-    CHECK_FALSE(allocation_has_full_rank(rotors_at({0, 0, 0, 0})));
-    CHECK_FALSE(allocation_has_full_rank(rotors_at({0.3, 0.3, 0.3})));
-    CHECK_FALSE(allocation_has_full_rank(rotors_at({0.3})));
-    CHECK_FALSE(allocation_has_full_rank(rotors_at({})));
+    const auto can_command = [](const std::vector<double>& x_m) {
+        RotorParameters rotors;
+        for (const double x : x_m) {
+            rotors.positions_m.push_back({x, 0, 0});
+        }
+        return allocation_has_full_rank(rotors);
+    };
+    CHECK(can_command({0.3, -0.3}));
+    CHECK(can_command({0.1, 0.2, 0.3}));
+    for (const auto& x_m : std::vector<std::vector<double>>{{0, 0, 0, 0}, {0.3, 0.3, 0.3}, {0.3}, {}}) {
+        CHECK_FALSE(can_command(x_m));
+    }
 }
 
 TEST_CASE("Rotors with lag follow a step of command exponentially") {
-    auto robot = test_robot();
-    robot.rotors.time_constant_s = 0.05;
-    const PlantModel model = plant_of(robot);
+    const PlantModel model = model_with_lag(0.05);
     const Command command = even_command(model, 40, 0);
-    State state = state_of({0, 100, 0, quarter_turn}, {0, 0, 0, 0});
+    State state = state_of({0, 100, 0, quarter_turn});
     double worst = 0;
     for (int tick = 1; tick <= 50; ++tick) {
         state = dynamics::flight_step(model, state, command, 0.01, FreeAir{});
@@ -250,7 +234,7 @@ TEST_CASE("Rotors with lag follow a step of command exponentially") {
 TEST_CASE("Rotors without lag give the commanded thrust at once") {
     const PlantModel model = plant_of(test_robot());
     const Command command = even_command(model, 40, 0);
-    const State state = flown(model, state_of({0, 9, 0, quarter_turn}, {0, 0, 0, 0}), command, 0.01, 1);
+    const State state = flown(model, state_of({0, 9, 0, quarter_turn}), command, 0.01, 1);
     CHECK(state.thrust_n[3] == 10);
     CHECK(state.u[1] == Approx((40 / 4.95 - 9.80665) * 0.01));
 }
@@ -260,7 +244,7 @@ TEST_CASE("Rotor energy is the power of the commanded thrust, whatever a surface
     const Command command = even_command(model, 48, 0);
     const double power_w = 2.9 * 4 * std::pow(12.0, 1.5);
     CHECK(dynamics::rotor_power(model, command.thrust_n) == Approx(power_w));
-    State state = state_of({0, 9, 0, quarter_turn}, {0, 0, 0, 0});
+    State state = state_of({0, 9, 0, quarter_turn});
     for (int i = 0; i < 100; ++i) {
         state = dynamics::flight_step(model, state, command, 0.01, [](int, double, double) { return 1.3; });
     }
@@ -268,23 +252,16 @@ TEST_CASE("Rotor energy is the power of the commanded thrust, whatever a surface
 }
 
 TEST_CASE("Rotor energy with lag is the power of the thrust that the lag has reached") {
-    auto robot = test_robot();
-    robot.rotors.time_constant_s = 0.05;
-    const PlantModel model = plant_of(robot);
-    State state = state_of({0, 99, 0, quarter_turn}, {0, 0, 0, 0});
-    std::fill(state.thrust_n, state.thrust_n + 4, 12.0);
-    const State end = flown(model, state, even_command(model, 0, 0), 0.001, 1000);
+    const auto after_a_cut = [](double time_constant_s, double step_s, int steps) {
+        const PlantModel model = model_with_lag(time_constant_s);
+        State state = state_of({0, 99, 0, quarter_turn});
+        std::fill(state.thrust_n, state.thrust_n + 4, 12.0);
+        return flown(model, state, even_command(model, 0, 0), step_s, steps);
+    };
     // Integral of (12 exp(-t / tau))^1.5 = 12^1.5 tau / 1.5.
-    CHECK(end.energy_j == Approx(2.9 * 4 * std::pow(12.0, 1.5) * 0.05 / 1.5).epsilon(1e-6));
-}
-
-TEST_CASE("A lag shorter than the step leaves a finite energy when the thrust is cut") {
-    auto robot = test_robot();
-    robot.rotors.time_constant_s = 0.006;
-    const PlantModel model = plant_of(robot);
-    State state = state_of({0, 99, 0, quarter_turn}, {0, 0, 0, 0});
-    std::fill(state.thrust_n, state.thrust_n + 4, 12.0);
-    state = dynamics::flight_step(model, state, even_command(model, 0, 0), 0.01, FreeAir{});
+    CHECK(after_a_cut(0.05, 0.001, 1000).energy_j == Approx(2.9 * 4 * std::pow(12.0, 1.5) * 0.05 / 1.5).epsilon(1e-6));
+    // A lag shorter than the step leaves a finite energy.
+    const State state = after_a_cut(0.006, 0.01, 1);
     CHECK(std::isfinite(state.energy_j));
     CHECK(state.thrust_n[0] > 0);
     CHECK(state.thrust_n[0] < 6);
@@ -292,7 +269,7 @@ TEST_CASE("A lag shorter than the step leaves a finite energy when the thrust is
 
 TEST_CASE("Arm energy is the torque times the way it turned") {
     const PlantModel model = plant_of(test_robot());
-    const State start = state_of({0, 9, 0, 0}, {0, 0, 0, 0});
+    const State start = state_of({0, 9, 0, 0});
     for (const double torque_nm : {2.0, -2.0}) {
         const State end = flown(model, start, even_command(model, 0, torque_nm), 0.01, 30);
         CHECK(end.energy_j == Approx(2 * std::abs(end.q[3])));
@@ -319,8 +296,8 @@ TEST_CASE("A surface factor multiplies each rotor's thrust at its own place") {
 }
 
 TEST_CASE("A fountain pushes the body along its axis at the centre between the rotors") {
-    auto robot = test_robot();
-    for (downwash::Vector3& hub_m : robot.rotors.positions_m) {
+    Robot robot = test_robot();
+    for (Vector3& hub_m : robot.rotors.positions_m) {
         hub_m[0] += 0.05;  // the centre between the rotors lies ahead of the centre of mass
     }
     const PlantModel calm = make_plant_model(robot.multirotor, robot.arm, robot.rotors);
@@ -346,9 +323,9 @@ TEST_CASE("The surface factor is read at every stage of a step, not held") {
     // K = 1 - b (z - z0) under a thrust of the weight is a spring: z oscillates with omega^2 = g b. A factor held over
     // the step would turn this into growing oscillations of the first order in the step.
     const PlantModel model = plant_of(test_robot());
-    const Command command = even_command(model, 4.95 * 9.80665, 0);
+    const Command command = even_command(model, weight_n, 0);
     const double omega = std::sqrt(9.80665 * 0.5);
-    State state = state_of({0, 2.1, 0, quarter_turn}, {0, 0, 0, 0});
+    State state = state_of({0, 2.1, 0, quarter_turn});
     double worst = 0;
     for (int tick = 1; tick <= 500; ++tick) {
         state = dynamics::flight_step(model, state, command, 0.01,
@@ -359,7 +336,7 @@ TEST_CASE("The surface factor is read at every stage of a step, not held") {
 }
 
 TEST_CASE("The step converges with the fourth order") {
-    auto robot = test_robot();
+    Robot robot = test_robot();
     robot.arm.joint_x_m = 0.1;
     robot.rotors.time_constant_s = 0.08;
     const PlantModel model = plant_of(robot);

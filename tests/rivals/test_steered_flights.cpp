@@ -34,25 +34,25 @@ struct Fixture {
 };
 
 /// The vehicle hanging still 0.3 m away from the goal (tip at (3, 4.8), arm up at 60 degrees).
-Configuration near_goal() {
-    return {3 - 0.6 - 0.3, 4.8 - 1.2 * 0.8660254037844386, -1.0471975511965976};
-}
+constexpr Configuration near_goal{3 - 0.6 - 0.3, 4.8 - 1.2 * 0.8660254037844386, -1.0471975511965976};
+
+constexpr double forward[3] = {1, 0, 0};
 
 }  // namespace
 
 TEST_CASE("a step is a pure function, and flies as the same segment does") {
     const Fixture f;
-    const double forward[3] = {0.8, 0.1, 0.3};
+    const double obliquely[3] = {0.8, 0.1, 0.3};
     const FlightPoint start = f.flights.start();
-    const FlightPoint a = f.flights.stepped(f.flights.stepped(start, forward), forward);
-    const FlightPoint b = f.flights.stepped(f.flights.stepped(start, forward), forward);
+    const FlightPoint a = f.flights.stepped(f.flights.stepped(start, obliquely), obliquely);
+    const FlightPoint b = f.flights.stepped(f.flights.stepped(start, obliquely), obliquely);
     REQUIRE(a.is_valid);
     CHECK(is_same_moment(a, b));
     CHECK(a.cost == b.cost);
     CHECK(a.ticks == 100);
 
     FlightState state = start.vehicle;
-    const FlightPoint middle = f.flights.stepped(start, forward);
+    const FlightPoint middle = f.flights.stepped(start, obliquely);
     for (const auto& [from, to] : {std::pair(start.reference, middle.reference), {middle.reference, a.reference}}) {
         const ReferenceSegment segment(from, to, 50, 0.01);
         CHECK(fly(*f.model, f.map.get(), f.planned.rules(), segment, state).rejection == Rejection::none);
@@ -61,10 +61,9 @@ TEST_CASE("a step is a pure function, and flies as the same segment does") {
     CHECK(a.cost == Approx(state.plant.energy_j).epsilon(1e-12));
 }
 
-TEST_CASE("a step into an obstacle is refused and counted") {
+TEST_CASE("a step into an obstacle is rejected and counted") {
     const Fixture f(test::walled_problem());  // a wall at x = 0
-    FlightPoint point = planning::resting_at(*f.model, {-1.2, 2, 1.5707963267948966});
-    const double forward[3] = {1, 0, 0};
+    FlightPoint point = planning::resting_at(*f.model, {-1.2, 2, test::quarter_turn});
     int steps = 0;
     while (point.is_valid && steps < 20) {
         point = f.flights.stepped(point, forward);
@@ -76,8 +75,7 @@ TEST_CASE("a step into an obstacle is refused and counted") {
 
 TEST_CASE("a step from which the reference could not stop inside the bounds is not flown") {
     const Fixture f;  // x up to 6
-    FlightPoint point = planning::resting_at(*f.model, {5.9, 2, 1.5707963267948966});
-    const double forward[3] = {1, 0, 0};
+    FlightPoint point = planning::resting_at(*f.model, {5.9, 2, test::quarter_turn});
     point = f.flights.stepped(point, forward);
     REQUIRE(point.is_valid);
     const std::uint64_t ticks = f.planned.statistics().ticks;
@@ -88,7 +86,7 @@ TEST_CASE("a step from which the reference could not stop inside the bounds is n
     CHECK(f.planned.statistics().rejected.at("bounds") == 1);
 }
 
-TEST_CASE("a moment beyond the longest plan is refused") {
+TEST_CASE("a moment beyond the longest plan is rejected") {
     const Fixture f;
     FlightPoint point = f.flights.start();
     const double still[3] = {0, 0, 0};
@@ -101,9 +99,9 @@ TEST_CASE("a moment beyond the longest plan is refused") {
 
 TEST_CASE("a flight closes from nearby, at rest within the goal, hold included") {
     Problem problem = test::ceiling_problem();
-    problem.start.x_m = near_goal().x_m;
-    problem.start.z_m = near_goal().z_m;
-    problem.start.arm_rad = near_goal().arm_rad;
+    problem.start.x_m = near_goal.x_m;
+    problem.start.z_m = near_goal.z_m;
+    problem.start.arm_rad = near_goal.arm_rad;
     const Fixture f(problem);
     const double upwards[3] = {0.2, 0.05, 0};
     const std::vector<FlightPoint> moments{f.flights.start(), f.flights.stepped(f.flights.start(), upwards)};
@@ -139,10 +137,10 @@ TEST_CASE("a flight closes from nearby, at rest within the goal, hold included")
 
 TEST_CASE("a plan without an end is braked to rest") {
     const Fixture f;
-    const double forward[3] = {1, 0, 0.5};
+    const double swinging[3] = {1, 0, 0.5};
     std::vector<FlightPoint> moments{f.flights.start()};
     for (int i = 0; i < 4; ++i) {
-        moments.push_back(f.flights.stepped(moments.back(), forward));
+        moments.push_back(f.flights.stepped(moments.back(), swinging));
     }
     const Plan plan = f.flights.plan(moments, {});
     CHECK(plan.reference.back().point.velocity[0] == 0);
@@ -150,15 +148,14 @@ TEST_CASE("a plan without an end is braked to rest") {
     CHECK(plan.last().arm_rad == Approx(moments.back().rest.arm_rad));
 }
 
-TEST_CASE("OMPL propagates what steps fly, and ends before the step that is refused") {
+TEST_CASE("OMPL propagates what steps fly, and ends before the step that is rejected") {
     const Fixture f(test::walled_problem());
     planning::Random random(1);
     const auto information = planning::make_flight_information(f.flights, random);
     ompl::base::State* from = information->allocState();
     ompl::base::State* to = information->allocState();
     ompl::control::Control* control = information->allocControl();
-    planning::point_of(from) = planning::resting_at(*f.model, {-3, 2, 1.5707963267948966});
-    const double forward[3] = {1, 0, 0};
+    planning::point_of(from) = planning::resting_at(*f.model, {-3, 2, test::quarter_turn});
     std::copy(forward, forward + 3, control->as<ompl::control::RealVectorControlSpace::ControlType>()->values);
     const unsigned int steps = information->propagateWhileValid(from, control, 100, to);
     FlightPoint point = planning::point_of(from);

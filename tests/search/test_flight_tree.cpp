@@ -28,6 +28,12 @@ struct Fixture {
         const auto flight = flown(from, to);
         return flight ? &tree.add(from, *flight) : nullptr;
     }
+    /// The node where such a flight ends; the test fails without one.
+    FlightNode& reached(FlightNode& from, const Configuration& to) {
+        FlightNode* node = fly(from, to);
+        REQUIRE(node != nullptr);
+        return *node;
+    }
     bool rewire(FlightNode& node, FlightNode& parent) {
         const planning::FlightTree::Rewiring rewiring{&node, &parent};
         return tree.rewire({&rewiring, 1}) == 1;
@@ -50,7 +56,7 @@ struct Fixture {
 };
 
 /// The vehicle 1.2 m below the goal of the ceiling problem, its arm upright.
-constexpr Configuration below_the_goal{3, 3.6, -1.5707963267948966};
+constexpr Configuration below_the_goal{3, 3.6, -test::quarter_turn};
 
 bool same_bytes(const FlightState& a, const FlightState& b) {
     return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
@@ -85,11 +91,10 @@ TEST_CASE("re-flying from the start reproduces every node of a random tree bit f
 
 TEST_CASE("an edge starts from the whole vehicle state of its parent, not from rest") {
     Fixture f;
-    FlightNode* first = f.fly(f.tree.root(), {-1, 2.5, 0.5});
-    REQUIRE(first != nullptr);
-    FlightNode rested = *first;
-    rested.state = f.model->state_at(level_at(first->configuration));
-    const auto from_flight = f.flown(*first, {1, 3, 0});
+    const FlightNode& first = f.reached(f.tree.root(), {-1, 2.5, 0.5});
+    FlightNode rested = first;
+    rested.state = f.model->state_at(level_at(first.configuration));
+    const auto from_flight = f.flown(first, {1, 3, 0});
     const auto from_rest = f.flown(rested, {1, 3, 0});
     REQUIRE(from_flight);
     REQUIRE(from_rest);
@@ -98,39 +103,33 @@ TEST_CASE("an edge starts from the whole vehicle state of its parent, not from r
 
 TEST_CASE("a rewiring that does not pay leaves the tree untouched") {
     Fixture f;
-    FlightNode* direct = f.fly(f.tree.root(), {1, 2, 1});
-    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1});
-    REQUIRE(direct != nullptr);
-    REQUIRE(detour != nullptr);
-    FlightNode* child = f.fly(*direct, {3, 2, 1});
-    REQUIRE(child != nullptr);
-    const FlightState before = direct->state;
-    const FlightState child_before = child->state;
-    CHECK_FALSE(f.rewire(*direct, *detour));
-    CHECK(direct->parent == &f.tree.root());
-    CHECK(same_bytes(direct->state, before));
-    CHECK(same_bytes(child->state, child_before));
+    FlightNode& direct = f.reached(f.tree.root(), {1, 2, 1});
+    FlightNode& detour = f.reached(f.tree.root(), {-4, 4, 1});
+    const FlightNode& child = f.reached(direct, {3, 2, 1});
+    const FlightState before = direct.state;
+    const FlightState child_before = child.state;
+    CHECK_FALSE(f.rewire(direct, detour));
+    CHECK(direct.parent == &f.tree.root());
+    CHECK(same_bytes(direct.state, before));
+    CHECK(same_bytes(child.state, child_before));
 }
 
 TEST_CASE("a rewiring that pays flies the whole subtree again") {
     Fixture f;
-    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
-    REQUIRE(detour != nullptr);
-    FlightNode* node = f.fly(*detour, {1, 2.5, 1});
-    REQUIRE(node != nullptr);
-    FlightNode* child = f.fly(*node, {3, 2, 0});
-    REQUIRE(child != nullptr);
-    const double cost = node->cost;
-    const double child_cost = child->cost;
-    REQUIRE(f.rewire(*node, f.tree.root()));
-    CHECK(node->parent == &f.tree.root());
-    CHECK(detour->children.empty());
-    CHECK(node->cost < cost);
-    CHECK(child->cost < child_cost);
-    CHECK_NOTHROW(f.verify(*child));
+    FlightNode& detour = f.reached(f.tree.root(), {-4, 4, 1.5});
+    FlightNode& node = f.reached(detour, {1, 2.5, 1});
+    const FlightNode& child = f.reached(node, {3, 2, 0});
+    const double cost = node.cost;
+    const double child_cost = child.cost;
+    REQUIRE(f.rewire(node, f.tree.root()));
+    CHECK(node.parent == &f.tree.root());
+    CHECK(detour.children.empty());
+    CHECK(node.cost < cost);
+    CHECK(child.cost < child_cost);
+    CHECK_NOTHROW(f.verify(child));
 }
 
-TEST_CASE("a vehicle cannot be sent into an obstacle, and the refusal is counted") {
+TEST_CASE("a vehicle cannot be sent into an obstacle, and the rejection is counted") {
     Fixture f(test::walled_problem());
     const auto before = f.flights.statistics().rejected.at("collision");
     CHECK(f.fly(f.tree.root(), {3, 2, 1.5}) == nullptr);
@@ -144,10 +143,7 @@ TEST_CASE("hovering right under a wide ceiling is found out by flying, hold incl
     const double under_the_ceiling_m = 5 - 0.06 - 0.15;  // rotors 0.15 m below it
     FlightNode* node = f.fly(f.tree.root(), {-3, under_the_ceiling_m, 1.5});
     if (node != nullptr) {
-        node->reference = {};
-        node->reference.position[0] = -3;
-        node->reference.position[1] = under_the_ceiling_m;
-        node->reference.position[2] = 1.5;
+        node->reference = at_rest({-3, under_the_ceiling_m, 1.5});
     }
     CHECK((node == nullptr || f.hold(*node) == nullptr));
     const auto& rejected = f.flights.statistics().rejected;
@@ -158,10 +154,9 @@ TEST_CASE("hovering right under a wide ceiling is found out by flying, hold incl
 
 TEST_CASE("a tampered state is noticed when the plan is flown again") {
     Fixture f;
-    FlightNode* node = f.fly(f.tree.root(), {-1, 2.5, 0.5});
-    REQUIRE(node != nullptr);
-    node->state.plant.q[0] = std::nextafter(node->state.plant.q[0], 100.0);
-    CHECK_THROWS_AS(f.verify(*node), std::logic_error);
+    FlightNode& node = f.reached(f.tree.root(), {-1, 2.5, 0.5});
+    node.state.plant.q[0] = std::nextafter(node.state.plant.q[0], 100.0);
+    CHECK_THROWS_AS(f.verify(node), std::logic_error);
 }
 
 TEST_CASE("the nearest nodes come in the order of distance, an unlimited arm going the shorter way round") {
@@ -180,10 +175,8 @@ TEST_CASE("the nearest nodes come in the order of distance, an unlimited arm goi
 TEST_CASE("goal samples meet the goal with the arm on either side") {
     Fixture f;
     planning::Random random(3);
-    bool left = false;
-    bool right = false;
-    int found = 0;
-    int exact = 0;
+    bool left = false, right = false;
+    int found = 0, exact = 0;
     for (int i = 0; i < 200; ++i) {
         if (const auto sample = f.task.space.sample_goal(random)) {
             ++found;
@@ -202,38 +195,28 @@ TEST_CASE("goal samples meet the goal with the arm on either side") {
 
 TEST_CASE("a parent that an earlier rewiring has moved is flown from anew, or not at all") {
     Fixture f;
-    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
-    REQUIRE(detour != nullptr);
-    FlightNode* parent = f.fly(*detour, {-1, 2.5, 1});
-    FlightNode* longer_detour = f.fly(*detour, {-5, 1, 3});
-    REQUIRE(parent != nullptr);
-    REQUIRE(longer_detour != nullptr);
-    FlightNode* node = f.fly(*longer_detour, {1, 2, 1});
-    REQUIRE(node != nullptr);
+    FlightNode& detour = f.reached(f.tree.root(), {-4, 4, 1.5});
+    FlightNode& parent = f.reached(detour, {-1, 2.5, 1});
+    FlightNode& node = f.reached(f.reached(detour, {-5, 1, 3}), {1, 2, 1});
     // The second is flown from the parent's old state, and the first moves the parent.
-    const planning::FlightTree::Rewiring both[] = {{parent, &f.tree.root()}, {node, parent}};
+    const planning::FlightTree::Rewiring both[] = {{&parent, &f.tree.root()}, {&node, &parent}};
     CHECK(f.tree.rewire(both) >= 1);
-    CHECK(parent->parent == &f.tree.root());
+    CHECK(parent.parent == &f.tree.root());
     for (const FlightNode* n : f.tree.nodes()) {
         CHECK_NOTHROW(f.verify(*n));
     }
-    CHECK((node->parent == parent || f.rewire(*node, *parent)));
-    CHECK_NOTHROW(f.verify(*node));
+    CHECK((node.parent == &parent || f.rewire(node, parent)));
+    CHECK_NOTHROW(f.verify(node));
 }
 
 TEST_CASE("a discarded hold that is rewired has a new chance") {
     Fixture f;
-    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
-    REQUIRE(detour != nullptr);
-    FlightNode* node = f.fly(*detour, {1, 2.5, 0});
-    REQUIRE(node != nullptr);
-    FlightNode* arrival = f.fly(*node, below_the_goal);
-    REQUIRE(arrival != nullptr);
-    FlightNode* hold = f.hold(*arrival);
+    FlightNode& node = f.reached(f.reached(f.tree.root(), {-4, 4, 1.5}), {1, 2.5, 0});
+    FlightNode* hold = f.hold(f.reached(node, below_the_goal));
     REQUIRE(hold != nullptr);
     hold->is_discarded = true;
     const double cost = hold->cost;
-    REQUIRE(f.rewire(*node, f.tree.root()));
+    REQUIRE(f.rewire(node, f.tree.root()));
     CHECK_FALSE(hold->is_discarded);
     CHECK(hold->cost < cost);
     CHECK_NOTHROW(f.verify(*hold));
@@ -241,21 +224,17 @@ TEST_CASE("a discarded hold that is rewired has a new chance") {
 
 TEST_CASE("a rewiring that fails in a descendant leaves every field as it was") {
     Fixture f;
-    FlightNode* detour = f.fly(f.tree.root(), {-4, 4, 1.5});
-    REQUIRE(detour != nullptr);
-    FlightNode* node = f.fly(*detour, {1, 2.5, 0});
-    REQUIRE(node != nullptr);
-    FlightNode* arrival = f.fly(*node, below_the_goal);
-    REQUIRE(arrival != nullptr);
-    FlightNode* hold = f.hold(*arrival);
-    FlightNode* last = f.fly(*arrival, {3, 2, 0});
+    FlightNode& detour = f.reached(f.tree.root(), {-4, 4, 1.5});
+    FlightNode& node = f.reached(detour, {1, 2.5, 0});
+    FlightNode& arrival = f.reached(node, below_the_goal);
+    FlightNode* hold = f.hold(arrival);
     REQUIRE(hold != nullptr);
-    REQUIRE(last != nullptr);
+    FlightNode& last = f.reached(arrival, {3, 2, 0});
     hold->is_discarded = true;
-    last->cost = 0;  // no flight can cost less, so the rewiring ends here when all before it has been flown again
-    const FlightNode* const nodes[] = {detour, node, arrival, hold, last};
-    const std::vector<FlightNode> before{*detour, *node, *arrival, *hold, *last};
-    CHECK_FALSE(f.rewire(*node, f.tree.root()));
+    last.cost = 0;  // no flight can cost less, so the rewiring ends here when all before it has been flown again
+    const FlightNode* const nodes[] = {&detour, &node, &arrival, hold, &last};
+    const std::vector<FlightNode> before{detour, node, arrival, *hold, last};
+    CHECK_FALSE(f.rewire(node, f.tree.root()));
     for (std::size_t i = 0; i < before.size(); ++i) {
         INFO("node " << i);
         CHECK(same_bytes(nodes[i]->state, before[i].state));

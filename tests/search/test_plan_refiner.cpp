@@ -24,11 +24,11 @@ struct Fixture {
     planning::PlanRefiner refiner{planning::start_point(task), flights, random};
 
     [[nodiscard]] Plan stop_and_go() const {
-        const double up = -1.5707963267948966;  // the arm, from a vehicle 1.2 m below the goal
         Plan plan;
         plan.tick_s = model->tick().tick_s;
         plan.reference.push_back({0, planning::reference_at(problem.start)});
-        for (const Configuration& corner : {Configuration{-2, 1, 0}, {0, 3, -0.5}, {3, 3.6, up}}) {
+        // In the end the arm points up, from a vehicle 1.2 m below the goal.
+        for (const Configuration& corner : {Configuration{-2, 1, 0}, {0, 3, -0.5}, {3, 3.6, -test::quarter_turn}}) {
             const ReferenceKnot& last = plan.reference.back();
             const ReferenceSegment segment = flights.fastest_segment(last.point, at_rest(corner));
             plan.reference.push_back({last.tick + segment.ticks(), segment.to()});

@@ -6,10 +6,9 @@
 
 using namespace downwash;
 using planning::FlightStatistics;
+using test::quarter_turn;
 
 namespace {
-
-constexpr double quarter_turn = 1.57079632679489661923;
 
 /// Flights in free air.
 struct Fixture {

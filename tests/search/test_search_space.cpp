@@ -26,9 +26,8 @@ struct Fixture {
 };
 
 Problem with_configuration_goal() {
-    Problem problem = test::ceiling_problem();
-    problem.goal.end_effector.reset();
-    problem.goal.configuration = ConfigurationGoal{2.0, 3.0, std::nullopt, 0.5, 0.1};
+    Problem problem = test::with_place(2, 3);
+    problem.goal.configuration->tolerance_m = 0.5;
     return problem;
 }
 
@@ -58,9 +57,7 @@ TEST_CASE("moved into the goal's tolerance, a configuration stays as near as the
 
 TEST_CASE("an arm that turns more than once reaches a direction by the shorter turn") {
     Problem problem = test::ceiling_problem();
-    problem.robot.arm.is_limited = true;
-    problem.robot.arm.lower_limit_rad = -200 * pi / 180;
-    problem.robot.arm.upper_limit_rad = 300 * pi / 180;
+    test::limit_arm(problem.robot, -200 * pi / 180, 300 * pi / 180);
     problem.goal.end_effector->direction_rad = 250 * pi / 180;
     const Fixture f(problem);
     const double once = 250 * pi / 180, before = -110 * pi / 180;
@@ -130,48 +127,31 @@ Goal random_goal(planning::Random& random) {
 
 /// The rules of the documentation once more, in other words: within (times a share) the tolerances or not.
 bool lies_within(const Goal& goal, const Configuration& c, double share) {
-    double dx = 0;
-    double dz = 0;
-    double turn = 0;
-    double most_turn = 0;
-    double most = 0;
-    std::optional<double> most_x;
-    std::optional<double> most_z;
+    const auto is_within = [share](const auto& to, double dx, double dz, double turn, double turn_tolerance_rad) {
+        if (std::abs(std::remainder(turn, 2 * pi)) > share * turn_tolerance_rad) {
+            return false;
+        }
+        if (!to.tolerance_x_m && !to.tolerance_z_m) {
+            return dx * dx + dz * dz <= share * share * to.tolerance_m * to.tolerance_m;
+        }
+        return std::abs(dx) <= share * to.tolerance_x_m.value_or(to.tolerance_m) &&
+               std::abs(dz) <= share * to.tolerance_z_m.value_or(to.tolerance_m);
+    };
     if (goal.end_effector) {
         const EndEffectorGoal& tip = *goal.end_effector;
-        dx = c.x_m + 1.2 * std::cos(c.arm_rad) - tip.x_m;
-        dz = c.z_m - 1.2 * std::sin(c.arm_rad) - tip.z_m;
-        turn = tip.direction_rad ? std::remainder(c.arm_rad - *tip.direction_rad, 2 * pi) : 0;
-        most_turn = tip.direction_tolerance_rad;
-        most = tip.tolerance_m;
-        most_x = tip.tolerance_x_m;
-        most_z = tip.tolerance_z_m;
-    } else {
-        const ConfigurationGoal& pose = *goal.configuration;
-        dx = pose.x_m ? c.x_m - *pose.x_m : 0;
-        dz = pose.z_m ? c.z_m - *pose.z_m : 0;
-        turn = pose.arm_rad ? std::remainder(c.arm_rad - *pose.arm_rad, 2 * pi) : 0;
-        most_turn = pose.tolerance_rad;
-        most = pose.tolerance_m;
-        most_x = pose.tolerance_x_m;
-        most_z = pose.tolerance_z_m;
+        return is_within(tip, c.x_m + 1.2 * std::cos(c.arm_rad) - tip.x_m, c.z_m - 1.2 * std::sin(c.arm_rad) - tip.z_m,
+                         c.arm_rad - tip.direction_rad.value_or(c.arm_rad), tip.direction_tolerance_rad);
     }
-    if (std::abs(turn) > share * most_turn) {
-        return false;
-    }
-    if (!most_x && !most_z) {
-        return dx * dx + dz * dz <= share * share * most * most;
-    }
-    return std::abs(dx) <= share * most_x.value_or(most) && std::abs(dz) <= share * most_z.value_or(most);
+    const ConfigurationGoal& pose = *goal.configuration;
+    return is_within(pose, c.x_m - pose.x_m.value_or(c.x_m), c.z_m - pose.z_m.value_or(c.z_m),
+                     c.arm_rad - pose.arm_rad.value_or(c.arm_rad), pose.tolerance_rad);
 }
 
 }  // namespace
 
 TEST_CASE("samples, distances and verdicts agree on where a goal is, whatever its tolerances") {
     planning::Random random(11);
-    int samples = 0;
-    int near = 0;
-    int met = 0;
+    int samples = 0, near = 0, met = 0;
     for (int k = 0; k < 300; ++k) {
         Problem problem = test::ceiling_problem();
         std::vector<Goal> goals{random_goal(random)};

@@ -1,14 +1,15 @@
 #pragma once
 
+#include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 
-// Where the tests let a vehicle hover.
+// Where the tests let a vehicle hover and fly.
 
 namespace downwash::test {
 
-inline constexpr double quarter_turn = 1.57079632679489661923;
 inline constexpr double radius_m = 0.1905;
 inline constexpr double hub_height_m = 0.06;
 inline constexpr double ceiling_m = 5;  // of ceiling_problem, wide over everything
@@ -18,16 +19,26 @@ inline HoverAnalysis below_ceiling(const FlightModel& model, double gap_m) {
     return analyse_hover(model, 0, ceiling_m - gap_m - hub_height_m, quarter_turn);
 }
 
-/// A ceiling, a slab with edges below it, the ground, a pipe: surfaces above and below, whole and partial.
-inline Problem cluttered_problem() {
+/// The wide ceiling alone.
+inline Problem ceiling_alone() {
     Problem problem = ceiling_problem();
-    problem.obstacles.push_back(box("slab", {2, 3, 0.4}, {0, 0, 3}));
-    Obstacle pipe;
-    pipe.name = "pipe";
-    pipe.shape = Cylinder{0.25, 6, {0, 1, 0}};
-    pipe.center_world_m = {3, 0, 2.5};
-    problem.obstacles.push_back(pipe);
+    problem.obstacles = {problem.obstacles[1]};
     return problem;
+}
+
+/// Hover anywhere in the cluttered problem, the arm in any direction.
+inline HoverAnalysis random_hover(const FlightModel& model, Random& random) {
+    const double x_m = random.uniform(-2, 4);
+    const double z_m = random.uniform(0.2, 4.9);
+    return analyse_hover(model, x_m, z_m, random.uniform(-2 * quarter_turn, 2 * quarter_turn));
+}
+
+/// The bounds and the margin of a problem.
+inline FlightRules rules_of(const Problem& problem) {
+    FlightRules rules;
+    rules.bounds = problem.bounds;
+    rules.margin_m = problem.planner.safety_margin_m;
+    return rules;
 }
 
 }  // namespace downwash::test

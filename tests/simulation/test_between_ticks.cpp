@@ -5,10 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "../support/random.hpp"
-#include "downwash/planner/solve.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/flight_batch.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;
@@ -36,16 +33,12 @@ Problem past_a_rod(double x_m, double z_m = 1.675, double rate_hz = 10) {
     Problem problem = test::ceiling_problem();
     problem.robot = slow_robot(rate_hz);
     problem.bounds = {-6, 6, 0.5, 9};
-    Obstacle rod{"rod", Cylinder{0.005, 1, {0, 1, 0}}, {x_m, 0, z_m}, {}};
-    problem.obstacles = {rod};
+    problem.obstacles = {{"rod", Cylinder{0.005, 1, {0, 1, 0}}, {x_m, 0, z_m}, {}}};
     return problem;
 }
 
 ReferencePoint rising_at(double z_m, double at_speed_m_s = speed_m_s) {
-    ReferencePoint point;
-    point.position[1] = z_m;
-    point.velocity[1] = at_speed_m_s;
-    return point;
+    return {{0, z_m, 0}, {0, at_speed_m_s, 0}, {}};
 }
 
 FlightState rising(const FlightModel& model) {
@@ -60,8 +53,7 @@ ReferenceSegment rise(const FlightModel& model) {
 
 SegmentFlight planned(const Problem& problem, double margin_m) {
     const auto model = make_flight_model(problem);
-    FlightRules rules;
-    rules.bounds = problem.bounds;
+    FlightRules rules = test::rules_of(problem);
     rules.margin_m = margin_m;
     FlightState one = rising(*model);
     const SegmentFlight flight = fly(*model, nullptr, rules, rise(*model), one);
@@ -84,28 +76,22 @@ Execution flown(const Problem& problem) {
 
 }  // namespace
 
-TEST_CASE("a rod that the arm passes between two ticks refuses a planned flight") {
-    const SegmentFlight hit = planned(past_a_rod(0.9), 0.01);
-    CHECK(hit.rejection == Rejection::collision);
-    CHECK(hit.ticks == 5);  // from 1.60 m to 1.75 m
+TEST_CASE("a planned flight is rejected where the arm passes a rod between two ticks") {
+    const auto hits_in_tick = [](const Problem& problem, double margin_m) {
+        const SegmentFlight hit = planned(problem, margin_m);
+        CHECK(hit.rejection == Rejection::collision);
+        return hit.ticks;
+    };
+    CHECK(hits_in_tick(past_a_rod(0.9), 0.01) == 5);  // from 1.60 m to 1.75 m
     CHECK(planned(past_a_rod(0.9), 0).rejection == Rejection::collision);
     // The arm ends at 1.2 m, rounded by 0.03 m: 0.065 m are left to a rod of half a centimetre at 1.3 m.
     CHECK(planned(past_a_rod(1.3), 0.01).rejection == Rejection::none);
     CHECK(planned(past_a_rod(1.3), 0.06).rejection == Rejection::none);
     CHECK(planned(past_a_rod(1.3), 0.07).rejection == Rejection::collision);
-}
-
-TEST_CASE("with a margin of half the way between two ticks the looks at the ticks are enough") {
-    // 0.075 m, and 0.04 m of clearance at both ticks.
-    const SegmentFlight hit = planned(past_a_rod(0.9), 0.075);
-    CHECK(hit.rejection == Rejection::collision);
-    CHECK(hit.ticks == 4);  // at 1.60 m already
-}
-
-TEST_CASE("a planned flight at ten times the rate meets the rod at the same height") {
-    const SegmentFlight hit = planned(past_a_rod(0.9, 1.675, 100), 0.012);
-    CHECK(hit.rejection == Rejection::collision);
-    CHECK(hit.ticks == 42);  // at 1.630 m: from 1.675 - 0.035 - 0.012 = 1.628 m on it is too near
+    // With a margin of half the way between two ticks the ticks are enough: 0.075 m, and 0.04 m of clearance at both.
+    CHECK(hits_in_tick(past_a_rod(0.9), 0.075) == 4);  // at 1.60 m already
+    // At ten times the rate it meets the rod at the same height.
+    CHECK(hits_in_tick(past_a_rod(0.9, 1.675, 100), 0.012) == 42);  // from 1.675 - 0.035 - 0.012 = 1.628 m on
 }
 
 TEST_CASE("a rod that the arm passes between two ticks ends a reported flight in a collision") {
@@ -131,25 +117,19 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
         problem.obstacles.push_back({"rod " + std::to_string(i), Cylinder{0.004, 1, {0, 1, 0}}, at, {}});
     }
     const auto model = make_flight_model(problem);
-    int refused = 0;
+    int rejected = 0;
     int accepted = 0;
     for (const double margin_m : {0.0, 0.004, 0.02}) {
-        FlightRules rules;
-        rules.bounds = problem.bounds;
+        FlightRules rules = test::rules_of(problem);
         rules.margin_m = margin_m;
         std::vector<FlightJob> jobs;
         while (jobs.size() < 80) {
-            ReferencePoint from;
-            from.position[0] = random.uniform(-4, 4);
-            from.position[1] = random.uniform(1.5, 4);
-            from.position[2] = random.uniform(-3, 3);
-            ReferencePoint to = from;
-            to.position[0] += random.uniform(-2, 2);
-            to.position[1] += random.uniform(-1, 1);
-            to.position[2] += random.uniform(-1, 1);
-            const PlanarPose pose = level_at(configuration_of(from));
-            if (!model->collisions().is_nearer_than(pose, margin_m)) {
-                jobs.push_back({model->state_at(pose), {{{from, to, random.integer(60, 120), model->tick().tick_s}}}});
+            const Configuration from{random.uniform(-4, 4), random.uniform(1.5, 4), random.uniform(-3, 3)};
+            const Configuration to{from.x_m + random.uniform(-2, 2), from.z_m + random.uniform(-1, 1),
+                                   from.arm_rad + random.uniform(-1, 1)};
+            if (!model->collisions().is_nearer_than(level_at(from), margin_m)) {
+                jobs.push_back({model->state_at(level_at(from)),
+                                {{{at_rest(from), at_rest(to), random.integer(60, 120), model->tick().tick_s}}}});
             }
         }
         std::vector<FlightJob> flown = jobs;
@@ -162,10 +142,10 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
             REQUIRE(leg.flight.rejection == flight.rejection);
             REQUIRE(leg.flight.ticks == flight.ticks);
             REQUIRE(std::memcmp(&leg.end, &state, sizeof state) == 0);
-            refused += flight.rejection == Rejection::collision;
+            rejected += flight.rejection == Rejection::collision;
             accepted += flight.rejection == Rejection::none;
         }
     }
-    CHECK(refused > 20);
+    CHECK(rejected > 20);
     CHECK(accepted > 20);
 }

@@ -6,34 +6,22 @@
 #include <vector>
 
 #include "../support/test_robot.hpp"
+#include "downwash/controllers/configuration.hpp"
 #include "downwash/simulation/closed_loop.hpp"
 
 // The closed loop far from every surface.
 
+using namespace downwash;
+using namespace downwash::test;
+
 namespace {
 
-using downwash::ModelInversion;
-using downwash::number_at;
-using downwash::number_count;
-using downwash::ReferencePoint;
-using downwash::Robot;
-using downwash::set_number_at;
-using downwash::test::gains_of;
-using downwash::test::plant_of;
-using downwash::test::test_robot;
-namespace controllers = downwash::controllers;
-namespace simulation = downwash::simulation;
 using State = simulation::State<double>;
 using Given = controllers::Actuation<double>;
 
-constexpr double quarter_turn = 1.57079632679489661923;
 constexpr double degree = quarter_turn / 90;
 constexpr double gravity = 9.80665;
 constexpr double tick_s = 0.01;
-
-struct FreeAir {
-    double operator()(int, double, double) const { return 1; }
-};
 
 simulation::TickModel model_of(const Robot& robot) {
     return {plant_of(robot), robot.controller.law, 1 / robot.controller.rate_hz};
@@ -49,8 +37,14 @@ State resting_at(double x_m, double z_m, double arm_rad) {
     return state;
 }
 
-ReferencePoint hold(double x_m, double z_m, double arm_rad) {
-    return {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}};
+/// Every memory that the gains can have, and rotors that lag.
+Robot robot_with_memory(double lag_s) {
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = lag_s;
+    gains_of(robot).attitude_kiu5 = 2;
+    gains_of(robot).arm_ki = 4;
+    gains_of(robot).rate_feed_forward = true;
+    return robot;
 }
 
 State flown(const simulation::TickModel& model, State state, const ReferencePoint& reference, int ticks) {
@@ -81,9 +75,7 @@ int settling_tick(const std::vector<double>& response, double final, double band
 /// The linear loops that the gains were chosen for, sampled and held like the real ones. A step of 1 from rest.
 std::vector<double> ideal_height(const ModelInversion& g, int ticks) {
     const double h = tick_s;
-    double z = 0;
-    double u = 0;
-    double integral = 0;
+    double z = 0, u = 0, integral = 0;
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
         response.push_back(z);
@@ -98,13 +90,8 @@ std::vector<double> ideal_height(const ModelInversion& g, int ticks) {
 /// Sideways the acceleration is g times the pitch, which follows its reference with poles of its own.
 std::vector<double> ideal_sideways(const ModelInversion& g, int ticks) {
     const double h = tick_s;
-    double x = 0;
-    double u = 0;
-    double integral = 0;
-    double pitch = 0;
-    double rate = 0;
-    double last = 0;
-    double filtered = 0;
+    double x = 0, u = 0, integral = 0;
+    double pitch = 0, rate = 0, last = 0, filtered = 0;
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
         response.push_back(x);
@@ -125,8 +112,7 @@ std::vector<double> ideal_sideways(const ModelInversion& g, int ticks) {
 
 std::vector<double> ideal_arm(const ModelInversion& g, int ticks) {
     const double h = tick_s;
-    double q = 0;
-    double u = 0;
+    double q = 0, u = 0;
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
         response.push_back(q);
@@ -156,7 +142,7 @@ TEST_CASE("Hover stands still for ten seconds with the arm in any direction") {
         State state = resting_at(1, 2, arm);
         double worst = 0;
         for (int i = 0; i < 1000; ++i) {
-            state = flown(model, state, hold(1, 2, arm), 1);
+            state = flown(model, state, at_rest({1, 2, arm}), 1);
             worst = std::max({worst, std::abs(state.plant.q[0] - 1), std::abs(state.plant.q[1] - 2),
                               std::abs(state.plant.q[2]), std::abs(state.plant.q[3] - arm)});
         }
@@ -171,11 +157,11 @@ TEST_CASE("From 5 cm beside its place the vehicle returns as the gains foretell 
     const int expected = std::max(settling_tick(ideal_height(gains_of(robot), 6000), 1, 0.001 / 0.05),
                                   settling_tick(ideal_sideways(gains_of(robot), 6000), 1, 0.001 / 0.05));
     INFO("expected to be back after ticks: " << expected);
-    State state = flown(model, resting_at(0.95, 2.05, arm), hold(1, 2, arm), expected * 11 / 10);
+    State state = flown(model, resting_at(0.95, 2.05, arm), at_rest({1, 2, arm}), expected * 11 / 10);
     double worst_m = 0;
     double worst_rad = 0;
     for (int i = 0; i < 1000; ++i) {
-        state = flown(model, state, hold(1, 2, arm), 1);
+        state = flown(model, state, at_rest({1, 2, arm}), 1);
         worst_m = std::max({worst_m, std::abs(state.plant.q[0] - 1), std::abs(state.plant.q[1] - 2)});
         worst_rad = std::max({worst_rad, std::abs(state.plant.q[2]), std::abs(state.plant.q[3] - arm)});
     }
@@ -188,7 +174,7 @@ TEST_CASE("A step of a metre upward follows the linear loop of the gains") {
     const auto model = model_of(robot);
     constexpr int ticks = 3000;
     const auto ideal = ideal_height(gains_of(robot), ticks);
-    const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(0, 3, quarter_turn), ticks, 1);
+    const auto response = response_of(model, resting_at(0, 2, quarter_turn), at_rest({0, 3, quarter_turn}), ticks, 1);
     double worst = 0;
     for (std::size_t i = 0; i < response.size(); ++i) {
         worst = std::max(worst, std::abs(response[i] - 2 - ideal[i]));
@@ -199,28 +185,21 @@ TEST_CASE("A step of a metre upward follows the linear loop of the gains") {
     CHECK(std::abs(settling_tick(response, 3, 0.02) - expected) <= 1);
 }
 
-TEST_CASE("A step of a metre sideways settles when the linear loop of the gains does") {
+TEST_CASE("Steps of a metre sideways and of 60 degrees of the arm settle when the linear loops of the gains do") {
     const Robot robot = test_robot();
     const auto model = model_of(robot);
-    constexpr int ticks = 3000;
-    const int expected = settling_tick(ideal_sideways(gains_of(robot), ticks), 1, 0.02);
-    const auto response = response_of(model, resting_at(0, 2, quarter_turn), hold(1, 2, quarter_turn), ticks, 0);
-    const int settled = settling_tick(response, 1, 0.02);
-    INFO("settles after ticks: " << settled << ", expected: " << expected);
-    CHECK(std::abs(settled - expected) <= expected / 50);
-}
-
-TEST_CASE("A step of 60 degrees of the arm settles when the linear loop of the gains does") {
-    const Robot robot = test_robot();
-    const auto model = model_of(robot);
-    constexpr int ticks = 1000;
-    const int expected = settling_tick(ideal_arm(gains_of(robot), ticks), 1, 0.02);
-    const double from = 30 * degree;
-    const double to = 90 * degree;
-    const auto response = response_of(model, resting_at(0, 2, from), hold(0, 2, to), ticks, 3);
-    const int settled = settling_tick(response, to, 0.02 * (to - from));
-    INFO("settles after ticks: " << settled << ", expected: " << expected);
-    CHECK(std::abs(settled - expected) <= expected / 20);
+    const auto check = [](const std::vector<double>& ideal, const std::vector<double>& response, double from, double to,
+                          int parts) {
+        const int expected = settling_tick(ideal, 1, 0.02);
+        const int settled = settling_tick(response, to, 0.02 * (to - from));
+        INFO("settles after ticks: " << settled << ", expected: " << expected);
+        CHECK(std::abs(settled - expected) <= expected / parts);
+    };
+    check(ideal_sideways(gains_of(robot), 3000),
+          response_of(model, resting_at(0, 2, quarter_turn), at_rest({1, 2, quarter_turn}), 3000, 0), 0, 1, 50);
+    check(ideal_arm(gains_of(robot), 1000),
+          response_of(model, resting_at(0, 2, 30 * degree), at_rest({0, 2, 90 * degree}), 1000, 3), 30 * degree,
+          90 * degree, 20);
 }
 
 TEST_CASE("A swing of the arm hardly moves the vehicle, because its reaction is foreseen") {
@@ -229,7 +208,7 @@ TEST_CASE("A swing of the arm hardly moves the vehicle, because its reaction is 
     double pitch = 0;
     double way_m = 0;
     for (int i = 0; i < 500; ++i) {
-        state = flown(model, state, hold(0, 2, 90 * degree), 1);
+        state = flown(model, state, at_rest({0, 2, 90 * degree}), 1);
         pitch = std::max(pitch, std::abs(state.plant.q[2]));
         way_m = std::max({way_m, std::abs(state.plant.q[0]), std::abs(state.plant.q[1] - 2)});
     }
@@ -246,8 +225,8 @@ TEST_CASE("A tick hides nothing: the same arguments give the same bytes") {
     for (int i = 0; i < 100; ++i) {
         Given first_given{};
         Given second_given{};
-        const State first = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, first_given);
-        const State second = simulation::tick(model, state, hold(1, 2.5, -0.8), FreeAir{}, second_given);
+        const State first = simulation::tick(model, state, at_rest({1, 2.5, -0.8}), FreeAir{}, first_given);
+        const State second = simulation::tick(model, state, at_rest({1, 2.5, -0.8}), FreeAir{}, second_given);
         REQUIRE(same_bytes(first, second));
         REQUIRE(std::memcmp(&first_given, &second_given, sizeof(Given)) == 0);
         state = first;
@@ -256,13 +235,8 @@ TEST_CASE("A tick hides nothing: the same arguments give the same bytes") {
 
 TEST_CASE("A flight that is split and resumed from a copied state ends in the same bytes") {
     for (const double lag_s : {0.0, 0.012}) {
-        Robot robot = test_robot();
-        robot.rotors.time_constant_s = lag_s;
-        gains_of(robot).attitude_kiu5 = 2;
-        gains_of(robot).arm_ki = 4;
-        gains_of(robot).rate_feed_forward = true;
-        const auto model = model_of(robot);
-        const ReferencePoint reference = hold(0.2, 2.2, 0.1);
+        const auto model = model_of(robot_with_memory(lag_s));
+        const ReferencePoint reference = at_rest({0.2, 2.2, 0.1});
         const State start = resting_at(0, 2, 0.3);
         const State whole = flown(model, start, reference, 300);
         const State middle = flown(model, start, reference, 137);
@@ -277,13 +251,8 @@ TEST_CASE("A flight that is split and resumed from a copied state ends in the sa
 
 TEST_CASE("Every number of the state matters to what follows") {
     // If one did not, it would be dead weight; if something else did, the flight above could not be resumed.
-    Robot robot = test_robot();
-    robot.rotors.time_constant_s = 0.012;
-    gains_of(robot).attitude_kiu5 = 2;
-    gains_of(robot).arm_ki = 4;
-    gains_of(robot).rate_feed_forward = true;
-    const auto model = model_of(robot);
-    const ReferencePoint reference = hold(0.2, 2.2, 0.1);
+    const auto model = model_of(robot_with_memory(0.012));
+    const ReferencePoint reference = at_rest({0.2, 2.2, 0.1});
     const State state = flown(model, resting_at(0, 2, 0.3), reference, 50);
     const State next = flown(model, state, reference, 2);
     simulation::State<bool> is_missing{};
@@ -309,21 +278,19 @@ TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the inte
     const State state = resting_at(0, 2, 0);
     Given given{};
 
-    const State calm = simulation::tick(model, state, hold(0, 2.05, 0), FreeAir{}, given);
+    const State calm = simulation::tick(model, state, at_rest({0, 2.05, 0}), FreeAir{}, given);
     CHECK(given.saturation < 1);
     CHECK(memory_of(calm).position_integral[1] == Approx(0.05 * 0.01));
 
-    const State lifted = simulation::tick(model, state, hold(0, 50, 0), FreeAir{}, given);
-    CHECK(given.saturation > 1);
-    CHECK(*std::max_element(given.command.thrust_n, given.command.thrust_n + 4) == 28);
-    CHECK(memory_of(lifted).position_integral[1] == 0);
+    for (const double z_m : {50.0, -50.0}) {
+        const State asked = simulation::tick(model, state, at_rest({0, z_m, 0}), FreeAir{}, given);
+        CHECK(given.saturation > 1);
+        const auto [least, most] = std::minmax_element(given.command.thrust_n, given.command.thrust_n + 4);
+        CHECK((z_m > 0 ? *most == 28 : *least == 0));
+        CHECK(memory_of(asked).position_integral[1] == 0);
+    }
 
-    const State dropped = simulation::tick(model, state, hold(0, -50, 0), FreeAir{}, given);
-    CHECK(given.saturation > 1);
-    CHECK(*std::min_element(given.command.thrust_n, given.command.thrust_n + 4) == 0);
-    CHECK(memory_of(dropped).position_integral[1] == 0);
-
-    const State swung = simulation::tick(model, state, hold(0, 2, 3), FreeAir{}, given);
+    const State swung = simulation::tick(model, state, at_rest({0, 2, 3}), FreeAir{}, given);
     CHECK(given.saturation > 1);
     CHECK(given.command.joint_torque_nm == 12);
     CHECK(memory_of(swung).arm_integral == 0);
@@ -332,7 +299,7 @@ TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the inte
 
 TEST_CASE("Saturation is the demand over the greatest thrust, and above one beyond either limit of a rotor") {
     const auto plant = plant_of(test_robot());
-    const auto saturation = [&plant](std::array<double, downwash::max_rotors> demand_n) {
+    const auto saturation = [&plant](std::array<double, max_rotors> demand_n) {
         return controllers::thrust_saturation(plant, demand_n.data());
     };
     CHECK(saturation({28.0, 28.0, 28.0, 28.0}) == 1);
@@ -346,24 +313,11 @@ TEST_CASE("Saturation is the demand over the greatest thrust, and above one beyo
 TEST_CASE("hover holds with rotor lag up to 30 ms, whatever the arm's direction") {
     // The joint torque that answers a pitch torque must not come before it: a hanging arm would diverge.
     for (const double lag_s : {0.01, 0.02, 0.03}) {
-        for (const double arm : {-1.5707963267948966, -0.8, 0.0, 0.8, 1.5707963267948966, 3.0}) {
+        for (const double arm : {-quarter_turn, -0.8, 0.0, 0.8, quarter_turn, 3.0}) {
             CAPTURE(lag_s, arm);
-            auto robot = downwash::test::test_robot();
+            Robot robot = test_robot();
             robot.rotors.time_constant_s = lag_s;
-            const simulation::TickModel model{make_plant_model(robot.multirotor, robot.arm, robot.rotors),
-                                              robot.controller.law, 0.01};
-            simulation::State<double> state{};
-            state.plant.q[3] = arm;
-            state.memory = controllers::remembered(ModelInversion::rested(0.0));
-            for (int i = 0; i < model.plant.rotor_count; ++i) {
-                state.plant.thrust_n[i] = model.plant.force_share[i] * 4.95 * 9.80665;
-            }
-            const ReferencePoint reference{{0.2, 0.1, arm + 0.2}, {0, 0, 0}, {0, 0, 0}};
-            Given given{};
-            for (int i = 0; i < 1000; ++i) {
-                state = simulation::tick(
-                    model, state, reference, [](int, double, double) { return 1.0; }, given);
-            }
+            const State state = flown(model_of(robot), resting_at(0, 0, arm), at_rest({0.2, 0.1, arm + 0.2}), 1000);
             CHECK(std::abs(state.plant.q[0] - 0.2) < 0.02);
             CHECK(std::abs(state.plant.q[1] - 0.1) < 0.02);
             CHECK(std::abs(state.plant.q[2]) < 0.01);
@@ -383,7 +337,7 @@ TEST_CASE("The joint torque balances the thrust that lagging rotors give in the 
     state.plant.thrust_n[0] *= 0.5;  // far from what will be commanded
     state.plant.thrust_n[3] *= 0.7;
     Given given{};
-    static_cast<void>(simulation::tick(model, state, hold(0, 2, arm_rad), FreeAir{}, given));
+    static_cast<void>(simulation::tick(model, state, at_rest({0, 2, arm_rad}), FreeAir{}, given));
     double thrust_n = 0;
     double pitch_torque_nm = 0;
     for (int i = 0; i < 4; ++i) {

@@ -11,16 +11,8 @@ using namespace downwash;
 
 namespace {
 
-ReferencePoint rest(double x_m, double z_m, double arm_rad) {
-    ReferencePoint point;
-    point.position[0] = x_m;
-    point.position[1] = z_m;
-    point.position[2] = arm_rad;
-    return point;
-}
-
-std::vector<ReferenceKnot> from_start(const Problem& problem, const ReferencePoint& to, std::int64_t ticks) {
-    return {{0, rest(problem.start.x_m, problem.start.z_m, problem.start.arm_rad)}, {ticks, to}};
+std::vector<ReferenceKnot> from_start(const Problem& problem, const Configuration& to, std::int64_t ticks) {
+    return {{0, at_rest(problem.start.configuration())}, {ticks, at_rest(to)}};
 }
 
 Execution flown(const Problem& problem, const std::vector<ReferenceKnot>& knots, bool aero = true) {
@@ -32,7 +24,7 @@ Execution flown(const Problem& problem, const std::vector<ReferenceKnot>& knots,
 
 TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, hold included") {
     const Problem problem = test::with_place(2, 2.5);
-    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    const Execution e = flown(problem, from_start(problem, {2, 2.5, 1}, 1300));
     CHECK(e.outcome == Outcome::ok);
     CHECK(e.goal_error_m < 0.02);
     CHECK(e.rows.size() == 1300 + 500 + 1);
@@ -40,11 +32,7 @@ TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, ho
     CHECK(e.rows.back().t_s == e.duration_s);
     CHECK(e.max_saturation < 1);
     CHECK(e.max_tracking_error_m < 0.1);
-}
-
-TEST_CASE("the energy of a flight is the integral of its power") {
-    const Problem problem = test::with_place(2, 2.5);
-    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    // Its energy is the integral of its power.
     double integral_j = 0;
     for (std::size_t i = 1; i < e.rows.size(); ++i) {
         integral_j += e.rows[i - 1].power_w * 0.01;
@@ -53,47 +41,40 @@ TEST_CASE("the energy of a flight is the integral of its power") {
     CHECK(e.rows.back().energy_j == e.energy_j);
 }
 
-TEST_CASE("a reference through a wall ends in a collision and the log with the offending row") {
-    Problem problem = test::with_place(2, 2);
-    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
-    const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300), false);
-    CHECK(e.outcome == Outcome::collision);
-    CHECK(e.rows.back().clearance_m <= 0);
-    for (std::size_t i = 0; i + 1 < e.rows.size(); ++i) {
-        REQUIRE(e.rows[i].clearance_m > 0);
+TEST_CASE("a reference through a wall ends in a collision, or before it where a rotor disc leaves the flyable area") {
+    Problem problem = test::walled_problem();
+    problem.goal = test::configuration_goal(2, 2);
+    const auto through = from_start(problem, {2, 2, 1.57}, 1300);
+    const Execution hit = flown(problem, through, false);
+    CHECK(hit.outcome == Outcome::collision);
+    CHECK(hit.rows.back().clearance_m <= 0);
+    for (std::size_t i = 0; i + 1 < hit.rows.size(); ++i) {
+        REQUIRE(hit.rows[i].clearance_m > 0);
     }
-    CHECK(e.min_clearance_m == e.rows.back().clearance_m);
-    CHECK(e.duration_s < 18);
+    CHECK(hit.min_clearance_m == hit.rows.back().clearance_m);
+    CHECK(hit.duration_s < 18);
+
+    const Execution near = flown(problem, through);
+    CHECK(near.outcome == Outcome::left_flyable_area);
+    CHECK(near.rows.back().clearance_m > 0);
+    CHECK(near.rows.back().clearance_m < 0.3 * problem.robot.rotors.radius_m + 0.01);
 }
 
-TEST_CASE("a rotor disc that comes too near a wall has left the flyable area before it touches") {
-    Problem problem = test::with_place(2, 2);
-    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {0, 0, 2.5}));
-    const Execution e = flown(problem, from_start(problem, rest(2, 2, 1.57), 1300));
-    CHECK(e.outcome == Outcome::left_flyable_area);
-    CHECK(e.rows.back().clearance_m > 0);
-    CHECK(e.rows.back().clearance_m < 0.3 * problem.robot.rotors.radius_m + 0.01);
-}
-
-TEST_CASE("a plan that ends elsewhere misses the goal") {
+TEST_CASE("a plan that ends elsewhere misses the goal, and so does one that nothing can follow") {
     const Problem problem = test::with_place(2, 2.5);
-    const Execution e = flown(problem, from_start(problem, rest(1.5, 2.5, 1), 1300));
-    CHECK(e.outcome == Outcome::goal_missed);
-    CHECK(e.goal_error_m == Approx(0.5).margin(0.02));
-}
-
-TEST_CASE("a reference that nothing can follow is lost, not solved") {
-    const Problem problem = test::with_place(2, 2.5);
-    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 60));
-    CHECK(e.outcome != Outcome::ok);
-    CHECK(e.max_saturation > 1);
+    const Execution elsewhere = flown(problem, from_start(problem, {1.5, 2.5, 1}, 1300));
+    CHECK(elsewhere.outcome == Outcome::goal_missed);
+    CHECK(elsewhere.goal_error_m == Approx(0.5).margin(0.02));
+    const Execution too_fast = flown(problem, from_start(problem, {2, 2.5, 1}, 60));
+    CHECK(too_fast.outcome != Outcome::ok);
+    CHECK(too_fast.max_saturation > 1);
 }
 
 TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without surface effects") {
     Problem problem = test::with_place(-4, 4.7);
     problem.start.z_m = 4.7;
     problem.goal.hold_s = 20;
-    const std::vector<ReferenceKnot> hover{{0, rest(-4, 4.7, problem.start.arm_rad)}};
+    const std::vector<ReferenceKnot> hover{{0, at_rest({-4, 4.7, problem.start.arm_rad})}};
     const Execution blind = flown(problem, hover, false);
     CHECK(blind.outcome == Outcome::ok);
     CHECK_FALSE(blind.aero);
@@ -107,7 +88,7 @@ TEST_CASE("surfaces save energy where the vehicle can hold near them") {
     Problem problem = test::with_place(-4, 0.7);
     problem.start.z_m = 0.7;
     problem.start.arm_rad = 0;
-    const std::vector<ReferenceKnot> hover{{0, rest(-4, 0.7, 0)}};
+    const std::vector<ReferenceKnot> hover{{0, at_rest({-4, 0.7, 0})}};
     const Execution in_effect = flown(problem, hover, true);
     const Execution out_of_effect = flown(problem, hover, false);
     REQUIRE(in_effect.outcome == Outcome::ok);
@@ -117,7 +98,7 @@ TEST_CASE("surfaces save energy where the vehicle can hold near them") {
 TEST_CASE("without obstacles the clearance is infinite and nothing collides") {
     Problem problem = test::with_place(2, 2.5);
     problem.obstacles.clear();
-    const Execution e = flown(problem, from_start(problem, rest(2, 2.5, 1), 1300));
+    const Execution e = flown(problem, from_start(problem, {2, 2.5, 1}, 1300));
     CHECK(e.outcome == Outcome::ok);
     CHECK(e.min_clearance_m == std::numeric_limits<double>::infinity());
 }
@@ -129,12 +110,12 @@ TEST_CASE("the flight through the map stays beside the flight with direct aerody
     FlightRules rules;
     rules.bounds = problem.bounds;
     FlightState state = start_state(*model, problem.start);
-    const ReferencePoint from = rest(problem.start.x_m, problem.start.z_m, problem.start.arm_rad);
+    const auto knots = from_start(problem, {2, 4.0, 1}, 1500);
     const SegmentFlight flight =
-        fly(*model, map.get(), rules, ReferenceSegment(from, rest(2, 4.0, 1), 1500, 0.01), state);
+        fly(*model, map.get(), rules, ReferenceSegment(knots[0].point, knots[1].point, 1500, 0.01), state);
     CHECK(flight.rejection == Rejection::none);
     CHECK(flight.ticks == 1500);
-    const Execution e = flown(problem, from_start(problem, rest(2, 4.0, 1), 1500));
+    const Execution e = flown(problem, knots);
     for (int i = 0; i < 4; ++i) {
         CHECK(state.plant.q[i] == Approx(e.rows[1500].q[i]).margin(2e-3));
     }
@@ -147,9 +128,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
     stop.configuration->x_m = -3;
     stop.hold_s = 2;
     const double down = problem.start.arm_rad;
-    const ReferencePoint start = rest(-4, 2, down);
-    const ReferencePoint middle = rest(-3, 2, down);
-    const ReferencePoint end = rest(-2, 2, down);
+    const ReferencePoint start = at_rest({-4, 2, down}), middle = at_rest({-3, 2, down}), end = at_rest({-2, 2, down});
     const auto flown_by = [&](const std::vector<ReferenceKnot>& knots, const std::vector<Goal>& goals) {
         return execute(*model, start_state(*model, problem.start), knots, goals, true);
     };
@@ -183,7 +162,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
 TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for the last second") {
     Problem problem = test::with_place(-3, 2);  // from (-4, 2)
     problem.goal.configuration->tolerance_m = 0.05;
-    const std::vector<ReferenceKnot> quick = from_start(problem, rest(-3, 2, problem.start.arm_rad), 200);
+    const std::vector<ReferenceKnot> quick = from_start(problem, {-3, 2, problem.start.arm_rad}, 200);
     const auto error_m = [](const FlightRow& row) { return std::hypot(row.q[0] + 3, row.q[1] - 2); };
     problem.goal.hold_s = 0.5;
     const Execution early = flown(problem, quick);

@@ -2,9 +2,6 @@
 #include <cstring>
 #include <map>
 
-#include "../support/random.hpp"
-#include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/flight_batch.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;
@@ -21,20 +18,14 @@ std::vector<std::pair<Instructions, int>> ways_to_fly() {
     return ways;
 }
 
-ReferencePoint random_point(const Bounds& bounds, Random& random) {
-    ReferencePoint point;
-    point.position[0] = random.uniform(bounds.x_low_m, bounds.x_high_m);
-    point.position[1] = random.uniform(bounds.z_low_m, bounds.z_high_m);
-    point.position[2] = random.uniform(-3, 3);
-    return point;
-}
-
 /// Flights of one to three legs all over a scene: through obstacles, too fast, from moving starts.
 std::vector<FlightJob> random_jobs(const Problem& problem, const FlightModel& model, int count, std::uint64_t seed) {
     Random random(seed);
     std::vector<FlightJob> jobs;
     while (static_cast<int>(jobs.size()) < count) {
-        ReferencePoint from = random_point(problem.bounds, random);
+        ReferencePoint from =
+            at_rest({random.uniform(problem.bounds.x_low_m, problem.bounds.x_high_m),
+                     random.uniform(problem.bounds.z_low_m, problem.bounds.z_high_m), random.uniform(-3, 3)});
         const PlanarPose pose{from.position[0], from.position[1], random.uniform(-0.05, 0.05), from.position[2]};
         const double u[4] = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0, random.uniform(-0.1, 0.1)};
         if (model.collisions().is_nearer_than(pose, 0.05)) {
@@ -102,13 +93,6 @@ std::map<Rejection, int> rejections_of_equal_flights(const Problem& problem, boo
     return rejections;
 }
 
-FlightRules rules_of(const Problem& problem) {
-    FlightRules rules;
-    rules.bounds = problem.bounds;
-    rules.margin_m = problem.planner.safety_margin_m;
-    return rules;
-}
-
 }  // namespace
 
 TEST_CASE("edges that fly side by side come out bit for bit as one by one, whatever ends them") {
@@ -127,12 +111,9 @@ TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm 
     Problem problem = cluttered_problem();
     problem.robot.rotors.time_constant_s = 0.02;
     problem.robot.rotors.positions_m[0][2] = 0.1;
-    problem.robot.arm.is_limited = true;
-    problem.robot.arm.lower_limit_rad = -2;
-    problem.robot.arm.upper_limit_rad = 2;
+    limit_arm(problem.robot, -2, 2);
     problem.aero.ground = SurfaceEffect(EffectModel::multirotor_body);
-    const auto rejections = rejections_of_equal_flights(problem, true, rules_of(problem), 100);
-    CHECK(rejections.count(Rejection::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, true, rules_of(problem), 100).count(Rejection::none) == 1);
 }
 
 TEST_CASE("clearance is measured side by side as one by one") {
@@ -149,22 +130,18 @@ TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as o
 
     const auto model = make_flight_model(cluttered_problem());
     const PlanarPose tumbling{0, 2, 1.5, 0};
-    ReferencePoint at;
-    at.position[1] = 2;
+    const ReferencePoint at = at_rest({0, 2, 0});
     std::vector<FlightJob> jobs{{model->state_at(tumbling), {{{at, at, 100, model->tick().tick_s}}}}};
     FlightPool(*model, nullptr, rules_of(problem), nullptr).fly(jobs);
     CHECK(jobs[0].rejection() == Rejection::unstable);
     CHECK(jobs[0].legs[0].flight.ticks == 1);
 }
 
-TEST_CASE("a job that has to meet the goal is refused as soon as it does not") {
+TEST_CASE("a job that has to meet the goal is rejected as soon as it does not") {
     const Problem problem = ceiling_problem();
     const auto model = make_flight_model(problem);
     FlightRules rules = rules_of(problem);
-    ReferencePoint at;
-    at.position[0] = 3;
-    at.position[1] = 3.6;
-    at.position[2] = -1.5707963267948966;  // the arm points up to the goal at (3, 4.8)
+    const ReferencePoint at = at_rest({3, 3.6, -quarter_turn});  // the arm points up to the goal at (3, 4.8)
     FlightJob held{model->state_at(level_at(configuration_of(at))), {{{at, at, 500, model->tick().tick_s}}}, 100};
     FlightJob missed = held;
     missed.legs[0].segment = {at, at, 120, model->tick().tick_s};
@@ -188,14 +165,12 @@ TEST_CASE("holds are judged at every tick of their last second, by place, angle 
     const FlightRules rules = rules_of(problem);
     const double tick_s = model->tick().tick_s;
     constexpr std::int64_t judged = 100;
-    Goal goal = problem.goal;
+    const Goal& goal = problem.goal;
     Random random(5);
     std::vector<FlightJob> jobs, all;
     for (int n = 0; n < 400; ++n) {
-        ReferencePoint at;
-        at.position[0] = 3 + random.uniform(-0.08, 0.08);
-        at.position[1] = 3.6 + random.uniform(-0.08, 0.08);
-        at.position[2] = -1.5707963267948966;
+        const ReferencePoint at =
+            at_rest({3 + random.uniform(-0.08, 0.08), 3.6 + random.uniform(-0.08, 0.08), -quarter_turn});
         const PlanarPose pose{at.position[0] + random.uniform(-0.1, 0.1), at.position[1] + random.uniform(-0.1, 0.1), 0,
                               at.position[2] + random.uniform(-0.1, 0.1)};
         const double u[4] = {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0, random.uniform(-0.2, 0.2)};
@@ -261,9 +236,7 @@ TEST_CASE("a batch can be ended from outside") {
     FlightRules rules = rules_of(problem);
     int questions = 0;
     rules.is_over = [&questions] { return ++questions > 3; };
-    ReferencePoint at;
-    at.position[0] = 0;
-    at.position[1] = 2;
+    const ReferencePoint at = at_rest({0, 2, 0});
     std::vector<FlightJob> jobs(
         5, FlightJob{model->state_at({0, 2, 0, 0}), {{{at, at, 100000000, model->tick().tick_s}}}});
     FlightPool(*model, nullptr, rules, nullptr).fly(jobs);

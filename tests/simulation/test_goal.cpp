@@ -4,18 +4,23 @@
 #include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/simulation/execution.hpp"
 
 using namespace downwash;
+using test::configuration_goal;
+using test::tip_goal;
 
-TEST_CASE("goal errors of an end effector and of a configuration by hand") {
-    const Problem problem = test::ceiling_problem();
-    const auto model = make_flight_model(problem);
+namespace {
+
+/// The model of the ceiling problem.
+struct Fixture {
+    std::shared_ptr<const FlightModel> model = make_flight_model(test::ceiling_problem());
     const PlantModel& plant = model->tick().plant;
-    Goal goal;
-    goal.end_effector = EndEffectorGoal{};
-    goal.end_effector->x_m = 1;
-    goal.end_effector->z_m = 2;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "goal errors of an end effector and of a configuration by hand") {
+    Goal goal = tip_goal(1, 2);
     const PlanarPose forward{-0.2, 2.3, 0, 0};  // tip at (1.0, 2.3)
     CHECK(goal_error(goal, plant, forward).distance_m == Approx(0.3));
     goal.end_effector->direction_rad = 0.2;
@@ -23,9 +28,7 @@ TEST_CASE("goal errors of an end effector and of a configuration by hand") {
     const PlanarPose turned{-0.2, 2.3, 0, 2 * 3.14159265358979323846};
     CHECK(goal_error(goal, plant, turned).angle_rad == Approx(0.2));
 
-    Goal configured;
-    configured.configuration = ConfigurationGoal{};
-    configured.configuration->z_m = 2;
+    Goal configured = configuration_goal({}, 2);
     CHECK(goal_error(configured, plant, forward).distance_m == Approx(0.3));
     CHECK(goal_error(configured, plant, forward).angle_rad == 0);
     configured.configuration->x_m = 0.2;
@@ -35,19 +38,9 @@ TEST_CASE("goal errors of an end effector and of a configuration by hand") {
     CHECK_FALSE(is_met(goal_error(configured, plant, forward)));
 }
 
-TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
-    const Problem problem = test::ceiling_problem();
-    const auto model = make_flight_model(problem);
-    const PlantModel& plant = model->tick().plant;
-    Goal goal;
-    goal.configuration = ConfigurationGoal{};
-    goal.configuration->x_m = 0;
-    goal.configuration->z_m = 2;
-    goal.configuration->tolerance_m = 0.1;
-    const auto share_at = [&](double x_m, double z_m) {
-        const PlanarPose q{x_m, z_m, 0, 0};
-        return goal_error(goal, plant, q).used_share;
-    };
+TEST_CASE_METHOD(Fixture, "tolerances of x and z by themselves make a rectangle of the disc") {
+    Goal goal = configuration_goal(0, 2);  // within 0.1 m
+    const auto share_at = [&](double x_m, double z_m) { return goal_error(goal, plant, {x_m, z_m, 0, 0}).used_share; };
     CHECK(share_at(0.06, 2.08) == Approx(1));
     CHECK(share_at(0.09, 2.09) == Approx(0.9 * std::sqrt(2.0)));
     goal.configuration->tolerance_x_m = 0.5;
@@ -56,29 +49,17 @@ TEST_CASE("tolerances of x and z by themselves make a rectangle of the disc") {
     CHECK(share_at(0, 2.2) == Approx(2));
     goal.configuration->tolerance_z_m = 0.05;
     CHECK(share_at(0.25, 2.04) == Approx(0.8));
-    const PlanarPose q{0.3, 2.4, 0, 0};
-    CHECK(goal_error(goal, plant, q).distance_m == Approx(0.5));  // as the crow flies, whatever the tolerances
+    CHECK(goal_error(goal, plant, {0.3, 2.4, 0, 0}).distance_m == Approx(0.5));  // Euclidean, whatever the tolerances
 
-    Goal tip;
-    tip.end_effector = EndEffectorGoal{};
-    tip.end_effector->x_m = 1.2;
-    tip.end_effector->z_m = 2;
+    Goal tip = tip_goal(1.2, 2);
     tip.end_effector->tolerance_z_m = 0.4;
-    const PlanarPose forward{0.05, 2.1, 0, 0};  // tip at (1.25, 2.1)
-    CHECK(goal_error(tip, plant, forward).used_share == Approx(0.5));
+    CHECK(goal_error(tip, plant, {0.05, 2.1, 0, 0}).used_share == Approx(0.5));  // tip at (1.25, 2.1)
 }
 
-TEST_CASE("of several goals the nearest by its own tolerances counts, with its own hold") {
-    const Problem problem = test::ceiling_problem();
-    const auto model = make_flight_model(problem);
-    const PlantModel& plant = model->tick().plant;
-    Goal strict;
-    strict.configuration = ConfigurationGoal{};
-    strict.configuration->x_m = 0;
-    strict.configuration->tolerance_m = 0.1;
+TEST_CASE_METHOD(Fixture, "of several goals the nearest by its own tolerances counts, with its own hold") {
+    Goal strict = configuration_goal(0, {});  // within 0.1 m
     strict.hold_s = 3;
-    Goal loose = strict;
-    loose.configuration->x_m = 2;
+    Goal loose = configuration_goal(2, {});
     loose.configuration->tolerance_m = 1;
     loose.hold_s = 7;
     Goal goal;
@@ -90,35 +71,24 @@ TEST_CASE("of several goals the nearest by its own tolerances counts, with its o
     const PlanarPose beside{0.05, 0, 0, 0};
     CHECK(nearest_goal(goal, plant, beside).hold_s == 3);
     CHECK(is_met(goal_error(goal, plant, beside)));
-    ReferencePoint at;
-    at.position[0] = 1.5;
-    CHECK(hold_ticks(goal, *model, at) == 700);
-    at.position[0] = 0.05;
-    CHECK(hold_ticks(goal, *model, at) == 300);
+    CHECK(hold_ticks(goal, *model, at_rest({1.5, 0, 0})) == 700);
+    CHECK(hold_ticks(goal, *model, at_rest({0.05, 0, 0})) == 300);
 }
 
-TEST_CASE("within the motion that a goal leaves it stays met, and not much more would do") {
-    const Problem problem = test::ceiling_problem();
-    const auto model = make_flight_model(problem);
-    const PlantModel& plant = model->tick().plant;
+TEST_CASE_METHOD(Fixture, "within the motion that a goal leaves it stays met, and not much more would do") {
     const double reach_m = model->collisions().body_reach_m();
     const double joint_reach_m = std::hypot(plant.joint_x_m, plant.joint_z_m);
     test::Random random(3);
+    const auto coin = [&random] { return random.integer(0, 1) == 0; };
     int met = 0, lost = 0;
     for (int n = 0; n < 20000; ++n) {
         Goal goal;
-        if (random.integer(0, 1) == 0) {
-            goal.end_effector = EndEffectorGoal{};
-            goal.end_effector->x_m = 1.2;
-            goal.end_effector->direction_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
-            if (random.integer(0, 1) == 0) {
-                goal.end_effector->tolerance_x_m = 0.2;
-            }
+        if (coin()) {
+            goal = tip_goal(1.2, 0);
+            goal.end_effector->direction_rad = coin() ? std::optional(0.0) : std::nullopt;
+            goal.end_effector->tolerance_x_m = coin() ? std::optional(0.2) : std::nullopt;
         } else {
-            goal.configuration = ConfigurationGoal{};
-            goal.configuration->x_m = 0;
-            goal.configuration->z_m = 0;
-            goal.configuration->arm_rad = random.integer(0, 1) == 0 ? std::optional(0.0) : std::nullopt;
+            goal = configuration_goal(0, 0, coin() ? std::optional(0.0) : std::nullopt);
         }
         const PlanarPose q{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.05, 0.05),
                            random.uniform(-0.05, 0.05)};

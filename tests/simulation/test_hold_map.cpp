@@ -8,12 +8,7 @@
 #include "downwash/simulation/hold_map.hpp"
 
 using namespace downwash;
-
-namespace {
-
-constexpr double quarter_turn = 1.57079632679489661923;
-
-}  // namespace
+using test::quarter_turn;
 
 TEST_CASE("a hold map holds the analysis of each of its nodes") {
     const auto model = make_flight_model(test::ceiling_problem());
@@ -21,18 +16,13 @@ TEST_CASE("a hold map holds the analysis of each of its nodes") {
     REQUIRE(map.columns == 9);
     REQUIRE(map.rows == 17);
     REQUIRE(map.verdicts.size() == 9 * 17);
-    for (std::size_t k = 0; k < map.rows; ++k) {
-        for (std::size_t i = 0; i < map.columns; ++i) {
-            const HoverAnalysis a = analyse_hover(*model, -1 + 0.25 * static_cast<double>(i),
-                                                  1 + 0.25 * static_cast<double>(k), quarter_turn);
-            CHECK(map.verdicts[k * map.columns + i] == a.verdict);
-            const double rate_1_s = map.growth_rates_1_s[k * map.columns + i];
-            if (a.verdict >= HoldVerdict::unstable) {
-                CHECK(rate_1_s == a.stability.growth_rate_1_s);
-            } else {
-                CHECK(std::isnan(rate_1_s));
-            }
-        }
+    for (std::size_t node = 0; node < map.verdicts.size(); ++node) {
+        const auto column = static_cast<double>(node % map.columns);
+        const auto row = static_cast<double>(node / map.columns);
+        const HoverAnalysis a = analyse_hover(*model, -1 + 0.25 * column, 1 + 0.25 * row, quarter_turn);
+        CHECK(map.verdicts[node] == a.verdict);
+        const double rate_1_s = map.growth_rates_1_s[node];
+        CHECK((a.verdict >= HoldVerdict::unstable ? rate_1_s == a.stability.growth_rate_1_s : std::isnan(rate_1_s)));
     }
     // From the top: in the ceiling, under it (0.19 m, unstable), farther away, the arm in the ground.
     const auto verdict_at_row = [&](std::size_t row) { return map.verdicts[row * map.columns + 4]; };
@@ -64,25 +54,21 @@ TEST_CASE("the last node of a hold map lies on the bound where the step divides 
     CHECK(does_not.rows == 1);
 }
 
-TEST_CASE("hold maps without extent, step or measure are refused") {
+TEST_CASE("hold maps without extent, without a step or too large are errors") {
     const auto model = make_flight_model(test::ceiling_problem());
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Bounds bounds{-1, 1, 1, 5};
-    CHECK_THROWS_WITH(make_hold_map(*model, {1, 1, 0, 1}, 0.1, 0), Catch::Contains("low end below the high one"));
-    CHECK_THROWS_WITH(make_hold_map(*model, {nan, 1, 0, 1}, 0.1, 0), Catch::Contains("low end below the high one"));
+    for (const double x_low_m : {1.0, nan}) {
+        CHECK_THROWS_WITH(make_hold_map(*model, {x_low_m, 1, 0, 1}, 0.1, 0),
+                          Catch::Contains("low end below the high one"));
+    }
     for (const double step_m : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()}) {
         CHECK_THROWS_WITH(make_hold_map(*model, bounds, step_m, 0), Catch::Contains("expected a distance above 0 m"));
     }
-    CHECK_THROWS_WITH(make_hold_map(*model, bounds, 1e-4, 0), Catch::Contains("at most 1048576"));
-    CHECK_THROWS_WITH(make_hold_map(*model, bounds, 1e-300, 0), Catch::Contains("at most 1048576"));
+    for (const double step_m : {1e-4, 1e-300}) {
+        CHECK_THROWS_WITH(make_hold_map(*model, bounds, step_m, 0), Catch::Contains("at most 1048576"));
+    }
     CHECK_THROWS_AS(make_hold_map(*model, {-1e308, 1e308, 0, 1}, 0.1, 0), InputError);
-}
-
-TEST_CASE("verdicts and limits have names") {
-    CHECK(name_of(HoldVerdict::not_flyable) == "not_flyable");
-    CHECK(name_of(HoldVerdict::stable) == "stable");
-    CHECK(name_of(HoldLimit::none) == "none");
-    CHECK(name_of(HoldLimit::gain) == "gain");
 }
 
 TEST_CASE("the stability boundary under a wide ceiling is level, where the analysis changes its verdict") {

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../support/random.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "hover_scenes.hpp"
 
@@ -24,13 +23,6 @@ struct Ceiling {
     double factor;
     double slope_1_m;
 };
-
-/// The wide ceiling alone.
-std::shared_ptr<const FlightModel> ceiling_model() {
-    Problem problem = test::ceiling_problem();
-    problem.obstacles = {problem.obstacles[1]};
-    return make_flight_model(problem);
-}
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
@@ -88,11 +80,11 @@ Matrix3 sampled_height(const ModelInversion& gains, const Ceiling& k) {
 
 /// Greatest difference of two vehicles in any coordinate [m, rad].
 double distance(const FlightState& a, const FlightState& b) {
-    double most = 0;
+    double greatest = 0;
     for (int i = 0; i < 4; ++i) {
-        most = std::max(most, std::abs(a.plant.q[i] - b.plant.q[i]));
+        greatest = std::max(greatest, std::abs(a.plant.q[i] - b.plant.q[i]));
     }
-    return most;
+    return greatest;
 }
 
 FlightState flown(const FlightModel& model, const HoverTrim& trim, const FlightState& from) {
@@ -100,18 +92,13 @@ FlightState flown(const FlightModel& model, const HoverTrim& trim, const FlightS
     return simulation::tick(model.tick(), from, trim.reference, simulation::DirectFactor{model}, given);
 }
 
-FlightState disturbed(const HoverTrim& trim, double size, test::Random& random) {
+/// Whether a disturbance of a millimetre leaves five centimetres, or is still growing in the end.
+bool grows(const FlightModel& model, const HoverTrim& trim, int ticks, Random& random) {
     FlightState state = trim.state;
     for (int i = 0; i < 4; ++i) {
-        state.plant.q[i] += random.uniform(-size, size);
-        state.plant.u[i] += random.uniform(-size, size);
+        state.plant.q[i] += random.uniform(-1e-3, 1e-3);
+        state.plant.u[i] += random.uniform(-1e-3, 1e-3);
     }
-    return state;
-}
-
-/// Whether a disturbance of a millimetre leaves five centimetres, or is still growing in the end.
-bool grows(const FlightModel& model, const HoverTrim& trim, int ticks, test::Random& random) {
-    FlightState state = disturbed(trim, 1e-3, random);
     double before = 0;  // greatest distance in the third quarter of the flight
     double in_the_end = 0;
     for (int i = 0; i < ticks; ++i) {
@@ -129,22 +116,24 @@ bool grows(const FlightModel& model, const HoverTrim& trim, int ticks, test::Ran
     return in_the_end > before && in_the_end > 1e-9;
 }
 
-/// Every kind of memory that a controller may have.
-Robot robot_with_memory() {
-    Robot robot = test::test_robot();
+/// The cluttered problem with a fountain and every kind of memory that a controller may have.
+Problem problem_with_memory() {
+    Problem problem = cluttered_problem();
+    problem.aero.ground = EffectModel::multirotor_body;
+    Robot& robot = problem.robot;
     robot.rotors.time_constant_s = 0.02;
-    test::gains_of(robot).attitude_kiu5 = 3;
-    test::gains_of(robot).arm_ki = 15;
-    test::gains_of(robot).rate_feed_forward = true;
+    gains_of(robot).attitude_kiu5 = 3;
+    gains_of(robot).arm_ki = 15;
+    gains_of(robot).rate_feed_forward = true;
     robot.arm.joint_x_m = 0.05;
     robot.arm.joint_z_m = -0.08;
-    return robot;
+    return problem;
 }
 
 }  // namespace
 
 TEST_CASE("in free air a vehicle hovers where its reference is and carries its own weight") {
-    Problem problem = test::ceiling_problem();
+    Problem problem = ceiling_problem();
     problem.obstacles.clear();
     const auto model = make_flight_model(problem);
     for (const double arm : {0.0, 1.0, quarter_turn, -2.0}) {
@@ -166,23 +155,18 @@ TEST_CASE("in free air a vehicle hovers where its reference is and carries its o
 }
 
 TEST_CASE("the trim is a fixed point of the tick, whatever the controller remembers") {
-    test::Random random(11);
+    Random random(11);
     int found = 0;
     for (int kind = 0; kind < 3; ++kind) {
-        Problem problem = cluttered_problem();
-        if (kind > 0) {
-            problem.robot = robot_with_memory();
-            problem.aero.ground = EffectModel::multirotor_body;
-        }
+        Problem problem = kind > 0 ? problem_with_memory() : cluttered_problem();
         if (kind == 2) {  // without integrators, and with limits that are soon reached
-            test::gains_of(problem.robot).position_ki = 0;
-            test::gains_of(problem.robot).arm_integral_limit_rad_s2 = 0.1;
-            test::gains_of(problem.robot).attitude_integral_limit_rad_s2 = 0.1;
+            gains_of(problem.robot).position_ki = 0;
+            gains_of(problem.robot).arm_integral_limit_rad_s2 = 0.1;
+            gains_of(problem.robot).attitude_integral_limit_rad_s2 = 0.1;
         }
         const auto model = make_flight_model(problem);
         for (int i = 0; i < 300; ++i) {
-            const HoverAnalysis a = analyse_hover(*model, random.uniform(-2, 4), random.uniform(0.2, 4.9),
-                                                  random.uniform(-2 * quarter_turn, 2 * quarter_turn));
+            const HoverAnalysis a = random_hover(*model, random);
             if (a.verdict != HoldVerdict::stable && a.verdict != HoldVerdict::unstable) {
                 continue;
             }
@@ -207,8 +191,8 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
 }
 
 TEST_CASE("under a wide ceiling the slowest mode is that of the sampled height loop written by hand") {
-    const auto model = ceiling_model();
-    const ModelInversion gains = test::gains_of(test::test_robot());
+    const auto model = make_flight_model(ceiling_alone());
+    const ModelInversion gains = gains_of(test_robot());
     for (const double gap_m : {0.16, 0.20, 0.25, 0.29, 0.31, 0.33}) {
         const HoverAnalysis a = below_ceiling(*model, gap_m);
         const Ceiling k(gap_m);
@@ -229,7 +213,7 @@ TEST_CASE("under a wide ceiling the slowest mode is that of the sampled height l
 }
 
 TEST_CASE("hover ends below a wide ceiling where Routh and Hurwitz say, near 0.32 m") {
-    const auto model = ceiling_model();
+    const auto model = make_flight_model(ceiling_alone());
     // s^3 + K kd s^2 + (K kp - g K'/K) s + K ki is stable while K kp - g K'/K > ki / kd.
     const auto is_stable_by_hand = [](double gap_m) {
         const Ceiling k(gap_m);
@@ -256,7 +240,7 @@ TEST_CASE("hover ends below a wide ceiling where Routh and Hurwitz say, near 0.3
 }
 
 TEST_CASE("a disturbance grows at the predicted rate") {
-    const auto model = ceiling_model();
+    const auto model = make_flight_model(ceiling_alone());
     const HoverAnalysis a = below_ceiling(*model, 0.2);
     REQUIRE(a.verdict == HoldVerdict::unstable);
     REQUIRE(a.stability.frequency_rad_s == 0);
@@ -274,19 +258,13 @@ TEST_CASE("a disturbance grows at the predicted rate") {
 }
 
 TEST_CASE("flights grow where hover is called unstable and decay where it is called stable") {
-    test::Random random(5);
+    Random random(5);
     int flights = 0;
     int unstable = 0;
     for (const bool has_memory : {false, true}) {
-        Problem problem = cluttered_problem();
-        if (has_memory) {
-            problem.robot = robot_with_memory();
-            problem.aero.ground = EffectModel::multirotor_body;
-        }
-        const auto model = make_flight_model(problem);
+        const auto model = make_flight_model(has_memory ? problem_with_memory() : cluttered_problem());
         for (int tried = 0; tried < 400; ++tried) {
-            const HoverAnalysis a = analyse_hover(*model, random.uniform(-2, 4), random.uniform(0.2, 4.9),
-                                                  random.uniform(-2 * quarter_turn, 2 * quarter_turn));
+            const HoverAnalysis a = random_hover(*model, random);
             const bool is_unstable = a.verdict == HoldVerdict::unstable;
             // Within 0.02 1/s of neither, thirty seconds do not tell.
             if ((!is_unstable && (a.verdict != HoldVerdict::stable || tried % 8 != 0)) ||
@@ -305,7 +283,7 @@ TEST_CASE("flights grow where hover is called unstable and decay where it is cal
 }
 
 TEST_CASE("where the integral is at its limit the reference has to stay below the vehicle") {
-    const auto model = ceiling_model();
+    const auto model = make_flight_model(ceiling_alone());
     const double gap_m = 0.07;  // K = 1.47: the controller has to fall at g (1 - 1/K) = 3.1 m/s2 to stand still
     const Ceiling k(gap_m);
     const double action_m_s2 = gravity * (1 - 1 / k.factor);
@@ -324,7 +302,7 @@ TEST_CASE("where a vehicle cannot hover the analysis says why") {
     const auto verdict_of = [](const Problem& problem, double x_m, double z_m, double arm_rad) {
         return analyse_hover(*make_flight_model(problem), x_m, z_m, arm_rad);
     };
-    const Problem plain = test::ceiling_problem();
+    const Problem plain = ceiling_problem();
     CHECK(verdict_of(plain, 0, 4.95, 0).verdict == HoldVerdict::not_flyable);
     CHECK(verdict_of(plain, 0, 1, quarter_turn).verdict == HoldVerdict::in_collision);  // the arm in the ground
     CHECK(verdict_of(plain, 0, 2.5, quarter_turn).verdict == HoldVerdict::stable);
@@ -343,31 +321,26 @@ TEST_CASE("where a vehicle cannot hover the analysis says why") {
     CHECK(verdict_of(weak, 0, 2.5, quarter_turn).verdict == HoldVerdict::stable);
 
     Problem limited = plain;
-    limited.robot.arm.is_limited = true;
-    limited.robot.arm.lower_limit_rad = 0;
-    limited.robot.arm.upper_limit_rad = 1;
+    limit_arm(limited.robot, 0, 1);
     CHECK(verdict_of(limited, 0, 2.5, 1.1).trim.limit == HoldLimit::arm_angle);
     CHECK(verdict_of(limited, 0, 2.5, 0.9).verdict == HoldVerdict::stable);
 
     Problem soft = plain;  // half a ceiling turns the vehicle, and the attitude loop hardly answers
-    soft.obstacles = {test::box("slab", {4, 4, 1}, {2, 0, 3.5})};
-    test::gains_of(soft.robot).attitude_k5 = 1;
-    test::gains_of(soft.robot).attitude_ku5 = 2;
+    soft.obstacles = {box("slab", {4, 4, 1}, {2, 0, 3.5})};
+    gains_of(soft.robot).attitude_k5 = 1;
+    gains_of(soft.robot).attitude_ku5 = 2;
     CHECK(verdict_of(soft, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit == HoldLimit::tilt);
 
     Problem loose = soft;  // nothing leans the vehicle against that turn
     loose.robot.controller = plain.robot.controller;
-    test::gains_of(loose.robot).position_kp = 0;
-    test::gains_of(loose.robot).position_ki = 0;
-    CHECK(verdict_of(loose, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit == HoldLimit::gain);
-}
+    gains_of(loose.robot).position_kp = 0;
+    gains_of(loose.robot).position_ki = 0;
+    const HoldLimit limit = verdict_of(loose, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit;
+    CHECK(limit == HoldLimit::gain);
+    CHECK(name_of(limit) == "gain");
 
-TEST_CASE("a loop that neither grows nor decays does not hold") {
-    Problem problem = test::ceiling_problem();
-    problem.obstacles.clear();
-    test::gains_of(problem.robot).position_kp = 0;
-    test::gains_of(problem.robot).position_ki = 0;
-    const HoverAnalysis a = analyse_hover(*make_flight_model(problem), 0, 2, quarter_turn);
+    loose.obstacles.clear();  // a loop that neither grows nor decays does not hold
+    const HoverAnalysis a = verdict_of(loose, 0, 2, quarter_turn);
     CHECK(a.verdict == HoldVerdict::unstable);
     CHECK(a.stability.spectral_radius == Approx(1).epsilon(1e-7));
 }
@@ -375,8 +348,8 @@ TEST_CASE("a loop that neither grows nor decays does not hold") {
 TEST_CASE("gains beyond all measure end in a verdict") {
     for (const double gain : {1e8, 1e100, 1e154, 1e200, 1e300, 1e308}) {
         for (int which = 0; which < 4; ++which) {
-            Problem problem = test::ceiling_problem();
-            ModelInversion& gains = test::gains_of(problem.robot);
+            Problem problem = ceiling_problem();
+            ModelInversion& gains = gains_of(problem.robot);
             (which == 0   ? gains.position_kp
              : which == 1 ? gains.position_kd
              : which == 2 ? gains.attitude_ku5
@@ -392,7 +365,7 @@ TEST_CASE("gains beyond all measure end in a verdict") {
 }
 
 TEST_CASE("mirroring scene and arm changes nothing about holding") {
-    test::Random random(8);
+    Random random(8);
     const Problem problem = cluttered_problem();
     Problem mirrored = problem;
     for (Obstacle& obstacle : mirrored.obstacles) {
@@ -410,14 +383,4 @@ TEST_CASE("mirroring scene and arm changes nothing about holding") {
         CHECK(a.stability.spectral_radius == Approx(b.stability.spectral_radius).epsilon(1e-6));
         CHECK(a.trim.pitch_reference_rad == Approx(-b.trim.pitch_reference_rad).margin(1e-6));
     }
-}
-
-TEST_CASE("a plan that was found to hold ends where hover is stable") {
-    const Problem problem = test::ceiling_problem();
-    const Solution solution = solve(problem);
-    REQUIRE(solution.status == Status::solved);
-    REQUIRE(solution.execution->outcome == Outcome::ok);
-    const double* q = solution.execution->rows.back().q;
-    const HoverAnalysis a = analyse_hover(*make_flight_model(problem), q[0], q[1], q[3]);
-    CHECK(a.verdict == HoldVerdict::stable);
 }

@@ -1,16 +1,27 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../support/random.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;
 using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
 
+namespace {
+
+/// The ceiling problem with an arm that reaches beyond no surface.
+Problem with_short_arm() {
+    Problem problem = ceiling_problem();
+    problem.robot.arm.length_m = 0.3;
+    problem.robot.arm.center_of_mass_m = 0.15;
+    problem.robot.arm.inertia_kg_m2 = 0.001;
+    return problem;
+}
+
+}  // namespace
+
 TEST_CASE("where a near ceiling is beyond the cap hover is not called stable") {
-    Problem problem = test::ceiling_problem();
-    problem.obstacles = {problem.obstacles[1]};
+    Problem problem = ceiling_alone();
     const auto verdict_below = [&](double max_factor, double gap_m) {
         problem.aero.max_factor = max_factor;
         return below_ceiling(*make_flight_model(problem), gap_m).verdict;
@@ -32,7 +43,7 @@ TEST_CASE("where a near ceiling is beyond the cap hover is not called stable") {
 }
 
 TEST_CASE("a lower cap never makes a hover under surfaces stable") {
-    test::Random random(12);
+    Random random(12);
     Problem problem = cluttered_problem();
     problem.aero.ground = EffectModel::none;  // over edges a cap on its side does
     const auto free = make_flight_model(problem);
@@ -55,30 +66,27 @@ TEST_CASE("a lower cap never makes a hover under surfaces stable") {
 }
 
 TEST_CASE("nearer to a ceiling than a table was measured hover is not called stable") {
-    Problem problem = test::ceiling_problem();
-    problem.obstacles = {problem.obstacles[1]};
+    Problem problem = ceiling_alone();
     problem.aero.ceiling = EffectModel::table;
     problem.aero.ceiling.table = std::make_shared<const EffectTable>(
         std::vector<double>{1, 3, 9}, std::vector<double>{}, std::vector<double>{1.05, 1.01, 1});
-    const auto model = make_flight_model(problem);
-    CHECK(below_ceiling(*model, 0.5 * radius_m).verdict == HoldVerdict::unknown);
-    CHECK(below_ceiling(*model, 0.99 * radius_m).verdict == HoldVerdict::unknown);
-    CHECK(below_ceiling(*model, 1.01 * radius_m).verdict == HoldVerdict::stable);  // 4.7 N/m against 99 N/m
+    const auto verdict_below = [&problem](double radii) {
+        return below_ceiling(*make_flight_model(problem), radii * radius_m).verdict;
+    };
+    CHECK(verdict_below(0.5) == HoldVerdict::unknown);
+    CHECK(verdict_below(0.99) == HoldVerdict::unknown);
+    CHECK(verdict_below(1.01) == HoldVerdict::stable);  // 4.7 N/m against 99 N/m
     // One pair of rotors that sees it is enough.
-    problem.obstacles = {test::box("slab", {2, 4, 1}, {1.52, 0, 5.5})};
-    CHECK(below_ceiling(*make_flight_model(problem), 0.5 * radius_m).verdict ==
-          HoldVerdict::stable);  // 0.52 m, the discs reach 0.5105 m
-    problem.obstacles = {test::box("slab", {2, 4, 1}, {1.5, 0, 5.5})};
-    CHECK(below_ceiling(*make_flight_model(problem), 0.5 * radius_m).verdict == HoldVerdict::unknown);
+    problem.obstacles = {box("slab", {2, 4, 1}, {1.52, 0, 5.5})};
+    CHECK(verdict_below(0.5) == HoldVerdict::stable);  // 0.52 m, the discs reach 0.5105 m
+    problem.obstacles = {box("slab", {2, 4, 1}, {1.5, 0, 5.5})};
+    CHECK(verdict_below(0.5) == HoldVerdict::unknown);
 }
 
 TEST_CASE("between two surfaces whose sum is capped hover is not called stable where the upper one pulls more") {
-    Problem problem = test::ceiling_problem();
-    // Shelf and ceiling 1.2 m apart, the arm pointing sideways beyond neither.
-    problem.robot.arm.length_m = 0.3;
-    problem.robot.arm.center_of_mass_m = 0.15;
-    problem.robot.arm.inertia_kg_m2 = 0.001;
-    problem.obstacles = {test::box("shelf", {30, 8, 1}, {0, 0, 4.0}), problem.obstacles[1]};
+    // Shelf and ceiling 1.2 m apart, the arm pointing sideways.
+    Problem problem = with_short_arm();
+    problem.obstacles = {box("shelf", {30, 8, 1}, {0, 0, 4.0}), problem.obstacles[1]};
     // 0.12 m below the ceiling K = 1.17 of the ceiling and 1.04 of the shelf 0.38 m below.
     problem.aero.max_factor = 1.19;
     const double z_m = ceiling_m - 0.12 - hub_height_m;
@@ -91,11 +99,7 @@ TEST_CASE("between two surfaces whose sum is capped hover is not called stable w
 }
 
 TEST_CASE("low over the ground a cap leaves hover stable") {
-    Problem problem = test::ceiling_problem();
-    problem.robot.arm.length_m = 0.3;
-    problem.robot.arm.center_of_mass_m = 0.15;
-    problem.robot.arm.inertia_kg_m2 = 0.001;
+    Problem problem = with_short_arm();
     problem.aero.max_factor = 1.05;  // K = 1.09 without
-    const HoverAnalysis a = analyse_hover(*make_flight_model(problem), 0, 0.1, 0);
-    CHECK(a.verdict == HoldVerdict::stable);
+    CHECK(analyse_hover(*make_flight_model(problem), 0, 0.1, 0).verdict == HoldVerdict::stable);
 }

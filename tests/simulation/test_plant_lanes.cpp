@@ -54,17 +54,23 @@ void set_lane(Packs& packs, int lane, const Doubles& from) {
     }
 }
 
+/// The robot with rotors that lag.
+struct Fixture {
+    Robot robot = [] {
+        Robot lagging = test::test_robot();
+        lagging.rotors.time_constant_s = 0.02;
+        return lagging;
+    }();
+    ModelInversion law = test::gains_of(robot);
+    simulation::TickModel known{test::plant_of(robot), law, 0.01};
+    ReferencePoint reference{{0.3, 1.4, 0.2}, {}, {}};
+};
+
 }  // namespace
 
-TEST_CASE("lanes with vehicles and surfaces of their own fly each as it flies alone, to the last bit") {
+TEST_CASE_METHOD(Fixture, "lanes with vehicles and surfaces of their own fly each as it flies alone, to the last bit") {
     constexpr int ticks = 400;
     test::Random random(11);
-    Robot robot = test::test_robot();
-    robot.rotors.time_constant_s = 0.02;
-    const ModelInversion law = test::gains_of(robot);
-    const simulation::TickModel known{test::plant_of(robot), law, 0.01};
-    const ReferencePoint reference{{0.3, 1.4, 0.2}, {}, {}};
-
     std::vector<PlantModel> plants;
     std::vector<Surroundings<double>> worlds;
     simulation::State<double> start{};
@@ -73,6 +79,7 @@ TEST_CASE("lanes with vehicles and surfaces of their own fly each as it flies al
     BasicPlantModel<Pack> plant_lanes{};
     Surroundings<Pack> world_lanes{};
     simulation::State<Pack> lanes{};
+    BasicReferencePoint<Pack> reference_lanes{};
     for (int lane = 0; lane < lane::width<Pack>; ++lane) {
         plants.push_back(test::plant_of(varied(robot, random)));
         worlds.push_back({random.uniform(0.7, 1.4), random.uniform(-0.05, 0.05), random.uniform(0.95, 1.05)});
@@ -80,14 +87,8 @@ TEST_CASE("lanes with vehicles and surfaces of their own fly each as it flies al
         set_lane<PlantNumbers<Pack>, PlantNumbers<double>>(plant_lanes, lane, plants.back());
         set_lane(world_lanes, lane, worlds.back());
         set_lane(lanes, lane, start);
+        set_lane(reference_lanes, lane, reference);
     }
-    const BasicReferencePoint<Pack> reference_lanes = [&] {
-        BasicReferencePoint<Pack> all{};
-        for (int lane = 0; lane < lane::width<Pack>; ++lane) {
-            set_lane(all, lane, reference);
-        }
-        return all;
-    }();
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<Pack> given{};
         lanes = simulation::tick_of_other_plant(known, law, plant_lanes, lanes, lanes.plant, reference_lanes,
@@ -110,13 +111,8 @@ TEST_CASE("lanes with vehicles and surfaces of their own fly each as it flies al
     }
 }
 
-TEST_CASE("a plant as its controller knows it flies the tick of the closed loop") {
-    Robot robot = test::test_robot();
-    robot.rotors.time_constant_s = 0.02;
-    const ModelInversion law = test::gains_of(robot);
-    const simulation::TickModel known{test::plant_of(robot), law, 0.01};
-    const ReferencePoint reference{{0.3, 1.4, 0.2}, {}, {}};
-    const auto free_air = [](int, double, double) { return 1.0; };
+TEST_CASE_METHOD(Fixture, "a plant as its controller knows it flies the tick of the closed loop") {
+    const test::FreeAir free_air;
     simulation::State<double> one{};
     simulation::State<double> other{};
     for (int i = 0; i < 200; ++i) {

@@ -23,26 +23,24 @@ std::shared_ptr<const FlightModel> model_among(std::vector<Obstacle> obstacles) 
     return make_flight_model(problem);
 }
 
-/// Cheeseman and Bennett, and its slope.
-double ground_factor(double z_m) {
+/// K, and its slope over the height of a rotor.
+struct Factor {
+    double value;
+    double slope_1_m;
+};
+
+/// Cheeseman and Bennett's.
+Factor ground_factor(double z_m) {
     const double r = radius_m / (4 * z_m);
-    return 1 / (1 - r * r);
-}
-double ground_slope_1_m(double z_m) {
-    const double k = ground_factor(z_m);
-    const double r = radius_m / (4 * z_m);
-    return -2 * k * k * r * r / z_m;
+    const double k = 1 / (1 - r * r);
+    return {k, -2 * k * k * r * r / z_m};
 }
 
-/// The fit of the ceiling effect, and its slope over the height of a rotor `gap_m` below.
-double ceiling_factor(double gap_m) {
+/// The fit of the ceiling effect on a rotor `gap_m` below.
+Factor ceiling_factor(double gap_m) {
     const double r = radius_m / (gap_m + 0.3168 * radius_m);
-    return 1 / (1 - r * r / 6.924);
-}
-double ceiling_slope_1_m(double gap_m) {
-    const double k = ceiling_factor(gap_m);
-    const double r = radius_m / (gap_m + 0.3168 * radius_m);
-    return 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * radius_m);
+    const double k = 1 / (1 - r * r / 6.924);
+    return {k, 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * radius_m)};
 }
 
 /// How the effect changes with the pose: a spring, or the opposite of one.
@@ -85,25 +83,33 @@ TEST_CASE("two rotors of four over a plate carry more and push the nose up") {
 
 TEST_CASE("a ceiling over the front rotors alone pulls the nose up, one over the rear rotors the tail") {
     const double z_m = 2 - 1.5 * radius_m - hub_height_m;
-    const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * radius_m) - 1);
-    const auto front = model_among({test::box("slab", {4, 4, 1}, {2, 0, 2.5})});
-    CHECK(vehicle_effect(*front, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-torque_nm).epsilon(1e-9));
-    const auto rear = model_among({test::box("slab", {4, 4, 1}, {-2, 0, 2.5})});
-    CHECK(vehicle_effect(*rear, {0, z_m, 0, 0}).pitch_torque_nm == Approx(torque_nm).epsilon(1e-9));
+    const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * radius_m).value - 1);
+    for (const double side : {1.0, -1.0}) {
+        const auto model = model_among({test::box("slab", {4, 4, 1}, {2 * side, 0, 2.5})});
+        CHECK(vehicle_effect(*model, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-side * torque_nm).epsilon(1e-9));
+    }
 }
 
-TEST_CASE("wide ground carries like a spring and rights the vehicle") {
-    const auto model = model_among({test::box("ground", {30, 20, 1}, {0, 0, -0.5})});
-    for (const double height_m : {0.15, 0.3, 0.6}) {
-        const VehicleEffect effect = vehicle_effect(*model, {0.4, height_m - hub_height_m, 0, 0});
-        const Slopes slopes = slopes_of(*model, {0.4, height_m - hub_height_m, 0, 0});
-        CHECK(effect.force_factor == Approx(ground_factor(height_m)).epsilon(1e-9));
+TEST_CASE("wide ground carries like a spring and rights the vehicle, a wide ceiling pulls it up and tips it over") {
+    const auto check = [](const FlightModel& model, double hub_m, const Factor& k) {
+        const PlanarPose pose{0.4, hub_m - hub_height_m, 0, 0};
+        const VehicleEffect effect = vehicle_effect(model, pose);
+        const Slopes slopes = slopes_of(model, pose);
+        CHECK(effect.force_factor == Approx(k.value).epsilon(1e-9));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
-        const double slope_n_m = weight_n * ground_slope_1_m(height_m);
+        const double slope_n_m = weight_n * k.slope_1_m;
         CHECK(slopes.force_n_m == Approx(slope_n_m).epsilon(1e-3));
-        CHECK(slopes.force_n_m < 0);
         // Every rotor moves by reach per radian: the spring with its lever twice.
         CHECK(slopes.torque_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
+        return slopes;
+    };
+    const auto over_ground = model_among({test::box("ground", {30, 20, 1}, {0, 0, -0.5})});
+    for (const double height_m : {0.15, 0.3, 0.6}) {
+        CHECK(check(*over_ground, height_m, ground_factor(height_m)).force_n_m < 0);
+    }
+    const auto below_ceiling = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
+    for (const double gap_m : {0.1, 0.2, 0.5}) {
+        CHECK(check(*below_ceiling, 5 - gap_m, ceiling_factor(gap_m)).torque_nm_rad > 0);
     }
 }
 
@@ -126,19 +132,6 @@ TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula 
         CHECK(effect.force_factor == Approx(1 / (1 - rotors - body)).epsilon(1e-6));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
         CHECK(slopes.force_n_m < 0);
-    }
-}
-
-TEST_CASE("a wide ceiling pulls away from the height that is held and tips the vehicle over") {
-    const auto model = model_among({test::box("ceiling", {30, 20, 1}, {0, 0, 5.5})});
-    for (const double gap_m : {0.1, 0.2, 0.5}) {
-        const VehicleEffect effect = vehicle_effect(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
-        const Slopes slopes = slopes_of(*model, {0.4, 5 - gap_m - hub_height_m, 0, 0});
-        CHECK(effect.force_factor == Approx(ceiling_factor(gap_m)).epsilon(1e-9));
-        const double slope_n_m = weight_n * ceiling_slope_1_m(gap_m);
-        CHECK(slopes.force_n_m == Approx(slope_n_m).epsilon(1e-3));
-        CHECK(slopes.torque_nm_rad == Approx(reach_m * reach_m * slope_n_m).epsilon(1e-3));
-        CHECK(slopes.torque_nm_rad > 0);
     }
 }
 

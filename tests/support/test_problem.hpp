@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,11 +10,22 @@
 namespace downwash::test {
 
 inline Obstacle box(std::string name, const Vector3& size_m, const Vector3& center_m) {
-    Obstacle obstacle;
-    obstacle.name = std::move(name);
-    obstacle.shape = Box{size_m};
-    obstacle.center_world_m = center_m;
-    return obstacle;
+    return {std::move(name), Box{size_m}, center_m, {}};
+}
+
+/// A goal for the tip of the arm.
+inline Goal tip_goal(double x_m, double z_m) {
+    Goal goal;
+    goal.end_effector = EndEffectorGoal{.x_m = x_m, .z_m = z_m, .direction_rad = {}};
+    return goal;
+}
+
+/// A goal for vehicle and arm; what is not given is free.
+inline Goal configuration_goal(std::optional<double> x_m, std::optional<double> z_m,
+                               std::optional<double> arm_rad = {}) {
+    Goal goal;
+    goal.configuration = ConfigurationGoal{.x_m = x_m, .z_m = z_m, .arm_rad = arm_rad};
+    return goal;
 }
 
 /// A ceiling over the ground and nothing between: the tip of the arm has to get to a point below the ceiling.
@@ -25,12 +37,8 @@ inline Problem ceiling_problem() {
     problem.obstacles = {box("ground", {30, 20, 1}, {0, 0, -0.5}), box("ceiling", {30, 8, 1}, {0, 0, 5.5})};
     problem.start.x_m = -4;
     problem.start.z_m = 2;
-    problem.start.arm_rad = 1.5707963267948966;
-    EndEffectorGoal goal;
-    goal.x_m = 3;
-    goal.z_m = 4.8;
-    problem.goal.end_effector = goal;
-    problem.goal.hold_s = 5;
+    problem.start.arm_rad = quarter_turn;
+    problem.goal = tip_goal(3, 4.8);
     problem.planner.seed = 1;
     problem.planner.max_iterations = 150;
     return problem;
@@ -39,10 +47,15 @@ inline Problem ceiling_problem() {
 /// The same with the vehicle's place as its goal, the arm at any angle.
 inline Problem with_place(double x_m, double z_m) {
     Problem problem = ceiling_problem();
-    problem.goal.end_effector.reset();
-    problem.goal.configuration = ConfigurationGoal{};
-    problem.goal.configuration->x_m = x_m;
-    problem.goal.configuration->z_m = z_m;
+    problem.goal = configuration_goal(x_m, z_m);
+    return problem;
+}
+
+/// A ceiling, a slab with edges below it, the ground, a pipe: surfaces above and below, whole and partial.
+inline Problem cluttered_problem() {
+    Problem problem = ceiling_problem();
+    problem.obstacles.push_back(box("slab", {2, 3, 0.4}, {0, 0, 3}));
+    problem.obstacles.push_back({"pipe", Cylinder{0.25, 6, {0, 1, 0}}, {3, 0, 2.5}, {}});
     return problem;
 }
 

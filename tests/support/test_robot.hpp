@@ -5,6 +5,13 @@
 
 namespace downwash::test {
 
+inline constexpr double quarter_turn = 1.57079632679489661923;
+
+/// No surface is near: K = 1 at every rotor.
+struct FreeAir {
+    double operator()(int /*rotor*/, double /*x_m*/, double /*z_m*/) const { return 1; }
+};
+
 /// The aerial manipulator that the tests fly: a quadrotor of 4.5 kg in X layout and an arm of 1.2 m that turns about
 /// its centre of mass. Rotors without lag, joint without limits.
 inline Robot test_robot() {
@@ -54,6 +61,12 @@ inline ModelInversion& gains_of(Robot& robot) {
 }
 inline const ModelInversion& gains_of(const Robot& robot) {
     return std::get<ModelInversion>(robot.controller.law);
+}
+
+inline void limit_arm(Robot& robot, double lower_rad, double upper_rad) {
+    robot.arm.is_limited = true;
+    robot.arm.lower_limit_rad = lower_rad;
+    robot.arm.upper_limit_rad = upper_rad;
 }
 
 /// Its plant.
