@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 
@@ -11,13 +11,22 @@ using namespace downwash;
 
 namespace {
 
+constexpr Variant variants[] = {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
+
 Goal place(double x_m, double z_m, double hold_s) {
-    Goal goal;
-    goal.configuration = ConfigurationGoal{};
-    goal.configuration->x_m = x_m;
-    goal.configuration->z_m = z_m;
+    Goal goal = test::configuration_goal(x_m, z_m);
     goal.hold_s = hold_s;
     return goal;
+}
+
+/// The ceiling problem with a choice of goals.
+Problem choice_of(std::vector<Goal> goals, Variant variant, std::uint64_t iterations) {
+    Problem problem = test::ceiling_problem();
+    problem.planner.variant = variant;
+    problem.planner.max_iterations = iterations;
+    problem.goal = {};
+    problem.goal.any_of = std::move(goals);
+    return problem;
 }
 
 /// From (-4, 2) to three places in turn.
@@ -47,7 +56,7 @@ std::int64_t standing_tick(const Plan& plan, const ConfigurationGoal& at, double
 }  // namespace
 
 TEST_CASE("goals in a row are visited in their order, each held for its own time, in one flight") {
-    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+    for (const Variant variant : variants) {
         CAPTURE(name_of(variant));
         const Problem problem = tour(variant);
         const Solution solution = solve(problem);
@@ -103,11 +112,8 @@ TEST_CASE("a tour comes out the same byte by byte") {
     two.threads = 2;
     const Solution a = solve(problem);
     const Solution b = solve(problem, two);
-    REQUIRE(a.execution->rows.size() == b.execution->rows.size());
     CHECK(a.cost == b.cost);
-    for (std::size_t i = 0; i < a.execution->rows.size(); ++i) {
-        REQUIRE(std::memcmp(a.execution->rows[i].q, b.execution->rows[i].q, sizeof a.execution->rows[i].q) == 0);
-    }
+    CHECK(test::same_bytes(*a.execution, *b.execution));
 }
 
 TEST_CASE("a tour with a goal behind a wall ends before it and is not called solved") {
@@ -146,29 +152,18 @@ TEST_CASE("the same place twice is held twice") {
 }
 
 TEST_CASE("of several goals the cheap one is flown to and held for its own time") {
-    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+    for (const Variant variant : variants) {
         CAPTURE(name_of(variant));
-        Problem problem = test::ceiling_problem();
-        problem.planner.variant = variant;
-        problem.planner.max_iterations = variant == Variant::mp_arm ? 1500 : 100;
-        problem.goal.any_of = {place(5, 2, 2), place(-2, 2.5, 3), place(4, 3, 1)};
-        problem.goal.end_effector.reset();
-        const Solution solution = solve(problem);
+        const Solution solution = solve(choice_of({place(5, 2, 2), place(-2, 2.5, 3), place(4, 3, 1)}, variant,
+                                                  variant == Variant::mp_arm ? 1500 : 100));
         REQUIRE(solution.status == Status::solved);
         CHECK(solution.execution->outcome == Outcome::ok);
         CHECK(solution.execution->rows.back().q[0] == Approx(-2).margin(0.1));
         CHECK(solution.execution->rows.back().q[1] == Approx(2.5).margin(0.1));
         CHECK(solution.execution->duration_s == Approx(solution.plan->duration_s() + 3).margin(0.011));
     }
-}
-
-TEST_CASE("a long hold makes a near goal dearer than a far one") {
-    Problem problem = test::ceiling_problem();
-    problem.planner.variant = Variant::mp_arm_da;
-    problem.planner.max_iterations = 100;
-    problem.goal.any_of = {place(-2, 2.5, 30), place(0, 2.5, 2)};
-    problem.goal.end_effector.reset();
-    const Solution solution = solve(problem);
+    // A long hold makes a near goal dearer than a far one.
+    const Solution solution = solve(choice_of({place(-2, 2.5, 30), place(0, 2.5, 2)}, Variant::mp_arm_da, 100));
     REQUIRE(solution.status == Status::solved);
     CHECK(solution.execution->rows.back().q[0] == Approx(0).margin(0.1));
     CHECK(solution.execution->duration_s < 12);
@@ -180,7 +175,7 @@ TEST_CASE("a wide tolerance along the goal is made use of, the narrow one across
     problem.goal.end_effector->x_m = 0;
     problem.goal.end_effector->tolerance_x_m = 2;
     problem.goal.end_effector->tolerance_z_m = 0.05;
-    problem.goal.end_effector->direction_rad = -1.5707963267948966;
+    problem.goal.end_effector->direction_rad = -test::quarter_turn;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     REQUIRE(solution.execution->outcome == Outcome::ok);
