@@ -1,10 +1,11 @@
 #include "scenes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
-#include "downwash/effects/effect_models.hpp"
+#include "../support/meshes.hpp"
 
 namespace downwash::test {
 
@@ -105,6 +106,22 @@ std::vector<MapLayer> layers(const std::shared_ptr<const DirectEffect>& effect, 
 
 std::shared_ptr<const Scene> scene_of(std::vector<Obstacle> obstacles) {
     return std::make_shared<const Scene>(std::move(obstacles));
+}
+
+DirectEffect effect_of(std::vector<Obstacle> obstacles, const AeroSettings& settings) {
+    return {scene_of(std::move(obstacles)), settings, 0.2};
+}
+
+Mesh some_triangles(Random& random, int count, const Vector3& half_m, double size_m) {
+    std::vector<std::array<Vector3, 3>> triangles(static_cast<std::size_t>(count));
+    for (auto& corners : triangles) {
+        const Vector3 around = any_point(random, half_m);
+        for (Vector3& corner : corners) {
+            const Vector3 away = any_point(random, {size_m, size_m, size_m});
+            corner = {around[0] + away[0], around[1] + away[1], around[2] + away[2]};
+        }
+    }
+    return soup_of(triangles);
 }
 
 std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius_m,

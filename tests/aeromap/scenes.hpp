@@ -29,6 +29,12 @@ DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, 
 
 std::shared_ptr<const Scene> scene_of(std::vector<Obstacle> obstacles);
 
+/// The effect on a rotor of 0.2 m.
+DirectEffect effect_of(std::vector<Obstacle> obstacles, const AeroSettings& settings = {});
+
+/// Triangles apart from each other, about points up to `half_m` from the origin along each axis.
+Mesh some_triangles(Random& random, int count, const Vector3& half_m = {0.6, 0.6, 0.8}, double size_m = 0.2);
+
 /// The effect on a rotor among obstacles.
 std::shared_ptr<const DirectEffect> effect_in(std::vector<Obstacle> obstacles, double radius_m,
                                               const AeroSettings& settings = {});

@@ -9,7 +9,7 @@ using test::allocations;
 
 TEST_CASE("Neither the direct effect nor a look-up allocates") {
     test::Random random(41);
-    const auto effect = std::make_shared<const DirectEffect>(test::scene_of(test::bridge()), AeroSettings{}, 0.15);
+    const auto effect = test::effect_in(test::bridge(), 0.15);
     const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 3, 5}, 1);
     const long before = allocations;
     double sum = 0;

@@ -1,4 +1,3 @@
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "scenes.hpp"
 
 using namespace downwash;
+using test::effect_of;
 using test::scene_of;
 
 namespace {
@@ -24,11 +24,15 @@ Obstacle roof_at(double z) {
     return {"roof", Box{{40, 40, 1}}, {0, 0, z + 0.5}, {}};
 }
 
+std::shared_ptr<const FactorGrid> grid_of(const FactorGridParts& parts) {
+    return std::make_shared<const FactorGrid>(parts);
+}
+
 }  // namespace
 
 TEST_CASE("Over a wide floor the model itself acts, and falls with distance to 1") {
     const AeroSettings settings;
-    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    const DirectEffect effect = effect_of({floor_slab}, settings);
     double last = 2;
     for (double z = 0.01; z < 20; z += 0.01) {
         const double factor = effect.factor({1, 2, z});
@@ -46,8 +50,8 @@ TEST_CASE("An obstacle behind another changes nothing") {
     both.push_back(floor_slab);
     both.push_back({"ball", Sphere{0.3}, {0.1, 0, 0.5}, {}});
     both.push_back({"rod", Cylinder{0.05, 1, {1, 1, 0.2}}, {0, 0.1, 0.7}, {}});
-    const DirectEffect alone(scene_of(shade), {}, radius);
-    const DirectEffect with_more(scene_of(both), {}, radius);
+    const DirectEffect alone = effect_of(shade);
+    const DirectEffect with_more = effect_of(both);
     for (const double z : {1.12, 1.2, 1.5, 3.0}) {
         CHECK(with_more.factor({0.2, -0.3, z}) == alone.factor({0.2, -0.3, z}));
     }
@@ -106,35 +110,15 @@ TEST_CASE("Moving and turning scene and rotor together changes nothing") {
     }
 }
 
-TEST_CASE("Far from everything the factor is 1") {
-    test::Random random(6);
-    std::vector<Obstacle> obstacles;
-    for (int k = 0; k < 6; ++k) {
-        obstacles.push_back(test::any_obstacle(random, {random.uniform(-1, 1), random.uniform(-1, 1), 0}));
-    }
-    const DirectEffect effect(scene_of(obstacles), {}, radius);
-    CHECK(effect.factor({0, 0, 60}) == Approx(1).margin(2e-5));
-    CHECK(effect.factor({0, 0, -60}) == Approx(1).margin(2e-5));
-    CHECK(effect.factor({30, 0, 0}) == 1);
-}
-
 TEST_CASE("The flyable area keeps the least distance from every obstacle") {
     AeroSettings settings;
     settings.min_distance_radii = 0.5;
-    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    const DirectEffect effect = effect_of({floor_slab}, settings);
     CHECK(effect.is_flyable({0, 0, 0.1001}));
     CHECK(!effect.is_flyable({0, 0, 0.0999}));
     CHECK(effect.is_flyable({20.1001 + radius, 0, -0.5}));
     CHECK(!effect.is_flyable({20.0999 + radius, 0, -0.5}));
     CHECK(!effect.is_flyable({std::numeric_limits<double>::quiet_NaN(), 0, 3}));
-}
-
-TEST_CASE("Disabled effects leave the free air everywhere") {
-    AeroSettings settings;
-    settings.enabled = false;
-    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
-    CHECK(effect.factor({0, 0, 0.1}) == 1);
-    CHECK(effect.is_flyable({0, 0, 0.01}));
 }
 
 TEST_CASE("A side without a model has no effect") {
@@ -156,8 +140,11 @@ TEST_CASE("A position that is not finite has the factor 1") {
     }
 }
 
-TEST_CASE("Settings out of their range are refused with every error") {
+TEST_CASE("Settings out of their range and a table without values lead to every error") {
     AeroSettings settings;
+    settings.ceiling = EffectModel::table;
+    CHECK_THROWS_AS(DirectEffect(scene_of({}), settings, radius), InputError);
+    settings.ceiling = EffectModel::sanchez_cuevas;
     settings.max_factor = 0.5;
     settings.min_distance_radii = -1;
     settings.ceiling.parameters[0] = 0;
@@ -201,12 +188,6 @@ TEST_CASE("A table over wall distance sees walls, not the ground") {
     CHECK(DirectEffect(with_wall, settings, radius).factor({-3, 0, radius}) == Approx(table.at(1.4)(1)).epsilon(1e-9));
 }
 
-TEST_CASE("A table without values is refused") {
-    AeroSettings settings;
-    settings.ceiling = EffectModel::table;
-    CHECK_THROWS_AS(DirectEffect(scene_of({}), settings, radius), InputError);
-}
-
 TEST_CASE("A given map takes the place of the models where it reaches") {
     // K = 1 + 0.1 x + 0.2 z on a coarse planar grid: linear, so that the interpolation is exact.
     FactorGridParts parts;
@@ -220,8 +201,8 @@ TEST_CASE("A given map takes the place of the models where it reaches") {
     }
     parts.fields.push_back(factor);
     AeroSettings settings;
-    settings.map = std::make_shared<const FactorGrid>(std::move(parts));
-    const DirectEffect effect(scene_of({floor_slab}), settings, radius);
+    settings.map = grid_of(parts);
+    const DirectEffect effect = effect_of({floor_slab}, settings);
     CHECK(effect.factor({0.3, 0.7, 0.9}) == Approx(1.21));
     CHECK(std::isnan(effect.factors({0.3, 0, 0.9}).ground));
     CHECK(effect.is_flyable({0.3, 0, 0.9}));
@@ -256,8 +237,8 @@ TEST_CASE("A map says as the direct effect where one may fly on a given map") {
                 parts.fields.push_back(flags);
             }
             AeroSettings settings;
-            settings.map = std::make_shared<const FactorGrid>(std::move(parts));
-            const auto effect = std::make_shared<const DirectEffect>(scene_of({floor_slab}), settings, radius);
+            settings.map = grid_of(parts);
+            const auto effect = test::effect_in({floor_slab}, radius, settings);
             const AeroMap map(test::layers(effect, {0.2}), plane, {-1.2, 1.3, -0.1, 2.2});
             int flyable = 0;
             for (int n = 0; n < 20000; ++n) {
@@ -274,14 +255,17 @@ TEST_CASE("A map says as the direct effect where one may fly on a given map") {
     }
 }
 
-TEST_CASE("Disabled effects heed no given map") {
+TEST_CASE("Disabled effects leave the free air everywhere and heed no given map") {
     AeroSettings settings;
     settings.enabled = false;
+    const DirectEffect over_floor = effect_of({floor_slab}, settings);
+    CHECK(over_floor.factor({0, 0, 0.1}) == 1);
+    CHECK(over_floor.is_flyable({0, 0, 0.01}));
     FactorGridParts parts;
     parts.x = parts.z = {0, 1, 2};
     parts.fields = {{"factor", {1, 1, 1, 1}}, {"flyable", {0, 0, 0, 0}}};
-    settings.map = std::make_shared<const FactorGrid>(std::move(parts));
-    const auto effect = std::make_shared<const DirectEffect>(scene_of({}), settings, radius);
+    settings.map = grid_of(parts);
+    const auto effect = test::effect_in({}, radius, settings);
     CHECK(effect->is_flyable({0.5, 0, 0.5}));
     CHECK(AeroMap(test::layers(effect, {0}), {}, {0, 1, 0, 1}).is_flyable(0, 0.5, 0.5));
 }

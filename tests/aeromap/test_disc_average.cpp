@@ -1,13 +1,11 @@
 // The quadrature over the disc against closed forms and against counting rays.
 
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "../support/meshes.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "scenes.hpp"
 

@@ -1,6 +1,7 @@
+#include <bit>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <cstring>
+#include <cstdint>
 #include <fstream>
 #include <map>
 
@@ -19,6 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+TriangleMesh tetrahedron(double size_m) {
+    return {{{0, 0, 0}, {size_m, 0, 0}, {0, size_m, 0}, {0, 0, size_m}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
 /// Everything that makes a map, to be changed one by one.
 struct Making {
     std::vector<Obstacle> obstacles = test::bridge();
@@ -31,24 +36,45 @@ struct Making {
 
     Making() { settings.grid_m = 0.1; }
 
+    void give_mesh(double size_m, double scale = 1, const std::string& file = "") {
+        obstacles[0].shape = Mesh{file, scale, std::make_shared<const TriangleMesh>(tetrahedron(size_m))};
+    }
+    void give_table(double last_factor) {
+        settings.ground.model = EffectModel::table;
+        settings.ground.table = std::make_shared<const EffectTable>(std::vector<double>{0.5, 1}, std::vector<double>{},
+                                                                    std::vector<double>{1.2, last_factor});
+    }
+    template <class Edit>
+    void give_map(const Edit& edit) {
+        FactorGridParts parts = test::two_by_two();
+        edit(parts);
+        settings.map = std::make_shared<const FactorGrid>(parts);
+    }
+    void give_flags(const std::vector<double>& flags) {
+        give_map([&flags](FactorGridParts& parts) { parts.fields.push_back({"flyable", flags}); });
+    }
+    void give_box(double side_m) { obstacles[0].shape = Box{{side_m, side_m, side_m}}; }
+    void place(double lateral_m, double heading_rad) { plane = PlaneOfMotion({0, lateral_m, 0}, heading_rad); }
+    /// A small extent, whose map is soon made.
+    static Making small() {
+        Making making;
+        making.extent = {-3, -2, 0.4, 1.2};
+        return making;
+    }
+
     [[nodiscard]] std::vector<MapLayer> layers() const {
-        const auto effect = std::make_shared<const DirectEffect>(scene_of(obstacles), settings, radius_m, neighbours);
-        std::vector<MapLayer> layers;
-        for (const double lateral_m : laterals_m) {
-            layers.push_back({effect, lateral_m});
-        }
-        return layers;
+        return test::layers(std::make_shared<const DirectEffect>(scene_of(obstacles), settings, radius_m, neighbours),
+                            laterals_m);
     }
     [[nodiscard]] AeroMap build() const { return {layers(), plane, extent}; }
     [[nodiscard]] std::string key() const { return map_key(layers(), plane, extent); }
+    [[nodiscard]] bool is_map(const std::string& bytes) const {
+        return AeroMap::from_bytes(layers(), plane, extent, bytes).has_value();
+    }
     [[nodiscard]] std::shared_ptr<const AeroMap> find(const MapCache& cache) const {
         return cache.find(layers(), plane, extent);
     }
 };
-
-bool same_bits(double a, double b) {
-    return std::memcmp(&a, &b, sizeof(double)) == 0;
-}
 
 /// Whether two maps answer alike everywhere, beyond their extent too.
 bool answers_alike(const AeroMap& a, const AeroMap& b) {
@@ -58,7 +84,8 @@ bool answers_alike(const AeroMap& a, const AeroMap& b) {
         const double x = random.uniform(extent.x_low_m - 0.2, extent.x_high_m + 0.2);
         const double z = random.uniform(extent.z_low_m - 0.2, extent.z_high_m + 0.2);
         const std::size_t layer = i % 2 == 0 ? 0 : a.layers().size() - 1;
-        if (!same_bits(a.factor(layer, x, z), b.factor(layer, x, z)) ||
+        if (std::bit_cast<std::uint64_t>(a.factor(layer, x, z)) !=
+                std::bit_cast<std::uint64_t>(b.factor(layer, x, z)) ||
             a.is_flyable(layer, x, z) != b.is_flyable(layer, x, z)) {
             return false;
         }
@@ -66,49 +93,36 @@ bool answers_alike(const AeroMap& a, const AeroMap& b) {
     return a.to_bytes() == b.to_bytes();
 }
 
-fs::path only_file_in(const fs::path& folder) {
-    REQUIRE(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
-    return fs::directory_iterator(folder)->path();
-}
-
 std::size_t files_in(const fs::path& folder) {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-TriangleMesh tetrahedron(double size_m) {
-    return {{{0, 0, 0}, {size_m, 0, 0}, {0, size_m, 0}, {0, 0, size_m}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+fs::path only_file_in(const fs::path& folder) {
+    REQUIRE(files_in(folder) == 1);
+    return fs::directory_iterator(folder)->path();
 }
 
 }  // namespace
 
-TEST_CASE("a map comes back from the cache to the last bit") {
+TEST_CASE("a map comes back from the cache to the last bit, a given one of large factors too") {
     const ScratchFolder folder;
     const MapCache cache(folder / "made/when/needed");
-    const Making making;
-    CHECK(making.find(cache) == nullptr);
-    const AeroMap built = making.build();
-    REQUIRE(cache.keep(built));
-    const auto found = making.find(cache);
-    REQUIRE(found);
-    CHECK(answers_alike(built, *found));
-    CHECK(found->memory_bytes() == built.memory_bytes());
-}
-
-TEST_CASE("a given map of large factors is served from the cache") {
-    const ScratchFolder folder;
-    const MapCache cache(folder.path());
-    Making making;
-    FactorGridParts parts = test::two_by_two();
-    parts.x = {-4, 2, 2};
-    parts.z = {0, 5, 2};
-    parts.fields = {{"factor", {5, 5, 100, 1}}};
-    making.settings.map = std::make_shared<const FactorGrid>(parts);
-    const AeroMap built = making.build();
-    CHECK(built.factor(0, -2.9, 3.5) > 5);
-    REQUIRE(cache.keep(built));
-    const auto found = making.find(cache);
-    REQUIRE(found);
-    CHECK(answers_alike(built, *found));
+    Making given;
+    given.give_map([](FactorGridParts& parts) {
+        parts.x = {-4, 2, 2};
+        parts.z = {0, 5, 2};
+        parts.fields = {{"factor", {5, 5, 100, 1}}};
+    });
+    CHECK(given.build().factor(0, -2.9, 3.5) > 5);
+    for (const Making& making : {Making(), given}) {
+        CHECK(making.find(cache) == nullptr);
+        const AeroMap built = making.build();
+        REQUIRE(cache.keep(built));
+        const auto found = making.find(cache);
+        REQUIRE(found);
+        CHECK(answers_alike(built, *found));
+        CHECK(found->memory_bytes() == built.memory_bytes());
+    }
 }
 
 TEST_CASE("a map is built once and found from then on") {
@@ -138,10 +152,7 @@ TEST_CASE("whatever makes a map is part of its key") {
     const std::vector<std::pair<const char*, Change>> changes{
         {"center", [](Making& m) { m.obstacles[0].center_world_m[1] += 1e-12; }},
         {"attitude", [](Making& m) { m.obstacles[0].rpy_rad[2] = 1e-9; }},
-        {"size",
-         [](Making& m) {
-             m.obstacles[0].shape = Box{{1, 1, 1}};
-         }},
+        {"size", [](Making& m) { m.give_box(1); }},
         {"kind", [](Making& m) { m.obstacles[0].shape = Sphere{1}; }},
         {"one obstacle less", [](Making& m) { m.obstacles.pop_back(); }},
         {"order", [](Making& m) { std::swap(m.obstacles[0], m.obstacles[1]); }},
@@ -154,67 +165,28 @@ TEST_CASE("whatever makes a map is part of its key") {
         {"grid", [](Making& m) { m.settings.grid_m = 0.09; }},
         {"radius", [](Making& m) { m.radius_m = 0.151; }},
         {"neighbours", [](Making& m) { m.neighbours = square_quadrotor(2.5); }},
-        {"heading",
-         [](Making& m) {
-             m.plane = PlaneOfMotion({0, 0, 0}, 0.1);
-         }},
-        {"origin",
-         [](Making& m) {
-             m.plane = PlaneOfMotion({0, 0.1, 0}, 0);
-         }},
+        {"heading", [](Making& m) { m.place(0, 0.1); }},
+        {"origin", [](Making& m) { m.place(0.1, 0); }},
         {"x", [](Making& m) { m.extent.x_high_m = 1.1; }},
         {"z", [](Making& m) { m.extent.z_low_m = 0.3; }},
         {"lateral", [](Making& m) { m.laterals_m[1] = 0.21; }},
         {"one layer less", [](Making& m) { m.laterals_m.pop_back(); }},
-        {"table",
-         [](Making& m) {
-             m.settings.ground.model = EffectModel::table;
-             m.settings.ground.table = std::make_shared<const EffectTable>(
-                 std::vector<double>{0.5, 1}, std::vector<double>{}, std::vector<double>{1.2, 1.1});
-         }},
-        {"table value",
-         [](Making& m) {
-             m.settings.ground.model = EffectModel::table;
-             m.settings.ground.table = std::make_shared<const EffectTable>(
-                 std::vector<double>{0.5, 1}, std::vector<double>{}, std::vector<double>{1.2, 1.11});
-         }},
-        {"given map", [](Making& m) { m.settings.map = std::make_shared<const FactorGrid>(test::two_by_two()); }},
-        {"given value",
-         [](Making& m) {
-             FactorGridParts parts = test::two_by_two();
-             parts.fields[0].values[3] = 23;
-             m.settings.map = std::make_shared<const FactorGrid>(parts);
-         }},
-        {"given place",
-         [](Making& m) {
-             FactorGridParts parts = test::two_by_two();
-             parts.x.high_m = 1.5;
-             m.settings.map = std::make_shared<const FactorGrid>(parts);
-         }},
+        {"table", [](Making& m) { m.give_table(1.1); }},
+        {"table value", [](Making& m) { m.give_table(1.11); }},
+        {"given map", [](Making& m) { m.give_map([](FactorGridParts&) {}); }},
+        {"given value", [](Making& m) { m.give_map([](FactorGridParts& p) { p.fields[0].values[3] = 23; }); }},
+        {"given place", [](Making& m) { m.give_map([](FactorGridParts& p) { p.x.high_m = 1.5; }); }},
         {"given flyable area",
          [](Making& m) {
-             FactorGridParts parts = test::two_by_two();
-             parts.fields.push_back({"flyable", {1, 1, 1, 1}});
-             m.settings.map = std::make_shared<const FactorGrid>(parts);
+             m.give_flags({1, 1, 1, 1});
          }},
         {"given flag",
          [](Making& m) {
-             FactorGridParts parts = test::two_by_two();
-             parts.fields.push_back({"flyable", {1, 1, 1, 0}});
-             m.settings.map = std::make_shared<const FactorGrid>(parts);
+             m.give_flags({1, 1, 1, 0});
          }},
-        {"mesh",
-         [](Making& m) {
-             m.obstacles[0].shape = Mesh{"", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
-         }},
-        {"mesh scale",
-         [](Making& m) {
-             m.obstacles[0].shape = Mesh{"", 2, std::make_shared<const TriangleMesh>(tetrahedron(1))};
-         }},
-        {"mesh vertices",
-         [](Making& m) {
-             m.obstacles[0].shape = Mesh{"", 1, std::make_shared<const TriangleMesh>(tetrahedron(1.1))};
-         }},
+        {"mesh", [](Making& m) { m.give_mesh(1); }},
+        {"mesh scale", [](Making& m) { m.give_mesh(1, 2); }},
+        {"mesh vertices", [](Making& m) { m.give_mesh(1.1); }},
     };
     std::map<std::string, std::string> names{{Making().key(), "unchanged"}};
     for (const auto& [name, change] : changes) {
@@ -227,10 +199,9 @@ TEST_CASE("whatever makes a map is part of its key") {
 }
 
 TEST_CASE("names of obstacles and files are no part of the key") {
-    Making one;
-    one.obstacles[0].shape = Mesh{"a.stl", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
-    Making other;
-    other.obstacles[0].shape = Mesh{"b.stl", 1, std::make_shared<const TriangleMesh>(tetrahedron(1))};
+    Making one, other;
+    one.give_mesh(1, 1, "a.stl");
+    other.give_mesh(1, 1, "b.stl");
     other.obstacles[1].name = "renamed";
     CHECK(one.key() == other.key());
     CHECK(one.key() != Making().key());
@@ -239,8 +210,7 @@ TEST_CASE("names of obstacles and files are no part of the key") {
 TEST_CASE("a damaged, cut, foreign or misnamed file of the cache is not trusted") {
     const ScratchFolder folder;
     const MapCache cache(folder.path());
-    Making making;
-    making.extent = {-3, -2, 0.4, 1.2};
+    const Making making = Making::small();
     const AeroMap built = making.build();
     REQUIRE(cache.keep(built));
     const fs::path file = only_file_in(folder.path());
@@ -281,15 +251,11 @@ TEST_CASE("a damaged, cut, foreign or misnamed file of the cache is not trusted"
 }
 
 TEST_CASE("bytes that would lead a look-up astray are no map") {
-    Making making;
-    making.extent = {-3, -2, 0.4, 1.2};
+    const Making making = Making::small();
     const AeroMap built = making.build();
     const std::string good = built.to_bytes();
-    const auto is_map = [&](const std::string& bytes) {
-        return AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value();
-    };
-    REQUIRE(is_map(good));
-    CHECK_FALSE(is_map(good + '\0'));
+    REQUIRE(making.is_map(good));
+    CHECK_FALSE(making.is_map(good + '\0'));
     // The first cell stands behind five counts: its first node, then its steps.
     constexpr std::size_t cell = 5 * sizeof(std::uint64_t);
     REQUIRE(good.substr(cell, 4) == std::string(4, '\0'));
@@ -298,31 +264,27 @@ TEST_CASE("bytes that would lead a look-up astray are no map") {
         std::string bad = good;
         bad[byte] = '\x7f';
         INFO("byte " << byte);
-        CHECK_FALSE(is_map(bad));
+        CHECK_FALSE(making.is_map(bad));
     }
     std::string no_number = good;
     no_number.replace(no_number.size() - 4, 4, "\xff\xff\xff\xff");
-    CHECK_FALSE(is_map(no_number));
+    CHECK_FALSE(making.is_map(no_number));
 }
 
 TEST_CASE("layers of equal values are kept once, and only such layers") {
     const auto count = [](std::uint64_t number) {
         return std::string(reinterpret_cast<const char*>(&number), sizeof number);
     };
-    Making making;
-    making.extent = {-3, -2, 0.4, 1.2};
+    Making making = Making::small();
     making.obstacles = {{"floor", Box{{20, 20, 1}}, {0, 0, -0.5}, {}}};
     const std::string both = making.build().to_bytes();
-    const auto is_map = [&](const std::string& bytes) {
-        return AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value();
-    };
-    REQUIRE(is_map(both));
+    REQUIRE(making.is_map(both));
     CHECK(making.build().are_equal(0, 1));
     CHECK(AeroMap::from_bytes(making.layers(), making.plane, making.extent, both)->are_equal(0, 1));
     const std::string before_last = both.substr(0, both.size() - sizeof(std::uint64_t));
     CHECK(both == before_last + count(0));
     for (const std::uint64_t first : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{1} << 63U}) {
-        CHECK_FALSE(is_map(before_last + count(first)));
+        CHECK_FALSE(making.is_map(before_last + count(first)));
     }
 
     // A second layer, under half a ceiling, that is said to be the first one.
@@ -331,15 +293,14 @@ TEST_CASE("layers of equal values are kept once, and only such layers") {
     const std::string alone = making.build().to_bytes();
     making.laterals_m = {-0.2, 0.2};
     REQUIRE_FALSE(making.build().are_equal(0, 1));
-    CHECK_FALSE(is_map(count(2) + alone.substr(sizeof(std::uint64_t)) + count(0)));
+    CHECK_FALSE(making.is_map(count(2) + alone.substr(sizeof(std::uint64_t)) + count(0)));
 }
 
 TEST_CASE("values that the effects no longer give are no map") {
-    Making making;
-    making.extent = {-3, -2, 0.4, 1.2};
+    Making making = Making::small();
     const std::string bytes = making.build().to_bytes();
     making.settings.ground = EffectModel::he;  // as if the code of the model had changed
-    CHECK_FALSE(AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes).has_value());
+    CHECK_FALSE(making.is_map(bytes));
 }
 
 TEST_CASE("a cache holds 32 maps, the last used ones") {

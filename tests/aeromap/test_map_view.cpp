@@ -9,9 +9,7 @@ namespace {
 
 /// A part of the bridge: cells of one patch, of many, and ones that nobody may fly in.
 const AeroMap& map_at_a_girder() {
-    static const AeroMap map(
-        test::layers(std::make_shared<const DirectEffect>(test::scene_of(test::bridge()), AeroSettings{}, 0.19), {0.1}),
-        {}, {-6, 6, 0, 8});
+    static const AeroMap map(test::layers(test::effect_in(test::bridge(), 0.19), {0.1}), {}, {-6, 6, 0, 8});
     return map;
 }
 

@@ -14,7 +14,7 @@
 #include "scenes.hpp"
 
 using namespace downwash;
-using test::scene_of;
+using test::effect_of;
 
 namespace {
 
@@ -23,28 +23,8 @@ constexpr double radius = 0.2;
 /// What direct_effect.hpp allows one evaluation near many parts; two of them may differ by twice that.
 constexpr double quadrature_error = 5e-3;
 
-DirectEffect effect_of(std::vector<Obstacle> obstacles) {
-    return DirectEffect(scene_of(std::move(obstacles)), {}, radius);
-}
-
 Vector3 anywhere(test::Random& random, double size_m) {
     return test::any_point(random, {size_m, size_m, size_m});
-}
-
-/// A flat heap.
-Mesh loose_triangles(test::Random& random, int count) {
-    std::vector<Vector3> corners;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (int i = 0; i < count; ++i) {
-        const Vector3 around = anywhere(random, 0.4);
-        const auto first = static_cast<std::uint32_t>(corners.size());
-        for (int corner = 0; corner < 3; ++corner) {
-            const Vector3 away = anywhere(random, 0.3);
-            corners.push_back({around[0] + away[0], around[1] + away[1], 0.2 * (around[2] + away[2])});
-        }
-        triangles.push_back({first, first + 1, first + 2});
-    }
-    return test::mesh_of(std::move(corners), std::move(triangles));
 }
 
 Octomap lumps(test::Random& random) {
@@ -72,7 +52,7 @@ Obstacle obstacle_of(int kind, test::Random& random, const Vector3& center_m) {
             obstacle.shape = test::pipe_mesh(random.uniform(0.1, 0.4), random.uniform(0.3, 1.5), 12, 3);
             break;
         case 8:
-            obstacle.shape = loose_triangles(random, 20);
+            obstacle.shape = test::stretched(test::some_triangles(random, 20, {0.4, 0.4, 0.4}, 0.3), {1, 1, 0.2});
             break;
         default:
             obstacle.shape = lumps(random);
@@ -110,11 +90,7 @@ double side_of(const DirectEffect::Factors& factors, bool is_below) {
 }
 
 Mesh mirrored(const Mesh& mesh) {
-    TriangleMesh surface = *mesh.surface;
-    for (Vector3& vertex : surface.vertices_m) {
-        vertex[1] = -vertex[1];
-    }
-    return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
+    return test::stretched(mesh, {1, -1, 1});
 }
 
 Octomap mirrored(const Octomap& octomap) {
@@ -130,12 +106,10 @@ Cylinder mirrored(Cylinder cylinder) {
     return cylinder;
 }
 
-Box mirrored(const Box& box) {
-    return box;
-}
-
-Sphere mirrored(const Sphere& sphere) {
-    return sphere;
+/// A box or a sphere is its own mirror image.
+template <class Symmetric>
+Symmetric mirrored(const Symmetric& shape) {
+    return shape;
 }
 
 /// The obstacle on the other side of the plane y = 0: its own frame is mirrored likewise, so that its pitch stays.
@@ -218,17 +192,16 @@ TEST_CASE("The farther an obstacle of any kind below or above, the weaker its ef
 }
 
 TEST_CASE("In any scene what is below and what is above act by themselves and add up to the cap") {
-    test::Random random(82);
+    test::Random random(87);
     int both_felt = 0;
     int capped = 0;
     for (int round = 0; round < 600; ++round) {
-        std::vector<Obstacle> below;
-        std::vector<Obstacle> above;
-        for (int i = random.integer(1, 3); i > 0; --i) {
-            below.push_back(ending_at(obstacle_of(random.integer(0, kinds - 1), random, anywhere(random, 0.3)),
-                                      -random.uniform(0.05, 0.4), true));
-            above.push_back(ending_at(obstacle_of(random.integer(0, kinds - 1), random, anywhere(random, 0.3)),
-                                      random.uniform(0.05, 0.4), false));
+        const int count = random.integer(1, 3);
+        std::vector<Obstacle> below = some_obstacles(random, count, 0.3);
+        std::vector<Obstacle> above = some_obstacles(random, count, 0.3);
+        for (std::size_t i = 0; i < below.size(); ++i) {
+            below[i] = ending_at(below[i], -random.uniform(0.05, 0.4), true);
+            above[i] = ending_at(above[i], random.uniform(0.05, 0.4), false);
         }
         const Vector3 hub{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 0};
         const DirectEffect::Factors alone_below = effect_of(below).factors(hub);
@@ -274,6 +247,7 @@ TEST_CASE("Away from any scene the effect fades at least as fast as over a wide 
             REQUIRE(under.ceiling <= ceiling(distance_m / radius) + 1e-9);
         }
         REQUIRE(effect.factor({at[0], at[1], high_m + 60}) == Approx(1).epsilon(0).margin(1e-5));
+        REQUIRE(effect.factor({at[0], at[1], low_m - 60}) == Approx(1).epsilon(0).margin(1e-5));
         // Beside everything no vertical line meets anything: centres are within 0.8 m, reaches below 1.3 m.
         REQUIRE(effect.factor({3, at[1], at[2]}) == 1);
         REQUIRE(effect.factor({at[0], -3, at[2]}) == 1);

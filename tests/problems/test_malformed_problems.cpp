@@ -215,15 +215,7 @@ const Edit edits[] = {
 
 }  // namespace
 
-TEST_CASE("a malformed problem is refused with place, reason and remedy") {
-    const TestFolder folder;
-    for (const Edit& edit : edits) {
-        CAPTURE(edit.from, edit.to);
-        CHECK(errors_after(folder, edit) == edit.errors);
-    }
-}
-
-TEST_CASE("the problem that the others are made from is sound") {
-    const TestFolder folder;
-    CHECK(errors_after(folder, {"name: test", "name: test", ""}) == "sound");
+TEST_CASE("a malformed problem is an error with place, reason and remedy") {
+    CHECK(TestFolder().errors_of(good_problem, good_robot) == "sound");
+    check(edits, errors_after);
 }

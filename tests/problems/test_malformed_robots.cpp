@@ -84,22 +84,17 @@ const Edit edits[] = {
 
 }  // namespace
 
-TEST_CASE("a malformed robot is refused in its own file") {
-    const TestFolder folder;
-    for (const Edit& edit : edits) {
-        CAPTURE(edit.from, edit.to);
-        CHECK(errors_after_robot(folder, edit) == edit.errors);
-    }
+TEST_CASE("a malformed robot is an error in its own file") {
+    check(edits, errors_after_robot);
 }
 
-TEST_CASE("a robot inline is refused in the problem's file") {
+TEST_CASE("errors of a robot inline stand in the problem's file") {
     const TestFolder folder;
     std::string indented = "robot:";
     for (const char c : "\n" + edited(good_robot, "mass_kg: 4.5", "mass_kg: -4.5")) {
         indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
     }
-    folder.write("problem.yaml", edited(good_problem, "robot: robot.yaml", indented));
-    CHECK(folder.errors_of("problem.yaml") ==
+    CHECK(errors_after(folder, "robot: robot.yaml", indented) ==
           "problem.yaml:7:14: robot.multirotor.mass_kg is -4.5: expected a number in kg above 0 and at most 10000");
 }
 

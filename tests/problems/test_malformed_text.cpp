@@ -1,4 +1,3 @@
-
 #include "edits.hpp"
 
 using namespace downwash;
@@ -7,10 +6,7 @@ using namespace downwash::test;
 namespace {
 
 std::string errors_of_text(std::string_view text) {
-    const TestFolder folder;
-    folder.write("problem.yaml", text);
-    folder.write("robot.yaml", good_robot);
-    return folder.errors_of("problem.yaml");
+    return TestFolder().errors_of(text, good_robot);
 }
 
 std::string repeated(std::string_view text, int times) {
@@ -25,38 +21,36 @@ const std::string no_yaml = "): expected 'key: value' with matching brackets, qu
 
 }  // namespace
 
-TEST_CASE("a file that is no single YAML document of keys is refused") {
+TEST_CASE("a file that is no single YAML document of keys is an error") {
     const std::string good(good_problem);
-    CHECK(errors_of_text("") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
-    CHECK(errors_of_text("# nothing\n\n") == "problem.yaml:1:1: is empty: expected a YAML document with keys");
+    for (const char* text : {"", "# nothing\n\n"}) {
+        CHECK(errors_of_text(text) == "problem.yaml:1:1: is empty: expected a YAML document with keys");
+    }
     CHECK(errors_of_text("- schema\n- name\n") == "problem.yaml:1:1: is a list: expected a file of keys and values");
     CHECK(errors_of_text("a problem\n") == "problem.yaml:1:1: is 'a problem': expected a file of keys and values");
     CHECK(errors_of_text(good + "---\nname: second\n") ==
           "problem.yaml:18:1: a second document begins: expected only one");
-    CHECK(errors_of_text("name: [1, 2\nstart: 3\n").ends_with(no_yaml));
-    CHECK(errors_of_text(good + "description: \"open\n").ends_with(no_yaml));
-    CHECK(errors_of_text(good + "description: 'open\n").ends_with(no_yaml));
     CHECK(errors_of_text(good + "description: |\n  several\n  lines\n") == "sound");
-    CHECK(errors_of_text(good + "}\n").ends_with(no_yaml));
+    for (const std::string& text : {std::string("name: [1, 2\nstart: 3\n"), good + "description: \"open\n",
+                                    good + "description: 'open\n", good + "}\n"}) {
+        CHECK(errors_of_text(text).ends_with(no_yaml));
+    }
 }
 
-TEST_CASE("bytes that are no text are refused at their place") {
+TEST_CASE("bytes that are no text are errors at their place") {
     using namespace std::string_literals;
     CHECK(errors_of_text("name: a\nstart: \0x"s) ==
           "problem.yaml:2:8: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(errors_of_text("name: \xff\xfe\n") ==
-          "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(errors_of_text("name: \xc0\xaf\n") ==
-          "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
-    CHECK(errors_of_text("name: \xed\xa0\x80\n") ==
-          "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
+    for (const char* text : {"name: \xff\xfe\n", "name: \xc0\xaf\n", "name: \xed\xa0\x80\n"}) {
+        CHECK(errors_of_text(text) == "problem.yaml:1:7: holds bytes that are no text: expected YAML in UTF-8");
+    }
     CHECK(errors_of_text("\x7f"
                          "ELF\x02\x01\x01") ==
           "problem.yaml:1:5: holds bytes that are no text: expected YAML in UTF-8");
     CHECK(errors_of_text("start:\n\tx_m: 1\n") == "problem.yaml:2:1: a tab in the indentation: expected spaces");
 }
 
-TEST_CASE("files that cannot be read are refused") {
+TEST_CASE("files that cannot be read are errors") {
     const TestFolder folder;
     CHECK(folder.errors_of("missing.yaml") == "missing.yaml:1:1: cannot be read: there is no such file");
     std::filesystem::create_directory(folder / "folder.yaml");

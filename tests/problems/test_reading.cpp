@@ -5,19 +5,8 @@
 using namespace downwash;
 using namespace downwash::test;
 
-namespace {
-
-Problem good() {
-    const TestFolder folder;
-    folder.write("problem.yaml", good_problem);
-    folder.write("robot.yaml", good_robot);
-    return read_problem(folder / "problem.yaml");
-}
-
-}  // namespace
-
 TEST_CASE("a problem is read as it is written, angles in radians") {
-    const Problem problem = good();
+    const Problem problem = TestFolder().read();
     CHECK(problem.name == "test");
     CHECK(problem.robot.name == "tester");
     CHECK(problem.robot.rotors.positions_m.size() == 4);
@@ -35,7 +24,7 @@ TEST_CASE("a problem is read as it is written, angles in radians") {
 }
 
 TEST_CASE("what a file leaves out has the default of its member") {
-    const Problem problem = good();
+    const Problem problem = TestFolder().read();
     const Problem fresh;
     CHECK(problem.aero.grid_m == fresh.aero.grid_m);
     CHECK(problem.aero.ceiling.parameters[1] == fresh.aero.ceiling.parameters[1]);
@@ -47,9 +36,8 @@ TEST_CASE("what a file leaves out has the default of its member") {
 
 TEST_CASE("errors of several kinds and files are reported in one run, in the order of the files") {
     const TestFolder folder;
-    folder.write("problem.yaml", edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"));
-    folder.write("robot.yaml", edited(good_robot, "max_thrust_n: 28", "max_thrust_n: 10"));
-    CHECK(folder.errors_of("problem.yaml") ==
+    CHECK(folder.errors_of(edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"),
+                           edited(good_robot, "max_thrust_n: 28", "max_thrust_n: 10")) ==
           "problem.yaml:12:14: start.x_m is -40, outside the bounds: expected -6 to 6\n"
           "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?\n"
           "robot.yaml:11:17: rotors.max_thrust_n gives 40 N with 4 rotors, which cannot lift the weight of 48.54 N: "
@@ -70,9 +58,7 @@ TEST_CASE("goals are read one by one, in turn, or as a choice") {
     const TestFolder folder;
     const auto read_with = [&](std::string_view text) {
         constexpr std::string_view one = "goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n";
-        folder.write("problem.yaml", edited(good_problem, one, text));
-        folder.write("robot.yaml", good_robot);
-        return read_problem(folder / "problem.yaml");
+        return folder.read(edited(good_problem, one, text));
     };
     const Problem turn = read_with(
         "goal:\n  - configuration: {x_m: 1, tolerance_x_m: 0.2}\n    hold_s: 3\n"
@@ -103,9 +89,8 @@ TEST_CASE("goals are read one by one, in turn, or as a choice") {
 TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {
     const TestFolder folder;
     const auto objective_of = [&](std::string_view text) {
-        folder.write("problem.yaml", edited(good_problem, "objective: energy", "objective: " + std::string(text)));
-        folder.write("robot.yaml", good_robot);
-        return read_problem(folder / "problem.yaml").planner.objective;
+        return folder.read(edited(good_problem, "objective: energy", "objective: " + std::string(text)))
+            .planner.objective;
     };
     const CostFunction sum = objective_of("{energy: 0.5, time: 50}");
     CHECK(sum.weight(Objective::energy) == 0.5);
@@ -118,7 +103,7 @@ TEST_CASE("an objective is a name or a sum with weights, of which those that are
 }
 
 TEST_CASE("single values are set as a file would set them") {
-    Problem problem = good();
+    Problem problem = TestFolder().read();
     set_parameter(problem, "planner.variant", "mp-arm");
     CHECK(problem.planner.variant == Variant::mp_arm);
     set_parameter(problem, "planner.max_iterations", "500");

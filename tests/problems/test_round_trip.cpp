@@ -31,19 +31,16 @@ class ProblemMaker {
             obstacle.rpy_rad = {1e-3 * uniform(), 1e-5 * uniform(), uniform()};
             obstacle.center_world_m[1] += uniform();
         }
-        Obstacle ball;
-        ball.name = "ball \"quoted\" \\ \n\t \xc3\xa4 # : - [";
-        ball.shape = Sphere{0.1 + uniform()};
-        ball.center_world_m = {0, 30 + uniform(), 2};
-        problem.obstacles.push_back(ball);
+        problem.obstacles.push_back(
+            {"ball \"quoted\" \\ \n\t \xc3\xa4 # : - [", Sphere{0.1 + uniform()}, {0, 30 + uniform(), 2}, {}});
         problem.description = "two\nlines: {and} \"more\"";
         test::gains_of(problem.robot).max_tilt_rad = 0.1 + uniform();
         test::gains_of(problem.robot).position_kp = std::exp(uniform());
         problem.robot.rotors.time_constant_s = coin() ? 0 : 0.06 + 1e-3 * uniform();
         problem.robot.rotors.positions_m[0][1] += 1e-7 * uniform();
-        problem.robot.arm.is_limited = coin();
-        problem.robot.arm.lower_limit_rad = problem.robot.arm.is_limited ? -3 - uniform() : 0;
-        problem.robot.arm.upper_limit_rad = problem.robot.arm.is_limited ? 3 + uniform() : 0;
+        if (coin()) {
+            test::limit_arm(problem.robot, -3 - uniform(), 3 + uniform());
+        }
         problem.goal.end_effector->direction_tolerance_rad = 3 + 0.1 * uniform();
         if (coin()) {
             problem.goal.end_effector->direction_rad = 7 * uniform();
@@ -53,8 +50,8 @@ class ProblemMaker {
             problem.goal.configuration.emplace();
             problem.goal.configuration->arm_rad = 20 * uniform();
             problem.goal.configuration->tolerance_rad = uniform();
+            test::limit_arm(problem.robot, 0, 0);
             problem.robot.arm.is_limited = false;
-            problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = 0;
         }
         if (Goal& goal = problem.goal; goal.end_effector && coin()) {
             goal.end_effector->tolerance_x_m = 0.1 + uniform();
@@ -131,17 +128,11 @@ std::string bits(const Problem& problem) {
     return text;
 }
 
-Problem good(const TestFolder& folder) {
-    folder.write("problem.yaml", good_problem);
-    folder.write("robot.yaml", good_robot);
-    return read_problem(folder / "problem.yaml");
-}
-
 }  // namespace
 
 TEST_CASE("what is written is read again to the last bit") {
     const TestFolder folder;
-    const Problem sound = good(folder);
+    const Problem sound = folder.read();
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         const Problem problem = ProblemMaker(seed).varied(sound);
         const std::string yaml = effective_yaml(problem, folder / "");
@@ -152,11 +143,8 @@ TEST_CASE("what is written is read again to the last bit") {
         REQUIRE(bits(again) == bits(problem));
         REQUIRE(effective_yaml(again, folder / "") == yaml);
     }
-}
-
-TEST_CASE("switched off surface effects stay off") {
-    const TestFolder folder;
-    Problem problem = good(folder);
+    // Switched off surface effects stay off.
+    Problem problem = sound;
     problem.aero.enabled = false;
     folder.write("effective.yaml", effective_yaml(problem, folder / ""));
     CHECK_FALSE(read_problem(folder / "effective.yaml").aero.enabled);
@@ -164,10 +152,10 @@ TEST_CASE("switched off surface effects stay off") {
 
 TEST_CASE("the hash of a problem depends on its meaning, not on how it is written") {
     const TestFolder folder;
-    const Problem problem = good(folder);
-    folder.write("problem.yaml", edited(edited(good_problem, "arm_deg: 90", "arm_deg: 9.0e1"), "goal:", "# a\ngoal:"));
-    CHECK(problem_sha256(read_problem(folder / "problem.yaml")) == problem_sha256(problem));
-    folder.write("problem.yaml", edited(good_problem, "arm_deg: 90", "arm_deg: 90.00000000000001"));
-    CHECK(problem_sha256(read_problem(folder / "problem.yaml")) != problem_sha256(problem));
+    const Problem problem = folder.read();
+    const auto hash = [&folder](std::string_view text) { return problem_sha256(folder.read(text)); };
+    CHECK(hash(edited(edited(good_problem, "arm_deg: 90", "arm_deg: 9.0e1"), "goal:", "# a\ngoal:")) ==
+          problem_sha256(problem));
+    CHECK(hash(edited(good_problem, "arm_deg: 90", "arm_deg: 90.00000000000001")) != problem_sha256(problem));
     CHECK(problem_sha256(problem).size() == 64);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "../support/hard_places.hpp"
@@ -16,35 +17,25 @@ using namespace downwash;
 
 namespace {
 
-std::vector<std::filesystem::path> shipped_problems() {
-    std::vector<std::filesystem::path> files;
+/// Those with surface effects, in the order of their files.
+std::vector<Problem> shipped_problems() {
+    std::set<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(DOWNWASH_PROBLEMS)) {
         if (entry.path().extension() == ".yaml") {
-            files.push_back(entry.path());
+            files.insert(entry.path());
         }
     }
-    std::sort(files.begin(), files.end());
-    return files;
+    std::vector<Problem> problems;
+    for (const auto& file : files) {
+        problems.push_back(read_problem(file));
+    }
+    std::erase_if(problems, [](const Problem& problem) { return !problem.aero.enabled; });
+    return problems;
 }
 
-/// Map against direct evaluation at hubs in a layer.
-struct Comparison {
-    const AeroMap& map;
-    double worst = 0;
-
-    /// @return whether the hub counts: it is within the map and flyable
-    bool look(std::size_t layer, double x_m, double z_m) {
-        const Bounds& extent = map.extent();
-        if (x_m < extent.x_low_m || x_m > extent.x_high_m || z_m < extent.z_low_m || z_m > extent.z_high_m ||
-            !map.is_flyable(layer, x_m, z_m)) {
-            return false;
-        }
-        const MapLayer& from = map.layers()[layer];
-        const double direct = from.effect->factor(map.plane().to_world(x_m, from.lateral_m, z_m));
-        worst = std::max(worst, std::abs(map.factor(layer, x_m, z_m) - direct));
-        return true;
-    }
-};
+std::size_t any_layer(test::Random& random, const AeroMap& map) {
+    return static_cast<std::size_t>(random.integer(0, static_cast<int>(map.layers().size()) - 1));
+}
 
 Vector3 any_hub(test::Random& random, const AeroMap& map, std::size_t layer) {
     const double x_m = random.uniform(map.extent().x_low_m, map.extent().x_high_m);
@@ -68,31 +59,24 @@ std::optional<Vector3> felt_hub(const FlightModel& model, const Bounds& bounds) 
 }  // namespace
 
 TEST_CASE("The map of every shipped problem is within 0.01 of the direct effect wherever one may fly") {
-    const auto files = shipped_problems();
-    REQUIRE(files.size() >= 5);
-    for (const auto& file : files) {
-        const Problem problem = read_problem(file);
-        if (!problem.aero.enabled) {
-            continue;
-        }
-        const auto model = make_flight_model(problem);
-        const auto map = model->make_map(problem.bounds, 2);
+    const auto problems = shipped_problems();
+    REQUIRE(problems.size() >= 5);
+    for (const Problem& problem : problems) {
+        const auto map = make_flight_model(problem)->make_map(problem.bounds, 2);
         const Bounds& extent = map->extent();
-        Comparison found{*map};
+        test::MapComparison found{*map};
         test::Random random(17);
-        int points = 0;
-        for (int tries = 0; points < 20000 && tries < 4000000; ++tries) {
+        for (int tries = 0; found.points < 20000 && tries < 4000000; ++tries) {
             const double x = random.uniform(extent.x_low_m, extent.x_high_m);
             const double z = random.uniform(extent.z_low_m, extent.z_high_m);
-            const auto layer = static_cast<std::size_t>(random.integer(0, static_cast<int>(map->layers().size()) - 1));
+            const std::size_t layer = any_layer(random, *map);
             // Nine points of ten where the effect is felt.
-            if (tries % 10 != 0 && std::abs(map->factor(layer, x, z) - 1) < 0.02) {
-                continue;
+            if (tries % 10 == 0 || std::abs(map->factor(layer, x, z) - 1) >= 0.02) {
+                found.look(layer, x, z);
             }
-            points += found.look(layer, x, z) ? 1 : 0;
         }
-        CAPTURE(file.string(), found.worst, map->memory_bytes());
-        CHECK(points == 20000);
+        CAPTURE(problem.name, found.worst, map->memory_bytes());
+        CHECK(found.points == 20000);
         CHECK(found.worst <= 0.01);
         CHECK(map->memory_bytes() < 64U << 20U);
     }
@@ -100,25 +84,19 @@ TEST_CASE("The map of every shipped problem is within 0.01 of the direct effect 
 
 TEST_CASE("The map of every shipped problem is within 0.01 near edges of shadows and at the least clearance") {
     int hard_problems = 0;
-    for (const auto& file : shipped_problems()) {
-        const Problem problem = read_problem(file);
-        if (!problem.aero.enabled) {
-            continue;
-        }
-        const auto model = make_flight_model(problem);
-        const auto map = model->make_map(problem.bounds, 2);
-        Comparison found{*map};
+    for (const Problem& problem : shipped_problems()) {
+        const auto map = make_flight_model(problem)->make_map(problem.bounds, 2);
+        test::MapComparison found{*map};
         test::Random random(18);
         int near_edges = 0;
         int at_rims = 0;
-        const int layers = static_cast<int>(map->layers().size());
         for (int tries = 0; near_edges < 4000 && tries < 40000; ++tries) {
-            const auto layer = static_cast<std::size_t>(random.integer(0, layers - 1));
+            const std::size_t layer = any_layer(random, *map);
             const Vector3 at = map->plane().from_world(test::near_shadow_edge(random, *map->layers()[layer].effect));
             near_edges += found.look(layer, at[0], at[2]) ? 1 : 0;
         }
         for (int tries = 0; at_rims < 500 && tries < 40000; ++tries) {
-            const auto layer = static_cast<std::size_t>(random.integer(0, layers - 1));
+            const std::size_t layer = any_layer(random, *map);
             const Vector3 from_m = any_hub(random, *map, layer);
             const Vector3 to_m = any_hub(random, *map, layer);
             if (const auto rim_m = test::at_rim(*map->layers()[layer].effect, from_m, to_m)) {
@@ -126,7 +104,7 @@ TEST_CASE("The map of every shipped problem is within 0.01 near edges of shadows
                 at_rims += found.look(layer, at[0], at[2]) ? 1 : 0;
             }
         }
-        CAPTURE(file.string(), found.worst, near_edges, at_rims);
+        CAPTURE(problem.name, found.worst, near_edges, at_rims);
         CHECK(found.worst <= 0.01);
         hard_problems += near_edges == 4000 && at_rims == 500 ? 1 : 0;
     }
@@ -135,16 +113,12 @@ TEST_CASE("The map of every shipped problem is within 0.01 near edges of shadows
 
 TEST_CASE("A volume in every shipped problem without meshes is within 0.01 of the direct effect") {
     int problems = 0;
-    for (const auto& file : shipped_problems()) {
-        const Problem problem = read_problem(file);
+    for (const Problem& problem : shipped_problems()) {
         const auto model = make_flight_model(problem);
         const Scene& scene = model->effect(0).scene();
-        if (!problem.aero.enabled || scene.part_count() > scene.primitive_count()) {
-            continue;
-        }
         const auto effect = std::make_shared<const DirectEffect>(model->effect(0));
         const auto center_m = felt_hub(*model, problem.bounds);
-        if (!center_m) {
+        if (scene.part_count() > scene.primitive_count() || !center_m) {
             continue;
         }
         const PlaneOfMotion frame(*center_m, model->plane().heading_rad() + 0.1);
@@ -163,7 +137,7 @@ TEST_CASE("A volume in every shipped problem without meshes is within 0.01 of th
                 ++points;
             }
         }
-        CAPTURE(file.string(), worst, map.polynomials());
+        CAPTURE(problem.name, worst, map.polynomials());
         CHECK(points > 2000);
         CHECK(map.polynomials() > 0);
         CHECK(worst <= 0.01);

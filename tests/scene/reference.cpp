@@ -202,18 +202,22 @@ std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::Pl
     return solids;
 }
 
-Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles) {
+Enclosure clearance(const std::vector<Solid>& robot, const std::vector<Solid>& solids) {
     const double infinity = std::numeric_limits<double>::infinity();
     Enclosure least{infinity, infinity};
-    for (const downwash::Obstacle& obstacle : obstacles) {
-        const Solid solid = solid_of(obstacle);
+    for (const Solid& solid : solids) {
         for (const Solid& part : robot) {
             const Enclosure pair = distance(part, solid);
-            least.low = std::min(least.low, pair.low);
-            least.high = std::min(least.high, pair.high);
+            least = {std::min(least.low, pair.low), std::min(least.high, pair.high)};
         }
     }
     return least;
+}
+
+Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles) {
+    std::vector<Solid> solids(obstacles.size());
+    std::transform(obstacles.begin(), obstacles.end(), solids.begin(), solid_of);
+    return clearance(robot, solids);
 }
 
 downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles, const downwash::RobotShape& robot,

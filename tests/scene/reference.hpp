@@ -3,7 +3,9 @@
 // A second way to distances, as plain as possible and sharing nothing with the library but its input types: nearest
 // points by alternating projections (Cheney and Goldstein 1959), each answer enclosed by a separating plane.
 
+#include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -28,7 +30,17 @@ struct Solid {
 /// An enclosure of the distance [m]; high is 0 on contact.
 struct Enclosure {
     double low, high;
+
+    /// Whether a clearance, below 0 on contact, may be that distance.
+    [[nodiscard]] bool holds(double clearance_m, double tolerance_m = 1e-9) const {
+        return std::max(0.0, clearance_m) >= low - tolerance_m && clearance_m <= high + 1e-12;
+    }
 };
+
+/// A length within a billionth of a metre.
+inline Approx about(double length_m) {
+    return Approx(length_m).epsilon(0).margin(1e-9);
+}
 
 Vector3 project(const Solid& solid, const Vector3& p_m);
 double distance_to_point(const Solid& solid, const Vector3& p_m);
@@ -44,6 +56,7 @@ Solid triangle(const std::array<Vector3, 3>& corners_m);
 Solid disc(const Vector3& center_m, double radius_m);
 std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
                             const downwash::RobotShape& robot);
+Enclosure clearance(const std::vector<Solid>& robot, const std::vector<Solid>& solids);
 Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles);
 
 downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles, const downwash::RobotShape& robot,

@@ -106,7 +106,7 @@ TEST_CASE("OBJ corners may name texture and normals, count backwards, and make p
     CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}});
 }
 
-TEST_CASE("Wrong ASCII STL is refused with its line") {
+TEST_CASE("Wrong ASCII STL is an error with its line") {
     const auto [bytes, said] = GENERATE(table<std::string, std::string>({
         {ascii_with("facet normal 0 0 1", "facet normal 0 0"),
          "line 2: found 2 words after 'facet normal', expected 3 numbers"},
@@ -129,7 +129,7 @@ TEST_CASE("Wrong ASCII STL is refused with its line") {
     CHECK(said_of(bytes, "a.stl") == "'a.stl' " + said);
 }
 
-TEST_CASE("Wrong binary STL is refused with its byte") {
+TEST_CASE("Wrong binary STL is an error with its byte") {
     const std::string sound = binary_stl(box_triangles({0, 0, 0}, {1, 1, 1}));
     REQUIRE(said_of(sound, "a.stl") == "none");
     const auto with = [&sound](std::size_t at, const std::string& bytes) {
@@ -155,7 +155,7 @@ TEST_CASE("Wrong binary STL is refused with its byte") {
     CHECK(said_of(binary_stl({}), "a.stl") == "'a.stl' has no triangles: expected at least one");
 }
 
-TEST_CASE("Wrong OBJ is refused with its line") {
+TEST_CASE("Wrong OBJ is an error with its line") {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     const auto [bytes, said] = GENERATE_COPY(table<std::string, std::string>({
         {"v 1 2\n", "line 1: a vertex of 2 numbers: expected 3"},
@@ -180,7 +180,7 @@ TEST_CASE("Wrong OBJ is refused with its line") {
     CHECK(said_of(bytes, "a.obj") == "'a.obj' " + said);
 }
 
-TEST_CASE("Meshes of more than two million triangles are refused") {
+TEST_CASE("Meshes of more than two million triangles are errors") {
     std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
     for (int i = 0; i < 2'000'002; ++i) {
         text += i % 2 == 0 ? " 1" : " 2";
@@ -190,19 +190,18 @@ TEST_CASE("Meshes of more than two million triangles are refused") {
 }
 
 TEST_CASE("No beginning of an STL file passes for the whole") {
-    const std::string binary = binary_stl(box_triangles({0, 0, 0}, {1, 1, 1}), "solid box");
-    for (std::size_t size = 0; size < binary.size(); ++size) {
-        CAPTURE(size);
-        REQUIRE(said_of(binary.substr(0, size), "a.stl") != "none");
-    }
-    const std::string ascii = ascii_stl(box_triangles({0, 0, 0}, {1, 1, 1}));
-    for (std::size_t size = 0; size < ascii.size() - 1; ++size) {
-        CAPTURE(size);
-        REQUIRE(said_of(ascii.substr(0, size), "a.stl") != "none");
+    const auto box = box_triangles({0, 0, 0}, {1, 1, 1});
+    std::string ascii = ascii_stl(box);
+    ascii.pop_back();  // its last line break may be missing
+    for (const std::string& whole : {binary_stl(box, "solid box"), ascii}) {
+        for (std::size_t size = 0; size < whole.size(); ++size) {
+            CAPTURE(size);
+            REQUIRE(said_of(whole.substr(0, size), "a.stl") != "none");
+        }
     }
 }
 
-TEST_CASE("A mesh file that cannot be read is refused by its name") {
+TEST_CASE("A mesh file that cannot be read is told by its name") {
     const ScratchFolder folder;
     write_file(folder / "a.ply", "ply");
     const auto said_of_file = [&folder](const std::string& name) {

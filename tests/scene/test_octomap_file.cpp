@@ -1,4 +1,3 @@
-#include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
 #include <algorithm>
@@ -127,7 +126,7 @@ TEST_CASE("Voxels in the outermost corners are where OctoMap has them") {
           Cubes{{0.25, -8191.875, -8191.875, -8191.875}, {0.25, 8191.875, 8191.875, 8191.875}});
 }
 
-TEST_CASE("Wrong octree headers are refused with their line") {
+TEST_CASE("Wrong octree headers are errors with their line") {
     REQUIRE(said_of(sound()) == "none");
     CHECK(said_of("") == "'a.bt' line 1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
     CHECK(said_of("solid\n") ==
@@ -148,7 +147,7 @@ TEST_CASE("Wrong octree headers are refused with their line") {
           "'a.bt' line 5: the header ends here: expected a line 'data' of its own");
 }
 
-TEST_CASE("Wrong streams of nodes are refused with their byte") {
+TEST_CASE("Wrong streams of nodes are errors with their byte") {
     const std::size_t data = header.size();
     const std::string at = "'a.bt' byte ";
     CHECK(said_of(header + nodes) ==
@@ -175,7 +174,7 @@ TEST_CASE("Wrong streams of nodes are refused with their byte") {
     CHECK(said_of(deep) == at + std::to_string(data + 33) + ": a node below level 16: expected no more levels");
 }
 
-TEST_CASE("Probabilities that are none are refused, as are those of the other byte order") {
+TEST_CASE("Probabilities that are none are errors, as are those of the other byte order") {
     octomap::OcTree tree(0.1);
     Random random(3);
     fill(tree, random);
@@ -211,12 +210,4 @@ TEST_CASE("No beginning of an octree file passes for the whole, nor does one wit
             REQUIRE(said_of(whole.substr(0, size)) != "none");
         }
     }
-}
-
-TEST_CASE("Trees of colours are refused") {
-    octomap::ColorOcTree tree(0.1);
-    tree.updateNode(octomap::OcTreeKey(32768, 32768, 32768), true);
-    std::stringstream stream;
-    tree.write(stream);
-    CHECK_THAT(said_of(stream.str()), Catch::Contains("a tree of kind 'ColorOcTree': expected OcTree"));
 }

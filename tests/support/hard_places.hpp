@@ -1,13 +1,35 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 
-#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/aero_map.hpp"
 #include "random.hpp"
 
 namespace downwash::test {
+
+/// A map against direct evaluation, at hubs in its layers.
+struct MapComparison {
+    const AeroMap& map;
+    double worst = 0;  ///< greatest difference
+    int points = 0;    ///< compared
+
+    /// @return the direct factor where the hub is within the map and flyable
+    std::optional<double> look(std::size_t layer, double x_m, double z_m) {
+        const Bounds& extent = map.extent();
+        if (x_m < extent.x_low_m || x_m > extent.x_high_m || z_m < extent.z_low_m || z_m > extent.z_high_m ||
+            !map.is_flyable(layer, x_m, z_m)) {
+            return std::nullopt;
+        }
+        const MapLayer& from = map.layers()[layer];
+        const double direct = from.effect->factor(map.plane().to_world(x_m, from.lateral_m, z_m));
+        worst = std::max(worst, std::abs(map.factor(layer, x_m, z_m) - direct));
+        ++points;
+        return direct;
+    }
+};
 
 /// A hub about the edge of a random part's shadow, where a map is at its worst: the disc begins to cover the part, or
 /// covers a corner of it, at any height from the least clearance to a radius more above or below it. The shadow is

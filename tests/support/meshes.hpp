@@ -2,6 +2,7 @@
 
 // Meshes and octrees of shapes that are known otherwise.
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -38,34 +39,66 @@ inline Mesh box_mesh(const Vector3& size_m) {
                                          {3, 7, 5}});
 }
 
+/// The mesh with its surface changed by `edit`.
+template <class Edit>
+Mesh edited(const Mesh& mesh, const Edit& edit) {
+    TriangleMesh surface = *mesh.surface;
+    edit(surface);
+    return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
+}
+
 /// The same surface with the inside out.
 inline Mesh reversed(const Mesh& mesh) {
-    TriangleMesh surface = *mesh.surface;
-    for (auto& triangle : surface.triangles) {
-        std::swap(triangle[1], triangle[2]);
-    }
-    return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
+    return edited(mesh, [](TriangleMesh& surface) {
+        for (auto& triangle : surface.triangles) {
+            std::swap(triangle[1], triangle[2]);
+        }
+    });
+}
+
+/// Every vertex elsewhere.
+inline Mesh moved(const Mesh& mesh, const Vector3& by_m) {
+    return edited(mesh, [&by_m](TriangleMesh& surface) {
+        for (Vector3& vertex : surface.vertices_m) {
+            vertex = {vertex[0] + by_m[0], vertex[1] + by_m[1], vertex[2] + by_m[2]};
+        }
+    });
+}
+
+/// Every vertex with its coordinates times those of `by`: flattened or mirrored.
+inline Mesh stretched(const Mesh& mesh, const Vector3& by) {
+    return edited(mesh, [&by](TriangleMesh& surface) {
+        for (Vector3& vertex : surface.vertices_m) {
+            vertex = {vertex[0] * by[0], vertex[1] * by[1], vertex[2] * by[2]};
+        }
+    });
 }
 
 /// Both surfaces as one mesh.
 inline Mesh joined(const Mesh& a, const Mesh& b) {
-    TriangleMesh surface = *a.surface;
-    const auto offset = static_cast<std::uint32_t>(surface.vertices_m.size());
-    surface.vertices_m.insert(surface.vertices_m.end(), b.surface->vertices_m.begin(), b.surface->vertices_m.end());
-    for (auto triangle : b.surface->triangles) {
-        for (std::uint32_t& corner : triangle) {
-            corner += offset;
+    return edited(a, [&b](TriangleMesh& surface) {
+        const auto offset = static_cast<std::uint32_t>(surface.vertices_m.size());
+        surface.vertices_m.insert(surface.vertices_m.end(), b.surface->vertices_m.begin(), b.surface->vertices_m.end());
+        for (const auto& [i, j, k] : b.surface->triangles) {
+            surface.triangles.push_back({i + offset, j + offset, k + offset});
         }
-        surface.triangles.push_back(triangle);
-    }
-    return {"", 1, std::make_shared<const TriangleMesh>(std::move(surface))};
+    });
 }
 
 /// Without the triangles from `count` on.
 inline Mesh first_triangles(const Mesh& mesh, std::size_t count) {
-    TriangleMesh surface = *mesh.surface;
-    surface.triangles.resize(count);
-    return {"", mesh.scale, std::make_shared<const TriangleMesh>(std::move(surface))};
+    return edited(mesh, [count](TriangleMesh& surface) { surface.triangles.resize(count); });
+}
+
+/// Triangles that share no corner.
+inline Mesh soup_of(const std::vector<std::array<Vector3, 3>>& all) {
+    TriangleMesh surface;
+    for (const auto& corners : all) {
+        const auto first = static_cast<std::uint32_t>(surface.vertices_m.size());
+        surface.vertices_m.insert(surface.vertices_m.end(), corners.begin(), corners.end());
+        surface.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh_of(std::move(surface.vertices_m), std::move(surface.triangles));
 }
 
 /// A closed cylinder along y; vertices lie on it: 2 around (along + 1) triangles.

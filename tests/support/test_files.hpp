@@ -70,11 +70,19 @@ class TestFolder {
         std::ofstream(path_ / name, std::ios::binary) << text;
     }
 
-    /// What reading a file says, without the folder's own path; "sound" when there is no error.
-    [[nodiscard]] std::string errors_of(std::string_view name) const {
+    /// A problem written beside a robot, and read.
+    [[nodiscard]] Problem read(std::string_view problem = good_problem, std::string_view robot = good_robot) const {
+        write("problem.yaml", problem);
+        write("robot.yaml", robot);
+        return read_problem(path_ / "problem.yaml");
+    }
+
+    /// The errors that an action ends with, without the folder's own path; "sound" when there is none.
+    template <class Action>
+    [[nodiscard]] std::string errors_in(const Action& action) const {
         std::string said;
         try {
-            (void)read_problem(path_ / name);
+            static_cast<void>(action());
             return "sound";
         } catch (const ProblemFileError& error) {
             said = error.what();
@@ -84,6 +92,14 @@ class TestFolder {
             said.erase(at, prefix.size());
         }
         return said;
+    }
+    /// Those of a file.
+    [[nodiscard]] std::string errors_of(std::string_view name) const {
+        return errors_in([&] { return read_problem(path_ / name); });
+    }
+    /// Those of a problem beside a robot.
+    [[nodiscard]] std::string errors_of(std::string_view problem, std::string_view robot) const {
+        return errors_in([&] { return read(problem, robot); });
     }
 
  private:
