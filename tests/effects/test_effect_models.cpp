@@ -22,23 +22,17 @@ double free_factor(const SurfaceEffect& effect, double zeta, const RotorNeighbou
 
 }  // namespace
 
-TEST_CASE("Cheeseman and Bennett's factor has the hand-computed values") {
+TEST_CASE("The formulas have the hand-computed values") {
     const SurfaceEffect ground = EffectModel::cheeseman_bennett;
     CHECK(free_factor(ground, 0.5) == Approx(4.0 / 3).epsilon(1e-14));
     CHECK(free_factor(ground, 1) == Approx(16.0 / 15).epsilon(1e-14));
     CHECK(free_factor(ground, 2) == Approx(64.0 / 63).epsilon(1e-14));
-}
-
-TEST_CASE("Sanchez-Cuevas' factor has the hand-computed values") {
-    // zeta + K2/R = 1 and 2: K = 1 / (1 - 1 / 6.924) and 1 / (1 - 1 / 27.696)
+    // Sanchez-Cuevas: zeta + K2/R = 1 and 2: K = 1 / (1 - 1 / 6.924) and 1 / (1 - 1 / 27.696)
     SurfaceEffect ceiling = EffectModel::sanchez_cuevas;
     CHECK(free_factor(ceiling, 0.6832) == Approx(6.924 / 5.924).epsilon(1e-14));
     CHECK(free_factor(ceiling, 1.6832) == Approx(27.696 / 26.696).epsilon(1e-14));
     ceiling.parameters = {4, 0};
     CHECK(free_factor(ceiling, 1) == Approx(4.0 / 3).epsilon(1e-14));
-}
-
-TEST_CASE("The empirical models have the hand-computed values") {
     SurfaceEffect li = EffectModel::li;
     li.parameters[0] = 4;
     CHECK(free_factor(li, 1) == Approx(4.0 / 3).epsilon(1e-14));
@@ -49,17 +43,14 @@ TEST_CASE("The empirical models have the hand-computed values") {
     CHECK(free_factor(EffectModel::hayden, 10) == 1);  // 0.9926 + 0.0015176 lies below 1
     // sqrt(1 + 1/8 * 8/9 ...): zeta = 1/sqrt(24) makes the root 2
     CHECK(free_factor(EffectModel::momentum_theory, 1 / std::sqrt(24.0)) == Approx(1.5).epsilon(1e-14));
-}
-
-TEST_CASE("The fairing's formula gives what its constants say") {
-    // Thesis (4.8) at z = 0.04 m with R = 0.1194 m: 1 / (1 - (1 / 0.081) (0.1194 / 1.066)^2)
+    // The fairing: thesis (4.8) at z = 0.04 m with R = 0.1194 m: 1 / (1 - (1 / 0.081) (0.1194 / 1.066)^2)
     const double ratio = 0.1194 / 1.066;
     CHECK(free_factor(EffectModel::fairing_cfd, 0.04 / 0.1194) ==
           Approx(1 / (1 - ratio * ratio / 0.081)).epsilon(1e-13));
     CHECK(free_factor(EffectModel::fairing_cfd, 0.04 / 0.1194) == Approx(1.183).margin(5e-4));
 }
 
-TEST_CASE("Images of a square quadrotor are the thesis' (2.14)") {
+TEST_CASE("A rotor's images are summed from where the others stand, of a square quadrotor to the thesis' (2.14)") {
     test::Random random(3);
     for (int i = 0; i < 200; ++i) {
         const double d = random.uniform(2.05, 4);
@@ -69,9 +60,6 @@ TEST_CASE("Images of a square quadrotor are the thesis' (2.14)") {
         REQUIRE(free_factor(EffectModel::multirotor_images, z, square_quadrotor(d)) ==
                 Approx(1 / denominator).epsilon(1e-8));  // distances are rounded to 1e-9
     }
-}
-
-TEST_CASE("A rotor's images are summed from where the others stand") {
     // Three rotors in a row, two radii apart: by hand from (2.15) at z = R.
     const std::vector<Vector3> row{{-0.3, 0, 0.05}, {0, 0, 0.05}, {0.3, 0, 0.05}};
     const double near = 1 / std::pow(4 + 4.0, 1.5);
@@ -166,14 +154,11 @@ TEST_CASE("No point of a curve differs more from 1 than its bound says") {
     }
 }
 
-TEST_CASE("A curve knows where it meets its cap") {
+TEST_CASE("A curve knows where it meets its cap, and up to where it is flat for want of knowledge") {
     // 1 / (1 - 1/16z^2) = 2 at z = 1/sqrt(8)
     CHECK(EffectCurve(EffectModel::cheeseman_bennett, 2).cap_distance() == Approx(1 / std::sqrt(8.0)).epsilon(1e-12));
     CHECK(EffectCurve(EffectModel::he, 2).cap_distance() < 0);
     CHECK(EffectCurve(EffectModel::none, 2).cap_distance() < 0);
-}
-
-TEST_CASE("A curve knows up to where it is flat for want of knowledge") {
     const auto of_table = [](const EffectTable& table, double max_factor) {
         SurfaceEffect effect(EffectModel::table);
         effect.table = std::make_shared<const EffectTable>(table);

@@ -38,6 +38,14 @@ double boost_pchip(std::vector<double> x, std::vector<double> y, double at) {
     return boost::math::interpolators::pchip(std::move(x), std::move(y))(at);
 }
 
+std::string repeated(const std::string& line, int times) {
+    std::string text;
+    for (int i = 0; i < times; ++i) {
+        text += line;
+    }
+    return text;
+}
+
 std::string error_of(const std::string& text) {
     return test::error_of([&] { return parse_effect_table(text, "t.csv"); });
 }
@@ -57,13 +65,11 @@ TEST_CASE("A table over zeta has the hand-computed values") {
     // Beyond: 0.1 (2 / zeta)^2.
     CHECK(curve(4) == Approx(1.025).epsilon(1e-14));
     CHECK(curve(infinity) == 1);
-}
-
-TEST_CASE("Nearer than its first distance a table holds its first value") {
-    const EffectTable table({0.3, 1}, {}, {1.6, 1.2});
-    CHECK(table.at()(0) == 1.6);
-    CHECK(table.at()(0.3) == 1.6);
-    CHECK(table.at()(0.65) == Approx(1.4).epsilon(1e-14));  // two nodes: a straight line
+    // Nearer than its first distance a table holds its first value.
+    const EffectTable straight({0.3, 1}, {}, {1.6, 1.2});
+    CHECK(straight.at()(0) == 1.6);
+    CHECK(straight.at()(0.3) == 1.6);
+    CHECK(straight.at()(0.65) == Approx(1.4).epsilon(1e-14));  // two nodes: a straight line
 }
 
 TEST_CASE("A table over zeta is Boost's monotone interpolation") {
@@ -200,7 +206,7 @@ TEST_CASE("A table is read from rows in any order") {
     CHECK(plain->at()(1) == 1.5);
 }
 
-TEST_CASE("Tables that cannot be used are refused with their line") {
+TEST_CASE("Tables that cannot be used are errors with their line") {
     const std::string head = "z_over_r,factor\n";
     CHECK(error_of("") == "t.csv: holds no table; expected a line with the names of the columns, then rows");
     CHECK(error_of("# nothing\n") == error_of(""));
@@ -210,8 +216,7 @@ TEST_CASE("Tables that cannot be used are refused with their line") {
     CHECK(error_of("z_over_r,factor,rpm\n1,2,3\n") ==
           "t.csv:1: expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
     CHECK(error_of("z_over_r,z_over_r\n") ==
-          "t.csv:1: the column 'z_over_r' stands there twice; expected the names of "
-          "the columns, separated by commas");
+          "t.csv:1: the column 'z_over_r' stands there twice; expected the names of the columns, separated by commas");
     CHECK(error_of(head + "1,1.2,3\n") == "t.csv:2: holds 3 cells; expected 2, one for each column of line 1");
     CHECK(error_of(head + "1,1.2\n\n2,\n") == "t.csv:4: factor is ''; expected a number from 0 to 100");
     CHECK(error_of(head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n") ==
@@ -234,17 +239,10 @@ TEST_CASE("Tables that cannot be used are refused with their line") {
           "t.csv: d_over_r is 1 in every row; expected two or more distances, or no such column");
 }
 
-TEST_CASE("Long files are refused before they fill the memory, and not every error is told") {
-    std::string text = "z_over_r,factor\n";
-    for (int i = 0; i < 100'001; ++i) {
-        text += "1,1\n";
-    }
-    CHECK(error_of(text) == "t.csv:100002: is row 100001; expected at most 100000");
-    std::string wrong = "z_over_r,factor\n";
-    for (int i = 0; i < 1000; ++i) {
-        wrong += "x,1\n";
-    }
-    const std::string errors = error_of(wrong);
+TEST_CASE("Long files are errors before they fill the memory, and not every error is told") {
+    CHECK(error_of("z_over_r,factor\n" + repeated("1,1\n", 100'001)) ==
+          "t.csv:100002: is row 100001; expected at most 100000");
+    const std::string errors = error_of("z_over_r,factor\n" + repeated("x,1\n", 1000));
     CHECK(std::count(errors.begin(), errors.end(), '\n') == 19);
     // Distances that make a grid of 2.5e9 nodes where there are 50000 rows.
     std::string sparse = "z_over_r,d_over_r,factor\n";

@@ -23,7 +23,7 @@ TEST_CASE("Measurements keep all their columns and can be chosen by them") {
     CHECK(all.with("wind", "").points.empty());
 }
 
-TEST_CASE("Measurements that cannot be used are refused with their line") {
+TEST_CASE("Measurements that cannot be used are errors with their line") {
     const auto error = [](const std::string& text) {
         return test::error_of([&] { return parse_measurements(text, "m.csv"); });
     };

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/fitting/effect_comparison.hpp"
@@ -87,11 +86,8 @@ TEST_CASE("Multirotor models are compared when the vehicle is known") {
 TEST_CASE("Where a refit is impossible only the source's numbers are compared") {
     const auto sets = compare_effects(parse_measurements("z_over_r,thrust_ratio\n1,1.1\n1,1.2\n", "m.csv"));
     REQUIRE(sets.size() == 1);
-    int he = 0;
-    for (const ModelScore& score : sets[0].scores) {
-        he += score.effect.model == EffectModel::he ? 1 : 0;
-    }
-    CHECK(he == 1);
+    const auto is_of_he = [](const ModelScore& score) { return score.effect.model == EffectModel::he; };
+    CHECK(std::count_if(sets[0].scores.begin(), sets[0].scores.end(), is_of_he) == 1);
 }
 
 TEST_CASE("Measurements from hundreds of sources are no comparison") {
@@ -102,7 +98,7 @@ TEST_CASE("Measurements from hundreds of sources are no comparison") {
     CHECK_THROWS_AS(compare_effects(parse_measurements(text, "m.csv")), InputError);
 }
 
-TEST_CASE("A surface that no model was made for is refused with the line that has it") {
+TEST_CASE("A surface that no model was made for is an error with the line that has it") {
     const auto measured_at = [](const std::string& surface) {
         return parse_measurements("z_over_r,thrust_ratio,surface\n1,1.1,ground\n2,1.1," + surface + "\n", "m.csv");
     };

@@ -68,4 +68,18 @@ inline bool is_same(const FactorGrid& a, const FactorGrid& b) {
            a.fields() == b.fields() && a.provenance() == b.provenance();
 }
 
+/// Whether any grid comes back from its text to the bit, and its text to the byte.
+template <class Write, class Read>
+bool comes_back(const Write& text_of, const Read& parsed) {
+    Random random(11);
+    for (int i = 0; i < 200; ++i) {
+        const FactorGrid grid = any_grid(random);
+        const FactorGrid read = parsed(text_of(grid));
+        if (!is_same(read, grid) || text_of(read) != text_of(grid)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace downwash::test

@@ -20,7 +20,7 @@ std::string error_of(const FactorGridParts& parts) {
 
 }  // namespace
 
-TEST_CASE("a planar grid interpolates linearly in x and z at any lateral distance") {
+TEST_CASE("a planar grid interpolates linearly in x and z of its frame at any lateral distance") {
     const FactorGrid grid(two_by_two());
     CHECK(grid.is_planar());
     CHECK(grid.nodes() == 4);
@@ -28,18 +28,14 @@ TEST_CASE("a planar grid interpolates linearly in x and z at any lateral distanc
     CHECK(grid.factor({1, 0, 0}) == 2);
     CHECK(grid.factor({1, 0, 2}) == 22);
     CHECK(grid.factor({0.25, -3, 1.5}) == Approx(1.25 + 15).epsilon(1e-15));
-}
-
-TEST_CASE("a grid is placed by its frame") {
+    // Placed by a frame x of the grid runs along the world's y.
     FactorGridParts parts = two_by_two();
-    const double quarter_turn = std::acos(0.0);
-    parts.frame = PlaneOfMotion({10, 20, 30}, quarter_turn);
+    parts.frame = PlaneOfMotion({10, 20, 30}, std::acos(0.0));
     parts.x = {5, 6, 2};
-    const FactorGrid grid(parts);
-    // x of the grid runs along the world's y.
-    CHECK(grid.contains({10, 25.5, 31}));
-    CHECK(grid.factor({10, 25.5, 31}) == Approx(11.5).epsilon(1e-12));
-    CHECK_FALSE(grid.contains({15.5, 20, 31}));
+    const FactorGrid placed(parts);
+    CHECK(placed.contains({10, 25.5, 31}));
+    CHECK(placed.factor({10, 25.5, 31}) == Approx(11.5).epsilon(1e-12));
+    CHECK_FALSE(placed.contains({15.5, 20, 31}));
 }
 
 TEST_CASE("a volume interpolates a trilinear function exactly") {
@@ -51,12 +47,8 @@ TEST_CASE("a volume interpolates a trilinear function exactly") {
     parts.z = {5, 6, 5};
     const auto k = [](double x, double y, double z) { return 20 + x - 2 * y + 0.5 * z + x * y - 0.3 * x * y * z; };
     GridField factor{"factor", {}};
-    for (std::size_t n = 0; n < 5; ++n) {
-        for (std::size_t m = 0; m < 3; ++m) {
-            for (std::size_t l = 0; l < 4; ++l) {
-                factor.values.push_back(k(parts.x.at(l), parts.y.at(m), parts.z.at(n)));
-            }
-        }
+    for (std::size_t n = 0; n < 5 * 3 * 4; ++n) {  // x runs first, then y
+        factor.values.push_back(k(parts.x.at(n % 4), parts.y.at(n / 4 % 3), parts.z.at(n / 12)));
     }
     parts.fields.push_back(factor);
     const FactorGrid grid(parts);
@@ -98,21 +90,21 @@ TEST_CASE("layers hold at their lateral offsets only") {
     CHECK_FALSE(grid.contains({0.5, 0.2502, 0}));
 }
 
-TEST_CASE("what is no grid is refused by its part") {
+TEST_CASE("what is no grid is an error of its part") {
     using Change = void (*)(FactorGridParts&);
     const std::vector<std::pair<Change, std::string>> cases{
         {[](FactorGridParts& p) {
-             p.x = {1, 0, 2};
+             p.x = GridAxis{1, 0, 2};
          },
          "x: runs from 1 to 0 m: expected the lower end first"},
         {[](FactorGridParts& p) {
-             p.x = {0, 1e7, 2};
+             p.x = GridAxis{0, 1e7, 2};
          },
          "x: runs from 0 to 10000000 m: expected finite coordinates, at most 1e6 m"},
         {[](FactorGridParts& p) { p.z.high_m = not_a_number; },
          "z: runs from 0 to nan m: expected finite coordinates, at most 1e6 m"},
         {[](FactorGridParts& p) {
-             p.y = {1, 1, 1};
+             p.y = GridAxis{1, 1, 1};
          },
          "y: of a planar grid is 0: expected the frame's origin in its plane"},
         {[](FactorGridParts& p) { p.fields[0].values[3] = not_a_number; },
