@@ -12,8 +12,6 @@ TEST_CASE("An input error carries its errors and shows each on a line of its own
     REQUIRE(error.errors().size() == 2);
     CHECK(error.errors()[0].key == "start.x_m");
     CHECK(std::string(error.what()) == "start.x_m: is missing\nthe file is empty");
-}
-
-TEST_CASE("An input error is caught as a runtime error") {
+    // It is caught as a runtime error.
     CHECK_THROWS_AS(throw InputError(std::vector<downwash::KeyError>{{"goal", "is out of reach"}}), std::runtime_error);
 }

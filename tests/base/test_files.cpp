@@ -13,12 +13,8 @@ using downwash::test::ScratchFolder;
 
 namespace {
 
-std::size_t files_in(const std::filesystem::path& folder) {
-    std::size_t count = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) {
-        ++count;
-    }
-    return count;
+auto files_in(const std::filesystem::path& folder) {
+    return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
 }
 
 }  // namespace
@@ -37,7 +33,7 @@ TEST_CASE("a file reads back as it was written, whatever its bytes, and no furth
     CHECK(read_file(folder / "file", 100).empty());
 }
 
-TEST_CASE("what is no file is refused by what it is") {
+TEST_CASE("what is no file is told by what it is") {
     const ScratchFolder folder;
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     CHECK_THROWS_WITH(read_file(folder / "missing", 10), "cannot be read: there is no such file");

@@ -48,6 +48,16 @@ ExportSettings at(double latitude_deg, double longitude_deg, double bearing_deg)
     return settings;
 }
 
+/// To the north from 47 degrees north.
+json mission_of(const RunRecord& run) {
+    return json::parse(written("qgc", run, at(47, 8, 0)))["mission"];
+}
+
+pugi::xml_node piece_of(pugi::xml_document& document, const char* format) {
+    REQUIRE(document.load_string(written(format).c_str()));
+    return document.child("VTKFile").child("PolyData").child("Piece");
+}
+
 }  // namespace
 
 TEST_CASE("ROS messages hold the set-points of vehicle and arm at the same times") {
@@ -103,7 +113,7 @@ TEST_CASE("a mission lies where the scene does") {
     CHECK(plan["mission"]["plannedHomePosition"] == json({47., 8., 100.}));
 }
 
-TEST_CASE("a mission holds where the plan does") {
+TEST_CASE("a mission climbs straight up where the plan does, and holds where the plan does, at its start too") {
     RunRecord run = record();
     ReferenceKnot held = run.plan->reference[1];
     held.tick += 700;
@@ -111,28 +121,16 @@ TEST_CASE("a mission holds where the plan does") {
         run.plan->reference[i].tick += 700;
     }
     run.plan->reference.insert(run.plan->reference.begin() + 2, held);
-    const json plan = json::parse(written("qgc", run, at(47, 8, 0)));
-    const json& items = plan["mission"]["items"];
-    REQUIRE(items.size() == record().plan->reference.size());
-    CHECK(items[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
-}
+    const json held_on_its_way = mission_of(run)["items"];
+    REQUIRE(held_on_its_way.size() == record().plan->reference.size());
+    CHECK(held_on_its_way[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
 
-TEST_CASE("a mission climbs straight up where the plan does, and holds at its start where the plan does") {
-    RunRecord run = record();
-    Plan plan;
-    plan.tick_s = 0.01;
-    const double corners[][2] = {{-4, 2}, {-4, 2}, {-4, 3.5}, {1, 3.5}};
-    const std::int64_t ticks[] = {0, 300, 800, 1800};
-    for (std::size_t i = 0; i < 4; ++i) {
-        ReferenceKnot knot;
-        knot.tick = ticks[i];
-        knot.point.position[0] = corners[i][0];
-        knot.point.position[1] = corners[i][1];
-        plan.reference.push_back(knot);
-    }
-    run.plan = plan;
-    const json mission = json::parse(written("qgc", run, at(47, 8, 0)));
-    const json& items = mission["mission"]["items"];
+    run.plan->tick_s = 0.01;
+    run.plan->reference = {{0, at_rest({-4, 2, 0})},
+                           {300, at_rest({-4, 2, 0})},
+                           {800, at_rest({-4, 3.5, 0})},
+                           {1800, at_rest({1, 3.5, 0})}};
+    const json items = mission_of(run)["items"];
     REQUIRE(items.size() == 4);  // take-off, the stop of 3 s above it, the climb, the leg
     const int commands[] = {22, 16, 16, 16};
     const double heights_m[] = {2, 2, 3.5, 3.5};
@@ -149,7 +147,7 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds at its st
     CHECK(north_m(3) == Approx(north_m(0) + 5).margin(0.01));
 }
 
-TEST_CASE("a mission without a sound origin is refused") {
+TEST_CASE("a mission without a sound origin is an error") {
     CHECK_THROWS_AS(written("qgc"), InputError);
     CHECK_THROWS_AS(written("qgc", record(), at(91, 0, 0)), InputError);
     CHECK_THROWS_AS(written("qgc", record(), at(std::nan(""), 0, 0)), InputError);
@@ -157,8 +155,7 @@ TEST_CASE("a mission without a sound origin is refused") {
 
 TEST_CASE("VTK's flight holds every column at every point of both ways") {
     pugi::xml_document document;
-    REQUIRE(document.load_string(written("vtp").c_str()));
-    const pugi::xml_node piece = document.child("VTKFile").child("PolyData").child("Piece");
+    const pugi::xml_node piece = piece_of(document, "vtp");
     const std::size_t rows = record().flight.rows();
     CHECK(piece.attribute("NumberOfPoints").as_ullong() == 2 * rows);
     const auto points = numbers_of(piece.child("Points").child("DataArray"));
@@ -177,8 +174,7 @@ TEST_CASE("VTK's flight holds every column at every point of both ways") {
 
 TEST_CASE("VTK's scene says of every triangle whose it is") {
     pugi::xml_document document;
-    REQUIRE(document.load_string(written("vtp-scene").c_str()));
-    const pugi::xml_node piece = document.child("VTKFile").child("PolyData").child("Piece");
+    const pugi::xml_node piece = piece_of(document, "vtp-scene");
     const auto triangles = piece.attribute("NumberOfPolys").as_ullong();
     CHECK(triangles == 12 * record().problem.obstacles.size());  // boxes
     CHECK(numbers_of(piece.child("CellData").child("DataArray")).size() == triangles);

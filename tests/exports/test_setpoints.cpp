@@ -16,12 +16,7 @@ constexpr double tick_s = 0.01;
 Plan curved_plan() {
     Plan plan;
     plan.tick_s = tick_s;
-    ReferencePoint start, middle, end;
-    middle = {{2, 1, 0.5}, {0.8, 0.1, -0.2}, {0.1, 0, 0.3}};
-    end.position[0] = 4;
-    end.position[1] = 0.5;
-    end.position[2] = -1;
-    plan.reference = {{0, start}, {300, middle}, {700, end}};
+    plan.reference = {{0, {}}, {300, {{2, 1, 0.5}, {0.8, 0.1, -0.2}, {0.1, 0, 0.3}}}, {700, at_rest({4, 0.5, -1})}};
     return plan;
 }
 
@@ -81,7 +76,7 @@ TEST_CASE("set-points stand in the world, whatever the plane's heading") {
     }
 }
 
-TEST_CASE("rates that make no sense are refused") {
+TEST_CASE("rates that make no sense are errors") {
     for (const double rate_hz : {0., -1., 1e5, std::numeric_limits<double>::quiet_NaN()}) {
         CHECK_THROWS_AS(setpoints(curved_plan(), PlaneOfMotion(), 0, rate_hz), InputError);
     }

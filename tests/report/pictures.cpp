@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <pugixml.hpp>
+#include <string_view>
 
 namespace downwash::test {
 namespace {
@@ -42,10 +43,6 @@ std::array<unsigned, 2> png_size(const std::string& picture) {
         return value;
     };
     return {number(16), number(20)};
-}
-
-bool holds(std::string_view text, std::string_view part) {
-    return text.find(part) != std::string_view::npos;
 }
 
 double area_of(const Ring& ring) {

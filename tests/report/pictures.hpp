@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 #include "../support/scratch_folder.hpp"
 #include "downwash/report/picture.hpp"
@@ -13,10 +12,14 @@ namespace downwash::test {
 /// The texts of a picture, one line each. Fails the test when it is not well-formed XML with an <svg> at its root.
 [[nodiscard]] std::string svg_texts(const std::string& picture);
 
+/// Those of a figure.
+template <class Figure>
+std::string texts_of(const Figure& figure, int width_px = 600) {
+    return svg_texts(draw(figure, {PictureFormat::svg, width_px}));
+}
+
 /// Width and height that the head of a PNG file states; zeros when it is none.
 [[nodiscard]] std::array<unsigned, 2> png_size(const std::string& picture);
-
-[[nodiscard]] bool holds(std::string_view text, std::string_view part);
 
 /// The area of a ring, positive where it runs counter-clockwise.
 [[nodiscard]] double area_of(const Ring& ring);

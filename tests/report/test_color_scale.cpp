@@ -28,19 +28,17 @@ void check_is_sound(const ColorScale& scale) {
 
 }  // namespace
 
-TEST_CASE("factors at or above one have limits that are finest at one") {
+TEST_CASE("factors at or above one have limits that are finest at one, and ever darker colours") {
     const ColorScale scale = factor_scale("K", 1, 2);
     check_is_sound(scale);
     CHECK(scale.limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 2});
     CHECK(scale.colors.front() == Color{255, 255, 255});
     CHECK(factor_scale("K", 1, 1).limits == std::vector<double>{1, 1.01, 1.02, 1.05});
     CHECK(factor_scale("K", 1 - 1e-7, 1.2).limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2});
-}
-
-TEST_CASE("each colour of a rising scale is darker than the one before") {
-    for (const ColorScale& scale : {factor_scale("K", 1, 2), factor_scale("K", 1, 50), linear_scale("v", -3, 4)}) {
-        for (std::size_t i = 0; i + 1 < scale.colors.size(); ++i) {
-            CHECK(luminance(scale.colors[i + 1]) < luminance(scale.colors[i]));
+    // Each colour is darker than the one before.
+    for (const ColorScale& rising : {factor_scale("K", 1, 2), factor_scale("K", 1, 50), linear_scale("v", -3, 4)}) {
+        for (std::size_t i = 0; i + 1 < rising.colors.size(); ++i) {
+            CHECK(luminance(rising.colors[i + 1]) < luminance(rising.colors[i]));
         }
     }
 }
@@ -61,14 +59,16 @@ TEST_CASE("factors below one are blue, above one red, about one neutral") {
 
 TEST_CASE("a value stands within its class, and those outside at the ends") {
     const ColorScale scale{"v", {0, 1, 10, 100}, {{}, {}, {}}, {}};
-    CHECK(position_on(scale, 0) == 0);
-    CHECK(position_on(scale, 0.25) == 0.25);
-    CHECK(position_on(scale, 1) == 1);
-    CHECK(position_on(scale, 5.5) == 1.5);
-    CHECK(position_on(scale, 55) == 2.5);
-    CHECK(position_on(scale, 100) == 3);
-    CHECK(position_on(scale, -7) == 0);
-    CHECK(position_on(scale, std::numeric_limits<double>::infinity()) == 3);
+    for (const auto& [value, position] : {std::pair(0.0, 0.0),
+                                          {0.25, 0.25},
+                                          {1.0, 1.0},
+                                          {5.5, 1.5},
+                                          {55.0, 2.5},
+                                          {100.0, 3.0},
+                                          {-7.0, 0.0},
+                                          {HUGE_VAL, 3.0}}) {
+        CHECK(position_on(scale, value) == position);
+    }
     CHECK(std::isnan(position_on(scale, std::numeric_limits<double>::quiet_NaN())));
 }
 

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <limits>
 
 #include "downwash/base/key_error.hpp"
@@ -8,7 +7,7 @@
 
 using namespace downwash;
 using Catch::Matchers::Contains;
-using downwash::test::holds;
+using test::texts_of;
 
 namespace {
 
@@ -27,11 +26,8 @@ CurveFigure sample_figure() {
 }  // namespace
 
 TEST_CASE("a diagram names its axes, curves and measurements") {
-    const std::string texts = test::svg_texts(draw(sample_figure(), {PictureFormat::svg, 800}));
-    for (const char* text : {"K over z/R", "\nz/R\n", "\nK\n", "a formula", "measured", "once"}) {
-        INFO(text);
-        CHECK(holds(texts, text));
-    }
+    CHECK_THAT(texts_of(sample_figure(), 800), Contains("K over z/R") && Contains("\nz/R\n") && Contains("\nK\n") &&
+                                                   Contains("a formula") && Contains("measured") && Contains("once"));
     CHECK(test::png_size(draw(sample_figure(), {PictureFormat::png, 800}))[0] == 800);
 }
 
@@ -42,22 +38,16 @@ TEST_CASE("diagrams stand one below the other, each with what is its own") {
     const std::string one = draw(std::span(figures).first(1), {PictureFormat::png, 600});
     const std::string two = draw(figures, {PictureFormat::png, 600});
     CHECK(test::png_size(two)[1] > test::png_size(one)[1] + 100);
-    const std::string texts = test::svg_texts(draw(figures, {PictureFormat::svg, 600}));
-    CHECK(holds(texts, "residual"));
+    const std::string texts = texts_of(figures);
+    CHECK_THAT(texts, Contains("residual"));
     CHECK(texts.find("K over z/R") == texts.rfind("K over z/R"));
     CHECK(draw(figures, {PictureFormat::svg, 600}) == draw(figures, {PictureFormat::svg, 600}));
-}
-
-TEST_CASE("many curves of one value are drawn too") {
-    CurveFigure figure = sample_figure();
-    figure.level.reset();
-    figure.curves.clear();
-    figure.measurements.clear();
+    // Many curves of one value are drawn too.
+    CurveFigure many;
     for (int i = 0; i < 40; ++i) {
-        figure.curves.push_back({"curve " + std::to_string(i), {{0, 1}, {1, 1}}});
+        many.curves.push_back({"curve " + std::to_string(i), {{0, 1}, {1, 1}}});
     }
-    const std::string texts = test::svg_texts(draw(figure, {PictureFormat::svg, 500}));
-    CHECK(holds(texts, "curve 39"));
+    CHECK_THAT(texts_of(many, 500), Contains("curve 39"));
 }
 
 TEST_CASE("names of curves that would run commands are shown as they are") {
@@ -66,12 +56,12 @@ TEST_CASE("names of curves that would run commands are shown as they are") {
         CurveFigure figure = sample_figure();
         figure.title = figure.subtitle = figure.x_label = figure.y_label = text;
         figure.curves[0].name = figure.measurements[0].name = text;
-        CHECK(holds(test::svg_texts(draw(figure, {PictureFormat::svg, 700})), "once"));
+        CHECK_THAT(texts_of(figure, 700), Contains("once"));
     }
     CHECK(folder.is_empty());
 }
 
-TEST_CASE("diagrams without anything to draw are refused") {
+TEST_CASE("diagrams without anything to draw are errors") {
     const PictureSettings settings{PictureFormat::svg, 800};
     CHECK_THROWS_WITH(draw(std::span<const CurveFigure>(), settings), Contains("no figure"));
     CHECK_THROWS_WITH(draw(CurveFigure{}, settings), Contains("nothing to draw"));
@@ -90,7 +80,7 @@ TEST_CASE("a curve is dotted outside the range in which it is known, and the leg
                      {"known everywhere", {{0, 1}, {3, 1.2}}}};
     figure.dotted_name = "nobody has measured";
     const std::string picture = draw(figure, {PictureFormat::svg, 800});
-    CHECK(holds(test::svg_texts(picture), "nobody has measured"));
+    CHECK_THAT(test::svg_texts(picture), Contains("nobody has measured"));
     const auto dotted_lines = [](const std::string& svg) {
         std::size_t count = 0;
         for (std::size_t at = svg.find("stroke-dasharray"); at != std::string::npos;
@@ -102,7 +92,7 @@ TEST_CASE("a curve is dotted outside the range in which it is known, and the leg
     figure.curves[0].known_range = AxisRange{0, std::numeric_limits<double>::infinity()};
     const std::string whole = draw(figure, {PictureFormat::svg, 800});
     CHECK(dotted_lines(picture) > dotted_lines(whole));  // gnuplot writes some of its own
-    CHECK_FALSE(holds(test::svg_texts(whole), "nobody has measured"));
+    CHECK_THAT(test::svg_texts(whole), !Contains("nobody has measured"));
     figure.curves = {{"known nowhere here", {{0, 1}, {1, 1.1}}, AxisRange{5, 6}}};
     CHECK_NOTHROW(draw(figure, {PictureFormat::svg, 800}));
 }

@@ -1,9 +1,8 @@
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "../support/scratch_folder.hpp"
@@ -37,11 +36,7 @@ class Environment {
 
 TEST_CASE("gnuplot answers on its standard output, and its settings are not the user's") {
     const ScratchFolder home;
-    std::filesystem::create_directory(home / "sub");
-    FILE* settings = fopen((home / ".gnuplot").c_str(), "w");
-    REQUIRE(settings != nullptr);
-    fputs("print 'settings of the user'\nset print '-'\nprint 'again'\n", settings);
-    fclose(settings);
+    std::ofstream(home / ".gnuplot") << "print 'settings of the user'\nset print '-'\nprint 'again'\n";
     const Environment user("HOME", home.path().c_str());
     CHECK(run_gnuplot("set print '-'\nprint 6 * 7\n") == "42\n");
 }
@@ -56,9 +51,7 @@ TEST_CASE("without gnuplot the message names the package to install") {
 TEST_CASE("a script that fails, and one that draws nothing, are told with gnuplot's own words") {
     CHECK_THROWS_WITH(run_gnuplot("set print '-'\nprint 1\nset nonsense\n"), Contains("gnuplot failed"));
     CHECK_THROWS_WITH(run_gnuplot("unset key\n"), Contains("gnuplot failed"));
-}
-
-TEST_CASE("a script that does not end is ended") {
+    // One that does not end is ended.
     CHECK_THROWS_WITH(run_gnuplot("while (1) { x = 1 }\n", std::chrono::milliseconds(300)), Contains("took longer"));
 }
 

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 #include "../support/random.hpp"
 #include "downwash/report/field_figure.hpp"
@@ -81,10 +80,9 @@ TEST_CASE("the picture of a scan with many cubes in the plane stays small") {
             }
         }
     }
-    std::vector<Obstacle> obstacles(2);
-    obstacles[0] = {"wall", Octomap{"", std::make_shared<const OccupancyTree>(wall)}, {}, {}};
-    obstacles[1] = {"sponge", Octomap{"", std::make_shared<const OccupancyTree>(sponge)}, {}, {}};
-    const auto outlines = obstacle_outlines(Scene(obstacles), PlaneOfMotion(), 0);
+    const Scene scene({{"wall", Octomap{"", std::make_shared<const OccupancyTree>(wall)}, {}, {}},
+                       {"sponge", Octomap{"", std::make_shared<const OccupancyTree>(sponge)}, {}, {}}});
+    const auto outlines = obstacle_outlines(scene, PlaneOfMotion(), 0);
     REQUIRE(outlines.size() == 2);
     CHECK(outlines[0].rings.size() == 1);
     CHECK(outlines[0].rings[0].size() == 4);

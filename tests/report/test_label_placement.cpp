@@ -22,7 +22,7 @@ int plain(const PixelPoint& /*p*/) {
 
 }  // namespace
 
-TEST_CASE("a name goes into its shape where there is room, else beside it") {
+TEST_CASE("a name goes into its shape where it fits, else beside it") {
     const auto labels = place_labels(
         {{"wide", 80, true, {rectangle(100, 300, 100, 200)}}, {"small", 80, true, {rectangle(500, 510, 300, 310)}}},
         area, height, plain);

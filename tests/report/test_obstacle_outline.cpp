@@ -1,13 +1,14 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <random>
 
+#include "../support/meshes.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "pictures.hpp"
 
 using namespace downwash;
+using test::box_mesh;
 
 namespace {
 
@@ -27,29 +28,9 @@ double area(const ObstacleOutline& outline) {
     return sum;
 }
 
-/// Twelve triangles of a box about the origin, corners counter-clockwise seen from outside.
-void add_box(TriangleMesh& mesh, const Vector3& size, bool is_cavity = false) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size());
-    for (int i = 0; i < 8; ++i) {
-        mesh.vertices_m.push_back({((i & 1) != 0 ? 0.5 : -0.5) * size[0], ((i & 2) != 0 ? 0.5 : -0.5) * size[1],
-                                   ((i & 4) != 0 ? 0.5 : -0.5) * size[2]});
-    }
-    const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& f : faces) {
-        for (const auto& t : {std::array<std::uint32_t, 3>{f[0], f[1], f[2]}, {f[0], f[2], f[3]}}) {
-            mesh.triangles.push_back({first + t[0], first + t[is_cavity ? 2 : 1], first + t[is_cavity ? 1 : 2]});
-        }
-    }
-}
-
-Mesh mesh_of(TriangleMesh mesh) {
-    return {"", 1, std::make_shared<const TriangleMesh>(std::move(mesh))};
-}
-
 }  // namespace
 
-TEST_CASE("a level box is cut in its side view") {
+TEST_CASE("a box is cut in its side view, along its diagonal and in a hexagon") {
     const ObstacleOutline outline = outline_of(Box{{4, 3, 2}}, {10, 1, 5});
     CHECK(outline.name == "thing");
     CHECK(outline.is_cut);
@@ -60,31 +41,24 @@ TEST_CASE("a level box is cut in its side view") {
         CHECK(std::abs(p.x_m - 10) == Approx(2));
         CHECK(std::abs(p.z_m - 5) == Approx(1));
     }
+    // Turned by 45 degrees it is cut along its diagonal.
+    CHECK(area(outline_of(Box{{1, 1, 3}}, {0, 0, 0}, {0, 0, pi / 4})) == Approx(3 * std::sqrt(2)));
+    // A regular hexagon comes out of a cube cut square to its diagonal. Turned so that its diagonal (1, 1, 1) lies
+    // along y: roll about x lifts (1, 1, 1) by 45 degrees into (1, sqrt 2, 0), yaw about z then turns that to (0, sqrt
+    // 3, 0).
+    const ObstacleOutline hexagon = outline_of(Box{{1, 1, 1}}, {0, 0, 0}, {-pi / 4, 0, std::atan(1 / std::sqrt(2.0))});
+    REQUIRE(hexagon.rings.size() == 1);
+    CHECK(hexagon.rings[0].size() == 6);
+    CHECK(area(hexagon) == Approx(3 * std::sqrt(3) / 4));
 }
 
-TEST_CASE("a box turned by 45 degrees is cut along its diagonal") {
-    const ObstacleOutline outline = outline_of(Box{{1, 1, 3}}, {0, 0, 0}, {0, 0, pi / 4});
-    CHECK(area(outline) == Approx(3 * std::sqrt(2)));
-}
-
-TEST_CASE("a regular hexagon comes out of a cube cut square to its diagonal") {
-    // Turned so that its diagonal (1, 1, 1) lies along y: roll about x lifts (1, 1, 1) by 45 degrees into (1, sqrt 2,
-    // 0), yaw about z then turns that to (0, sqrt 3, 0).
-    const ObstacleOutline outline = outline_of(Box{{1, 1, 1}}, {0, 0, 0}, {-pi / 4, 0, std::atan(1 / std::sqrt(2.0))});
-    REQUIRE(outline.rings.size() == 1);
-    CHECK(outline.rings[0].size() == 6);
-    CHECK(area(outline) == Approx(3 * std::sqrt(3) / 4));
-}
-
-TEST_CASE("a cylinder is cut in a circle across its axis and in a rectangle along it") {
+TEST_CASE("a cylinder is cut in a circle, an ellipse and a rectangle, a sphere in a circle") {
     const double polygon = 96 * std::sin(2 * pi / 96) / 2;  // of the unit circle
     CHECK(area(outline_of(Cylinder{0.5, 4, {0, 1, 0}})) == Approx(0.25 * polygon));
     CHECK(area(outline_of(Cylinder{0.5, 4, {0, 0, 2}})) == Approx(4).epsilon(1e-3));
     // Oblique by 60 degrees: an ellipse, twice as long as wide.
     CHECK(area(outline_of(Cylinder{0.5, 40, {std::sqrt(3), 1, 0}})) == Approx(2 * 0.25 * pi).epsilon(2e-3));
-}
-
-TEST_CASE("a sphere is cut in a circle that shrinks towards its side") {
+    // A sphere is cut in a circle that shrinks towards its side.
     const ObstacleOutline outline = outline_of(Sphere{0.5}, {0, 0.3, 0});
     CHECK(outline.is_cut);
     for (const PlanePoint& p : outline.rings.at(0)) {
@@ -122,11 +96,9 @@ TEST_CASE("cross sections move with scene and plane") {
 TEST_CASE("a mesh of a box has the box's cross section, whatever the pose") {
     std::mt19937 generator(4);
     std::uniform_real_distribution<double> angle(-3, 3);
-    TriangleMesh mesh;
-    add_box(mesh, {1, 2, 3});
     for (int i = 0; i < 50; ++i) {
         const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
-        const ObstacleOutline outline = outline_of(mesh_of(mesh), {0.1, 0.2, 0.3}, rpy);
+        const ObstacleOutline outline = outline_of(box_mesh({1, 2, 3}), {0.1, 0.2, 0.3}, rpy);
         REQUIRE(outline.rings.size() == 1);
         CHECK(outline.lines.empty());
         CHECK(area(outline) == Approx(area(outline_of(Box{{1, 2, 3}}, {0.1, 0.2, 0.3}, rpy))));
@@ -134,29 +106,22 @@ TEST_CASE("a mesh of a box has the box's cross section, whatever the pose") {
 }
 
 TEST_CASE("corners that a mesh repeats for each triangle are one, and cavities run the other way round") {
-    TriangleMesh shared;
-    add_box(shared, {4, 4, 4});
-    add_box(shared, {2, 2, 2}, true);
-    TriangleMesh repeated;
-    for (const auto& triangle : shared.triangles) {
-        for (const std::uint32_t corner : triangle) {
-            repeated.vertices_m.push_back(shared.vertices_m[corner]);
-        }
-        const auto last = static_cast<std::uint32_t>(repeated.vertices_m.size());
-        repeated.triangles.push_back({last - 3, last - 2, last - 1});
+    const Mesh shared = test::joined(box_mesh({4, 4, 4}), test::reversed(box_mesh({2, 2, 2})));
+    std::vector<std::array<Vector3, 3>> triangles;
+    for (const auto& [i, j, k] : shared.surface->triangles) {
+        const auto& v = shared.surface->vertices_m;
+        triangles.push_back({v[i], v[j], v[k]});
     }
-    for (const TriangleMesh& mesh : {shared, repeated}) {
-        const ObstacleOutline outline = outline_of(mesh_of(mesh), {0, 0.3, 0});
+    for (const Mesh& mesh : {shared, test::soup_of(triangles)}) {
+        const ObstacleOutline outline = outline_of(mesh, {0, 0.3, 0});
         REQUIRE(outline.rings.size() == 2);
         CHECK(area(outline) == Approx(16 - 4));
     }
 }
 
 TEST_CASE("a sheet is cut in an open line") {
-    TriangleMesh sheet;
-    sheet.vertices_m = {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}};
-    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const ObstacleOutline outline = outline_of(mesh_of(sheet));
+    const ObstacleOutline outline =
+        outline_of(test::mesh_of({{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}));
     CHECK(outline.is_cut);
     CHECK(outline.rings.empty());
     REQUIRE(outline.lines.size() == 1);

@@ -71,7 +71,7 @@ Number number_at(const std::string& bytes, std::size_t index) {
 
 }  // namespace
 
-TEST_CASE("a page carries the flight to the last bit, and each column once") {
+TEST_CASE("a page carries the flight to the last bit, each column once, the solution, the command and the tree") {
     const SolvedRun run;
     const RunRecord record = read_run(run.folder());
     const json data = data_of(run);
@@ -84,20 +84,12 @@ TEST_CASE("a page carries the flight to the last bit, and each column once") {
         CHECK(columns[i] == record.flight.columns[i]);
     }
     CHECK(data["flight"]["same_as"] != json(std::vector<int>(columns.size(), -1)));
-}
 
-TEST_CASE("a page carries the solution as it stands in its file, and the command that repeats it") {
-    const SolvedRun run;
-    const json data = data_of(run);
-    CHECK(data["solution"] == json::parse(read_run(run.folder()).solution_text));
+    CHECK(data["solution"] == json::parse(record.solution_text));
     CHECK(data["command"] == "downwash solve effective.yaml --max-iterations 200");
     CHECK(data["goal_order"] == "single");
     CHECK(data["goals"].size() == 1);
-}
 
-TEST_CASE("a page carries the tree with its parents") {
-    const SolvedRun run;
-    const json data = data_of(run);
     const std::vector<TreeNode>& tree = run.solution.tree;
     REQUIRE(data["tree"]["nodes"] == tree.size());
     const std::string bytes = unpacked(data["tree"]["data"], tree.size() * 16);
