@@ -7,22 +7,27 @@
 
 using namespace downwash;
 using namespace downwash::bench;
+using Catch::Contains;
 
 namespace {
 
-Run run_of(std::size_t planner, std::uint32_t seed, RunStatus status, double first_s = 0.1, double cost = 100,
-           Outcome outcome = Outcome::ok) {
+Run unsolved(std::size_t planner, std::uint32_t seed, RunStatus status) {
     Run run;
     run.planner = planner;
     run.seed = seed;
     run.status = status;
+    run.wall_s = 0.3;
+    return run;
+}
+
+Run solved(std::size_t planner, std::uint32_t seed, double first_s = 0.1, double cost = 100,
+           Outcome outcome = Outcome::ok) {
+    Run run = unsolved(planner, seed, RunStatus::solved);
     run.wall_s = first_s + 0.2;
-    if (status == RunStatus::solved) {
-        run.first_solution_s = first_s;
-        run.cost = cost;
-        run.improvements = {{first_s, 10, cost + 50, {}}, {first_s + 0.3, 40, cost, {}}};
-        run.flight = FlightFigures{outcome, cost + 1, 0, 0, 0, 0.06, 0};
-    }
+    run.first_solution_s = first_s;
+    run.cost = cost;
+    run.improvements = {{first_s, 10, cost + 50, {}}, {first_s + 0.3, 40, cost, {}}};
+    run.flight = FlightFigures{outcome, cost + 1, 0, 0, 0, 0.06, 0};
     return run;
 }
 
@@ -34,15 +39,31 @@ CampaignResults some_results() {
     results.plan.planners = {{Variant::mp_arm_ada, "rrt-star", {}}, {Variant::mp_arm, "rrt-star", {}}};
     results.plan.seeds = {1, 2, 3, 7};
     results.plan.time_limit_s = 1;
-    results.runs = {run_of(0, 1, RunStatus::solved, 0.1, 100),
-                    run_of(0, 2, RunStatus::solved, 0.2, 110),
-                    run_of(0, 3, RunStatus::solved, 0.3, 120),
-                    run_of(0, 7, RunStatus::solved, 0.4, 130),
-                    run_of(1, 1, RunStatus::solved, 0.01, 90),
-                    run_of(1, 2, RunStatus::none),
-                    run_of(1, 3, RunStatus::solved, 0.02, 95, Outcome::collision),
-                    run_of(1, 7, RunStatus::solved, 0.03, 97)};
+    results.runs = {solved(0, 1, 0.1, 100),
+                    solved(0, 2, 0.2, 110),
+                    solved(0, 3, 0.3, 120),
+                    solved(0, 7, 0.4, 130),
+                    solved(1, 1, 0.01, 90),
+                    unsolved(1, 2, RunStatus::none),
+                    solved(1, 3, 0.02, 95, Outcome::collision),
+                    solved(1, 7, 0.03, 97)};
     return results;
+}
+
+/// Planners of different margins on problems with one seed, without runs.
+CampaignResults margins(std::vector<Experiment> experiments, const std::vector<double>& margins_m) {
+    CampaignResults results;
+    results.plan.experiments = std::move(experiments);
+    for (const double margin_m : margins_m) {
+        results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
+    }
+    results.plan.seeds = {1};
+    return results;
+}
+
+Run on_second_problem(Run run) {
+    run.experiment = 1;
+    return run;
 }
 
 }  // namespace
@@ -66,14 +87,21 @@ TEST_CASE("every seed is in the denominator, and what has no value is infinite")
     CHECK(std::isinf(geometric.flown_cost.median));  // 91, 98, infinite, infinite
 }
 
-TEST_CASE("costs over time are those of the best plan so far, as far as the limit allows") {
-    const CampaignReport report = report_of(some_results());
+TEST_CASE("costs over time are those of the best plan so far, as far as the limit allows, flown where that is known") {
+    CampaignResults results = some_results();
+    const CampaignReport report = report_of(results);
     const auto& costs = report.cells[0].cost_over_time;
     REQUIRE(costs.size() == 3);  // 0.1, 0.3 and 1 s
     CHECK(costs[0].time_s == 0.1);
     CHECK(std::isinf(costs[0].cost.median));     // one of four has a plan
     CHECK(costs[1].cost.median == Approx(165));  // 150, 160, 170, infinite
     CHECK(costs[2].cost.median == Approx(115));
+    for (Run& run : results.runs) {
+        for (Improvement& improvement : run.improvements) {
+            improvement.flown_cost = improvement.cost + 7;
+        }
+    }
+    CHECK(report_of(results).cells[0].cost_over_time[2].cost.median == Approx(122));
 }
 
 TEST_CASE("failures are listed by cause with their seeds") {
@@ -86,9 +114,8 @@ TEST_CASE("failures are listed by cause with their seeds") {
     CHECK(report.failures[0].seeds == std::vector<std::uint32_t>{2});
     CHECK(report.failures[1].cause == "collision");
     CHECK(report.failures[1].planner == 1);
-    const std::string markdown = markdown_of(report);
-    CHECK(markdown.find("2 of 8 runs have no flight that hovers at the goal.") != std::string::npos);
-    CHECK(markdown.find("- bridge, energy, mp-arm rrt-star: collision: seeds 3\n") != std::string::npos);
+    CHECK_THAT(markdown_of(report), Contains("2 of 8 runs have no flight that hovers at the goal.") &&
+                                        Contains("- bridge, energy, mp-arm rrt-star: collision: seeds 3\n"));
 }
 
 TEST_CASE("planners are compared on equal seeds") {
@@ -120,7 +147,7 @@ TEST_CASE("an unfinished campaign says so and meets no target") {
     CHECK(part.cells[0].missing == 1);
     CHECK(part.cells[0].solved.attempts == 3);
     CHECK_FALSE(part.meets_its_targets());
-    CHECK(markdown_of(part).find("7 of 8 runs done: **the campaign is not finished**") != std::string::npos);
+    CHECK_THAT(markdown_of(part), Contains("7 of 8 runs done: **the campaign is not finished**"));
 }
 
 TEST_CASE("each target is missed on its own") {
@@ -185,35 +212,18 @@ TEST_CASE("a median cost is held against that of a rival at a time of its own") 
     CHECK_FALSE(report_of(results).targets[0].is_met);
 }
 
-TEST_CASE("costs over time are those flown, where the planner has flown its plans") {
-    CampaignResults results = some_results();
-    for (Run& run : results.runs) {
-        for (Improvement& improvement : run.improvements) {
-            improvement.flown_cost = improvement.cost + 7;
-        }
-    }
-    CHECK(report_of(results).cells[0].cost_over_time[2].cost.median == Approx(122));
-}
-
 TEST_CASE("the safe margin is the least from which on no flight fails, and what it costs is told") {
-    CampaignResults results;
-    results.plan.experiments = {{"easy", "energy"}, {"hard", "energy"}};
-    for (const double margin_m : {0.05, 0.1, 0.2, 0.4}) {
-        results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
-    }
-    results.plan.seeds = {1};
+    CampaignResults results = margins({{"easy", "energy"}, {"hard", "energy"}}, {0.05, 0.1, 0.2, 0.4});
     // easy collides at 0.05 and, by chance not at 0.1, again at 0.2; hard collides up to 0.1 and cannot be solved at
     // 0.4.
     const Outcome hit = Outcome::collision;
     for (const auto& [planner, easy, hard] :
          {std::tuple(0U, hit, hit), std::tuple(1U, Outcome::ok, hit), std::tuple(2U, hit, Outcome::ok)}) {
-        results.runs.push_back(run_of(planner, 1, RunStatus::solved, 0.1, 100, easy));
-        results.runs.push_back(run_of(planner, 1, RunStatus::solved, 0.1, 100, hard));
-        results.runs.back().experiment = 1;
+        results.runs.push_back(solved(planner, 1, 0.1, 100, easy));
+        results.runs.push_back(on_second_problem(solved(planner, 1, 0.1, 100, hard)));
     }
-    results.runs.push_back(run_of(3, 1, RunStatus::solved));
-    results.runs.push_back(run_of(3, 1, RunStatus::impossible));
-    results.runs.back().experiment = 1;
+    results.runs.push_back(solved(3, 1));
+    results.runs.push_back(on_second_problem(unsolved(3, 1, RunStatus::impossible)));
 
     const CampaignReport report = report_of(results);
     REQUIRE(report.margins.size() == 1);
@@ -229,34 +239,26 @@ TEST_CASE("the safe margin is the least from which on no flight fails, and what 
     REQUIRE(finding.solved_when_safe.size() == 2);
     CHECK(finding.solved_when_safe[0].hits == 1);
     CHECK(finding.solved_when_safe[1].hits == 0);
-    CHECK(markdown_of(report).find(
-              "| hard, energy | 0.2 m | 1/1 [20.7, 100.0 %] | 0/1 [0.0, 79.3 %] | **no longer reached** |") !=
-          std::string::npos);
+    CHECK_THAT(markdown_of(report),
+               Contains("| hard, energy | 0.2 m | 1/1 [20.7, 100.0 %] | 0/1 [0.0, 79.3 %] | **no longer reached** |"));
     CHECK(report.comparisons.empty());  // planners of different margins are no pair
-}
 
-TEST_CASE("a margin that is safe only because nothing is reached with it is told apart") {
-    CampaignResults results;
-    results.plan.experiments = {{"bridge", "energy"}};
-    for (const double margin_m : {0.1, 0.2}) {
-        results.plan.planners.push_back({Variant::mp_arm, "rrt-star", margin_m});
-    }
-    results.plan.seeds = {1};
-    results.runs = {run_of(0, 1, RunStatus::solved, 0.1, 100, Outcome::collision), run_of(1, 1, RunStatus::impossible)};
-    CHECK(markdown_of(report_of(results))
-              .find("| bridge, energy | 0.2 m | 0/1 [0.0, 79.3 %] | 0/1 [0.0, 79.3 %] | "
-                    "**out of reach before it is safe** |") != std::string::npos);
+    // A margin that is safe only because nothing is reached with it is told apart.
+    CampaignResults unreached = margins({{"bridge", "energy"}}, {0.1, 0.2});
+    unreached.runs = {solved(0, 1, 0.1, 100, hit), unsolved(1, 1, RunStatus::impossible)};
+    CHECK_THAT(markdown_of(report_of(unreached)),
+               Contains("| bridge, energy | 0.2 m | 0/1 [0.0, 79.3 %] | 0/1 [0.0, 79.3 %] | "
+                        "**out of reach before it is safe** |"));
 }
 
 TEST_CASE("runs without a plan are listed with how near they came") {
     CampaignResults results = some_results();
     for (const auto& [place, distance_m] : {std::pair(5U, 0.3), std::pair(7U, 0.1234)}) {
-        results.runs[place] = run_of(1, results.runs[place].seed, RunStatus::approximate);
+        results.runs[place] = unsolved(1, results.runs[place].seed, RunStatus::approximate);
         results.runs[place].nearest_approach_m = distance_m;
     }
-    CHECK(markdown_of(report_of(results))
-              .find("mp-arm rrt-star: approximate, 0.123 to 0.3 m from the goal region: seeds 2 7") !=
-          std::string::npos);
+    CHECK_THAT(markdown_of(report_of(results)),
+               Contains("mp-arm rrt-star: approximate, 0.123 to 0.3 m from the goal region: seeds 2 7"));
 }
 
 TEST_CASE("curves have a step for every first solution and end with the searches") {
@@ -279,29 +281,28 @@ TEST_CASE("planners are counted over all problems together too") {
     CampaignResults results = some_results();
     results.plan.experiments.push_back({"rack", "energy"});
     for (std::uint32_t seed = 1; seed < 4; ++seed) {
-        results.runs.push_back(run_of(1, seed, RunStatus::solved, 0.1, 100, Outcome::unstable));
-        results.runs.back().experiment = 1;
+        results.runs.push_back(on_second_problem(solved(1, seed, 0.1, 100, Outcome::unstable)));
     }
     const CampaignReport report = report_of(results);
     REQUIRE(report.totals.size() == 2);
     CHECK(report.totals[1].failed_flights.hits == 4);
     CHECK(report.totals[1].failed_flights.attempts == 7);
     CHECK(report.totals[1].failed_flights.high == Approx(share_of(4, 7).high));
-    CHECK(markdown_of(report).find("All problems together:") != std::string::npos);
-    CHECK(markdown_of(report_of(some_results())).find("All problems together:") == std::string::npos);
+    CHECK_THAT(markdown_of(report), Contains("All problems together:"));
+    CHECK_THAT(markdown_of(report_of(some_results())), !Contains("All problems together:"));
 }
 
 TEST_CASE("the table of a paper escapes what LaTeX would take for a command") {
     CampaignResults results = some_results();
     results.plan.experiments[0].problem = "50%_of {a} \\bridge & more~^$#";
     const std::string latex = latex_of(report_of(results));
-    CHECK(latex.find("50\\%\\_of \\{a\\} \\textbackslash{}bridge \\& "
-                     "more\\textasciitilde{}\\textasciicircum{}\\$\\#, energy & mp-arm-ada rrt-star & "
-                     "4/4 [51.0, 100.0] & 0/4 [0.0, 49.0] & 0.250 [0.175, 0.325] & 116 [108, 124] \\\\\n") !=
-          std::string::npos);
-    CHECK(latex.find(" & mp-arm rrt-star & 2/4 [15.0, 85.0] & 1/4 [4.6, 69.9] & 0.0250 [0.0175, --] & -- \\\\\n") !=
-          std::string::npos);
-    CHECK(latex.ends_with("\\bottomrule\n\\end{tabular}\n"));
+    CHECK_THAT(
+        latex,
+        Contains("50\\%\\_of \\{a\\} \\textbackslash{}bridge \\& "
+                 "more\\textasciitilde{}\\textasciicircum{}\\$\\#, energy & mp-arm-ada rrt-star & "
+                 "4/4 [51.0, 100.0] & 0/4 [0.0, 49.0] & 0.250 [0.175, 0.325] & 116 [108, 124] \\\\\n") &&
+            Contains(" & mp-arm rrt-star & 2/4 [15.0, 85.0] & 1/4 [4.6, 69.9] & 0.0250 [0.0175, --] & -- \\\\\n") &&
+            Catch::EndsWith("\\bottomrule\n\\end{tabular}\n"));
 }
 
 TEST_CASE("the same table is there as CSV, with what is infinite left empty") {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
@@ -30,17 +31,15 @@ ReadCampaign small_campaign(std::uint64_t seeds = 2) {
     return read;
 }
 
-CampaignProgress run_into(const ScratchFolder& folder, const ReadCampaign& read, bool resumes = false,
-                          const std::stop_token& stop = {}) {
+CampaignProgress run_into(const ScratchFolder& folder, const ReadCampaign& read, bool resumes = false) {
     CampaignRunOptions options;
-    options.out = folder.path() / "results";
+    options.out = folder / "results";
     options.resumes = resumes;
-    options.stop = stop;
     return run_campaign(read, options);
 }
 
 CampaignResults results_in(const ScratchFolder& folder) {
-    return read_results(folder.path() / "results");
+    return read_results(folder / "results");
 }
 
 /// What does not depend on time, in the order of planners and seeds.
@@ -55,10 +54,17 @@ std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> r
     return figures;
 }
 
+/// All figures of a run but its improvements and its flight.
+auto figures_of(const Run& run) {
+    return std::tie(run.experiment, run.planner, run.seed, run.status, run.wall_s, run.first_solution_s, run.cost,
+                    run.nearest_approach_m, run.iterations, run.edges_simulated, run.states_checked, run.simulated_s,
+                    run.discarded, run.rejections, run.error);
+}
+
 /// The first value of the first row that SQLite answers.
 std::string answer(const ScratchFolder& folder, const std::string& question) {
     sqlite3* database = nullptr;
-    REQUIRE(sqlite3_open((folder.path() / "results" / results_file).c_str(), &database) == SQLITE_OK);
+    REQUIRE(sqlite3_open((folder / "results" / results_file).c_str(), &database) == SQLITE_OK);
     std::string text;
     const auto keep = [](void* kept, int, char** values, char**) {
         *static_cast<std::string*>(kept) = values[0] != nullptr ? values[0] : "NULL";
@@ -94,7 +100,7 @@ TEST_CASE("a campaign runs everything with every seed, whatever the number of th
     }
 }
 
-TEST_CASE("what is read from a file of results is what was written") {
+TEST_CASE("what is read from a file of results is what was written, by one program at a time") {
     const ScratchFolder folder;
     ReadCampaign campaign = small_campaign();
     campaign.campaign.parameters = {{{"goal_bias", 0.1 + 0.2}}};
@@ -115,12 +121,14 @@ TEST_CASE("what is read from a file of results is what was written") {
     written.improvements = {{0.25, 3, 12.5, {}}, {0.5, 9, 1.0 / 7, 2.0 / 7}};
     written.rejections = {{"collision", 11}, {"bounds", 12}};
     written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
-    written.error = "a 'quoted'; fault";
+    written.error = "a 'quoted'; error";
     {
-        CampaignStore store(folder.path() / "results", plan, false);
+        CampaignStore store(folder / "results", plan, false);
         store.add(written);
         CHECK(store.has(0, 1, 2));
         CHECK_FALSE(store.has(0, 1, 1));
+        CHECK_THROWS_WITH(run_into(folder, small_campaign(), true),
+                          Catch::Contains("another program is running the campaign"));
     }
     const CampaignResults results = results_in(folder);
     CHECK(results.plan.settings == plan.settings);
@@ -128,23 +136,14 @@ TEST_CASE("what is read from a file of results is what was written") {
     CHECK(results.plan.planners == plan.planners);
     REQUIRE(results.runs.size() == 1);
     const Run& read = results.runs[0];
-    CHECK(read.planner == 1);
-    CHECK(read.seed == 2);
-    CHECK(read.wall_s == written.wall_s);
-    CHECK(read.first_solution_s == written.first_solution_s);
-    CHECK(read.cost == written.cost);
-    CHECK(read.nearest_approach_m == written.nearest_approach_m);
-    CHECK(read.iterations == written.iterations);
-    CHECK(read.discarded == 8);
+    CHECK(figures_of(read) == figures_of(written));
     REQUIRE(read.improvements.size() == 2);
     CHECK(read.improvements[1].cost == 1.0 / 7);
     CHECK_FALSE(read.improvements[0].flown_cost.has_value());
     CHECK(read.improvements[1].flown_cost == 2.0 / 7);
-    CHECK(read.rejections == written.rejections);
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->outcome == Outcome::left_flyable_area);
     CHECK(read.flight->min_clearance_m == HUGE_VAL);
-    CHECK(read.error == written.error);
 }
 
 TEST_CASE("a campaign varies the parameters of its algorithms") {
@@ -207,7 +206,7 @@ TEST_CASE("a campaign that was stopped goes on where it was and ends as if it ne
 
     std::stop_source stop;
     CampaignRunOptions options;
-    options.out = parts.path() / "results";
+    options.out = parts / "results";
     options.stop = stop.get_token();
     options.on_progress = [&](double share) {
         if (share > 0.3) {
@@ -240,26 +239,19 @@ TEST_CASE("results are neither overwritten nor mixed with those of other setting
     CHECK(results_in(folder).runs.size() == 4);
 }
 
-TEST_CASE("two programs do not run one campaign into one folder") {
+TEST_CASE("what is no file of results is an error") {
     const ScratchFolder folder;
-    const ReadCampaign read = small_campaign();
-    const CampaignStore running(folder.path() / "results", plan_of(read), false);
-    CHECK_THROWS_WITH(run_into(folder, read, true), Catch::Contains("another program is running the campaign"));
-}
-
-TEST_CASE("what is no file of results is refused") {
-    const ScratchFolder folder;
-    std::filesystem::create_directories(folder.path() / "results");
+    std::filesystem::create_directories(folder / "results");
     CHECK_THROWS_WITH(results_in(folder), Catch::Contains("does not exist"));
-    std::ofstream(folder.path() / "results" / results_file) << "SQLite format 3, but not really";
+    std::ofstream(folder / "results" / results_file) << "SQLite format 3, but not really";
     CHECK_THROWS_AS(results_in(folder), std::runtime_error);
     CHECK_THROWS_AS(run_into(folder, small_campaign(), true), std::runtime_error);
-    std::filesystem::remove(folder.path() / "results" / results_file);
+    std::filesystem::remove(folder / "results" / results_file);
     CHECK(answer(folder, "CREATE TABLE other (x)").empty());
     CHECK_THROWS_WITH(results_in(folder), Catch::Contains("holds no results of a campaign"));
 }
 
-TEST_CASE("a file of results that was tampered with is refused, not believed") {
+TEST_CASE("a file of results that was tampered with is an error, not believed") {
     const std::string change = GENERATE("UPDATE runs SET status = 99", "UPDATE runs SET plannerid = NULL",
                                         "UPDATE flights SET outcome = 'fine'",
                                         "UPDATE plannerConfigs SET variant = 'x'", "UPDATE runs SET time = 'soon'");

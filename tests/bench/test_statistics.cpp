@@ -51,9 +51,7 @@ TEST_CASE("Wilson's interval is that of Newcombe's table") {
     const Share share = share_of(c.hits, c.attempts);
     CHECK(share.low == Approx(c.low).margin(5e-5));
     CHECK(share.high == Approx(c.high).margin(5e-5));
-}
-
-TEST_CASE("Wilson's interval ends at the share where that is none or all, and is everything without attempts") {
+    // It ends at the share where that is none or all, and is everything without attempts.
     CHECK(share_of(0, 200).low == 0);
     CHECK(share_of(0, 200).high == Approx(3.841458820694124 / 203.841458820694124));  // z^2 / (n + z^2)
     CHECK(share_of(200, 200).high == 1);
@@ -107,9 +105,7 @@ TEST_CASE("the signed rank test of Darwin's maize and of Hollander's and Wolfe's
     const std::vector<double> patients{1.83 - 0.878, 0.50 - 0.647, 1.62 - 0.598, 2.48 - 2.05, 1.68 - 1.06,
                                        1.88 - 1.29,  1.55 - 1.06,  3.06 - 3.14,  1.30 - 1.29};
     CHECK(signed_rank_p(patients) == Approx(2 * 0.01953).margin(2e-5));
-}
-
-TEST_CASE("the signed rank test is that of all signs, whatever the differences") {
+    // And that of all signs, whatever the differences.
     std::uint32_t state = 12345;
     for (int round = 0; round < 30; ++round) {
         std::vector<double> differences;

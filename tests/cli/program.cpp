@@ -77,6 +77,12 @@ void write_file(const fs::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
+Result succeeded(Result result) {
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    return result;
+}
+
 void check_rejected(const Result& result, const std::string& reason) {
     CHECK(result.code == 2);
     CHECK(result.out.empty());

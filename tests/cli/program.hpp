@@ -42,6 +42,9 @@ struct Result {
     [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
 
+/// The run itself, after a check that it ended with 0.
+Result succeeded(Result result);
+
 /// Checks that a command line was rejected: exit code 2, nothing on standard output, the reason on standard error.
 void check_rejected(const Result& result, const std::string& reason);
 
@@ -64,6 +67,16 @@ class Workspace : public ScratchFolder {
     template <class... Parts>
     [[nodiscard]] Result run(const Parts&... parts) const {
         return run_in({}, {}, words(parts...));
+    }
+    /// The same; the test fails where the exit code is not 0.
+    template <class... Parts>
+    Result succeed(const Parts&... parts) const {
+        return succeeded(run(parts...));
+    }
+    /// The JSON that a run prints, which must end with 0.
+    template <class... Parts>
+    [[nodiscard]] nlohmann::json json(const Parts&... parts) const {
+        return succeed(parts..., "--json").json();
     }
     /// The same with other environment variables and something on standard input.
     [[nodiscard]] Result run_in(const Environment& environment, const std::string& input, const Words& arguments) const;

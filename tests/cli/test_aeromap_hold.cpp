@@ -8,9 +8,8 @@ using Catch::Contains;
 TEST_CASE("A hold query tells flyable from stable points and says what competes there") {
     const Workspace work;
     // Far below the deck, close under it, inside the walkway, hanging arm in the ground.
-    const auto answer = work.run("aeromap hold", problem_file("bridge_inspection"),
-                                 "--arm-deg 90 --at -8 5 --at -8 9.75 --at -3 7.8 --at -8 1 --json")
-                            .json();
+    const auto answer = work.json("aeromap hold", problem_file("bridge_inspection"),
+                                  "--arm-deg 90 --at -8 5 --at -8 9.75 --at -3 7.8 --at -8 1");
     CHECK(answer.at("arm_deg") == 90);
     const auto& points = answer.at("points");
     REQUIRE(points.size() == 4);
@@ -48,10 +47,9 @@ TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without
         REQUIRE(text.find("\naero:") == std::string::npos);
         write_file(work / "capped.yaml", text + aero);
         Words found;
-        const auto answer = work.run("aeromap hold", work / "capped.yaml",
-                                     "--arm-deg 90 --at 1 9.7 --at 1 9.86 --at 1 9.87 --at 1 9.88 --json");
-        const nlohmann::json points = answer.json().at("points");
-        for (const auto& point : points) {
+        const nlohmann::json answer = work.json("aeromap hold", work / "capped.yaml",
+                                                "--arm-deg 90 --at 1 9.7 --at 1 9.86 --at 1 9.87 --at 1 9.88");
+        for (const auto& point : answer.at("points")) {
             CHECK(point.at("stability").is_object());
             found.push_back(point.at("verdict"));
         }
@@ -65,16 +63,11 @@ TEST_CASE("Near a ceiling a low cap or a short table leaves a hold query without
     CHECK(measured[3] == "unknown");
 }
 
-TEST_CASE("A hold query prints a table for people") {
+TEST_CASE("A hold query prints a table for people, and is rejected without an arm angle, a point or finite numbers") {
     const Workspace work;
-    const auto answer =
-        work.run("aeromap hold", problem_file("bridge_inspection"), "--arm-deg 90 --at -8 5 --at -8 9.74955");
-    CHECK(answer.code == 0);
-    CHECK_THAT(answer.out, Contains(" 9.74955 ") && Contains("verdict") && Contains("unstable"));
-}
-
-TEST_CASE("A hold query without an arm angle, a point or finite numbers is rejected") {
-    const Workspace work;
+    CHECK_THAT(
+        work.succeed("aeromap hold", problem_file("bridge_inspection"), "--arm-deg 90 --at -8 5 --at -8 9.74955").out,
+        Contains(" 9.74955 ") && Contains("verdict") && Contains("unstable"));
     for (const auto& [options, reason] : {std::pair{"--at 0 5", "--arm-deg is required"},
                                           {"--arm-deg 90", "--at is required"},
                                           {"--arm-deg 90 --at nan 5", "finite coordinates"},

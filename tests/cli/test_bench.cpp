@@ -29,8 +29,7 @@ std::size_t runs_in(const Workspace& work) {
         CHECK_THAT(report.err, Contains("does not exist") || Contains("holds no results"));
         return 0;
     }
-    REQUIRE(report.code == 0);
-    return report.json().at("runs_done").get<std::size_t>();
+    return succeeded(report).json().at("runs_done").get<std::size_t>();
 }
 
 /// Waits until so many runs are there, a minute at most, and gives how many there are then.
@@ -49,21 +48,18 @@ std::size_t wait_for_runs(const Workspace& work, std::size_t min_runs) {
 TEST_CASE("A campaign is run and reported") {
     const Workspace work;
     write_campaign(work, quick);
-    const Result ran = work.run("bench run campaign.yaml");
-    CHECK(ran.code == 0);
-    CHECK(ran.out == std::string("4 of 4 runs are in downwash-out/bench-trial") +
-                         (has_pages ? ", report.html shows them" : "") +
-                         "; see downwash bench report downwash-out/bench-trial\n");
+    CHECK(work.succeed("bench run campaign.yaml").out == std::string("4 of 4 runs are in downwash-out/bench-trial") +
+                                                             (has_pages ? ", report.html shows them" : "") +
+                                                             "; see downwash bench report downwash-out/bench-trial\n");
     const auto files = work.files("downwash-out");
     CHECK(files.size() == (has_pages ? 2 : 1));
     CHECK(files.contains("bench-trial/campaign.db"));
 
-    const Result report = work.run("bench report downwash-out/bench-trial");
-    CHECK(report.code == 0);
+    const Result report = work.succeed("bench report downwash-out/bench-trial");
     CHECK_THAT(report.out, StartsWith("# Campaign trial\n") &&
                                Contains("| open_air, energy | mp-arm-ada rrt-star | 2/2 [34.2, 100.0 %] |"));
     CHECK(report.err.empty());
-    const auto json = work.run("bench report downwash-out/bench-trial --json").json();
+    const auto json = work.json("bench report downwash-out/bench-trial");
     CHECK(json.at("settings").at("seeds") == "3 5");
     CHECK(json.at("cells").size() == 2);
 }
@@ -71,12 +67,10 @@ TEST_CASE("A campaign is run and reported") {
 TEST_CASE("A report comes as a page, as JSON, as a table for LaTeX and as CSV, into a file where one is named") {
     const Workspace work;
     write_campaign(work, quick);
-    CHECK(work.run("bench run campaign.yaml --out out").code == 0);
+    work.succeed("bench run campaign.yaml --out out");
     CHECK_THAT(work.run("bench report out --latex").out, Contains("\\begin{tabular}"));
     CHECK_THAT(work.run("bench report out --csv").out, StartsWith("problem,objective,variant,"));
-    const Result into_file = work.run("bench report out --json -o report.json");
-    CHECK(into_file.code == 0);
-    CHECK(into_file.out.empty());
+    CHECK(work.succeed("bench report out --json -o report.json").out.empty());
     CHECK(work.text("report.json") == work.run("bench report out --json").out);
     CHECK(work.run("bench report out --json --csv").code == 2);
     CHECK(work.run("bench report out --csv -o none/report.csv").code == 2);
@@ -93,7 +87,7 @@ TEST_CASE("A report comes as a page, as JSON, as a table for LaTeX and as CSV, i
 TEST_CASE("A target that a campaign misses is an exit code of its own") {
     const Workspace work;
     write_campaign(work, quick, "expect: [{variant: mp-arm, first_solution_median_s: 1.0e-9}]\n");
-    CHECK(work.run("bench run campaign.yaml --out out").code == 0);
+    work.succeed("bench run campaign.yaml --out out");
     const Result report = work.run("bench report out");
     CHECK(report.code == 1);
     CHECK_THAT(report.out, Contains("| median first solution within 1e-09 s |") && Contains("**missed**"));

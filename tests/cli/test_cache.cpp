@@ -20,9 +20,7 @@ std::string trajectory_of(const Workspace& work, const char* options = "", const
 }
 
 std::string query(const Workspace& work, const char* options = "") {
-    const Result result = work.run("aeromap query", problem_file("bridge_inspection"), "--at -3 0.32 9.6", options);
-    CHECK(result.code == 0);
-    return result.out;
+    return work.succeed("aeromap query", problem_file("bridge_inspection"), "--at -3 0.32 9.6", options).out;
 }
 
 fs::path only_file_in(const fs::path& folder) {
@@ -65,10 +63,7 @@ TEST_CASE("A cache that cannot be written is no cache and no error") {
     CHECK(trajectory_of(work, "", {{"XDG_CACHE_HOME", "/proc/nowhere"}}) == without);
     CHECK(trajectory_of(work, "", {{"XDG_CACHE_HOME", ""}, {"HOME", ""}}) == without);
     CHECK_FALSE(fs::exists(work / "cache"));
-}
-
-TEST_CASE("Without XDG_CACHE_HOME maps are kept below the home folder") {
-    const Workspace work;
+    // Without a usable XDG_CACHE_HOME maps are kept below the home folder.
     const fs::path home = work / "home";
     static_cast<void>(trajectory_of(work, "", {{"XDG_CACHE_HOME", "relative/path"}, {"HOME", home}}));
     CHECK(only_file_in(home / ".cache/downwash").extension() == ".aeromap");
@@ -93,11 +88,11 @@ TEST_CASE("Queries use the maps of earlier runs, and the flights of other varian
 TEST_CASE("The page of a plan that is flown again keeps its map, unless that is not wanted") {
     const Workspace work;
     const std::string problem = problem_file("bridge_inspection");
-    REQUIRE(work.run("solve", problem, "--max-iterations 200 --no-cache --out out").code == 0);
+    work.succeed("solve", problem, "--max-iterations 200 --no-cache --out out");
     const Words again = words("execute", problem, "--plan out/solution.json --out again");
-    CHECK(work.run(again).code == 0);
+    work.succeed(again);
     CHECK(fs::exists(work / "cache") == has_pages);
     fs::remove_all(work / "cache");
-    CHECK(work.run(again, "--no-cache").code == 0);
+    work.succeed(again, "--no-cache");
     CHECK_FALSE(fs::exists(work / "cache"));
 }

@@ -7,8 +7,8 @@ using Catch::Contains;
 
 TEST_CASE("A model query gives the formula's values") {
     const Workspace work;
-    const Words query = words("aeromap query --model cheeseman-bennett --json --z-over-r 0.1");
-    const auto answer = work.run(query, "0.5 1").json();
+    const Words query = words("aeromap query --model cheeseman-bennett --z-over-r 0.1");
+    const auto answer = work.json(query, "0.5 1");
     CHECK(answer.at("model") == "cheeseman-bennett");
     const auto& points = answer.at("points");
     REQUIRE(points.size() == 3);
@@ -16,15 +16,15 @@ TEST_CASE("A model query gives the formula's values") {
     CHECK(points[1].at("z_over_r") == 0.5);
     CHECK(points[1].at("factor").get<double>() == Approx(4.0 / 3).epsilon(1e-12));
     CHECK(points[2].at("factor").get<double>() == Approx(16.0 / 15).epsilon(1e-12));
-    CHECK(work.run(query, "--max-factor 1.5").json().at("points")[0].at("factor") == 1.5);
+    CHECK(work.json(query, "--max-factor 1.5").at("points")[0].at("factor") == 1.5);
 }
 
 TEST_CASE("A model query takes parameters and the vehicle's other rotors") {
     const Workspace work;
     write_file(work.in_run("t.csv"), "z_over_r,factor\n0.5,1.2\n1,0.9\n3,1\n");
-    const Words query = words("aeromap query --json --z-over-r 1 --model");
+    const Words query = words("aeromap query --z-over-r 1 --model");
     const auto factor = [&](const char* model) {
-        return work.run(query, model).json().at("points")[0].at("factor").get<double>();
+        return work.json(query, model).at("points")[0].at("factor").get<double>();
     };
     CHECK(factor("multirotor-body") == Approx(1.45).margin(0.005));  // of a square quadrotor, d/R = 2.5
     CHECK(factor("multirotor-body --set k_b=0") == Approx(factor("multirotor-images")));
@@ -38,11 +38,11 @@ TEST_CASE("A model query takes parameters and the vehicle's other rotors") {
     }
 }
 
-TEST_CASE("Many points are read from a file, and a point has three coordinates") {
+TEST_CASE("Many points are read from a file or from standard input, after those of the command line") {
     const Workspace work;
     const Words query = words("aeromap query", problem_file("bridge_inspection"));
     write_file(work.in_run("points.txt"), "# hubs\nx_m,y_m,z_m\n0, 0.32, 9.8\n\n1 0 3 # free air\n");
-    const auto points = work.run(query, "--points points.txt --json").json().at("points");
+    const auto points = work.json(query, "--points points.txt").at("points");
     REQUIRE(points.size() == 2);
     CHECK(points[0].at("factor").get<double>() > 1.05);
     CHECK(points[1].at("x_m") == 1);
@@ -50,40 +50,35 @@ TEST_CASE("Many points are read from a file, and a point has three coordinates")
     check_rejected(work.run(query, "--points points.txt"), "points.txt:2:");
     CHECK(work.run(query, "--at 1 2 3 4").code == 2);
     CHECK(work.run(query, "--at 1 2").code == 2);
-}
-
-TEST_CASE("Many points are read from standard input, after those of the command line") {
-    const Workspace work;
-    const auto query = [&](const char* options, const std::string& input) {
+    const auto asked = [&](const char* options, const std::string& input) {
         return work.run_in({}, input, words("aeromap query", problem_file("bridge_inspection"), options));
     };
-    const auto piped = query("--points - --at 1 0 3 --json", "x_m,y_m,z_m\n0 0.32 9.8\n\n1,0,4 # free air").json();
+    const auto piped = asked("--points - --at 1 0 3 --json", "x_m,y_m,z_m\n0 0.32 9.8\n\n1,0,4 # free air").json();
     REQUIRE(piped.at("points").size() == 3);
-    CHECK(piped == query("--at 1 0 3 --at 0 0.32 9.8 --at 1 0 4 --json", "").json());
-    check_rejected(query("--points -", "0 0 1\n0 zero 1\n"), "standard input:2: '0 zero 1': expected three numbers");
-    check_rejected(query("--points -", ""), "--points -: holds no point");
+    CHECK(piped == asked("--at 1 0 3 --at 0 0.32 9.8 --at 1 0 4 --json", "").json());
+    check_rejected(asked("--points -", "0 0 1\n0 zero 1\n"), "standard input:2: '0 zero 1': expected three numbers");
+    check_rejected(asked("--points -", ""), "--points -: holds no point");
 }
 
 TEST_CASE("A grid that was built flies like its problem and tells what made it") {
     const Workspace work;
     const Words build = words("aeromap build", problem_file("open_air"));
-    REQUIRE(work.run(build, "--step 0.25 -o map.vti").code == 0);
-    const auto info = work.run("aeromap info map.vti --json").json();
+    work.succeed(build, "--step 0.25 -o map.vti");
+    const auto info = work.json("aeromap info map.vti");
     CHECK(info.at("kind") == "planar");
     CHECK(info.at("lateral_offsets_m").size() == 2);
     CHECK(info.at("x").at("step_m").get<double>() <= 0.25);
     CHECK_THAT(info.at("provenance").dump(), Contains("cheeseman-bennett"));
-    REQUIRE(work.run(build, "--step 1 --lateral -1 1 -o volume.csv").code == 0);
-    CHECK(work.run("aeromap info volume.csv --json").json().at("kind") == "volume");
+    work.succeed(build, "--step 1 --lateral -1 1 -o volume.csv");
+    CHECK(work.json("aeromap info volume.csv").at("kind") == "volume");
 }
 
 TEST_CASE("A point query superposes both sides and is null where not flyable") {
     const Workspace work;
     // Under the deck; on a rotor's plane, where the map answers; and inside the walkway.
-    const auto points = work.run("aeromap query", problem_file("bridge_inspection"),
-                                 "--at 0 0 9.8 --at 0 0.32 9.8 --at -3 0 7.8 --json")
-                            .json()
-                            .at("points");
+    const auto points =
+        work.json("aeromap query", problem_file("bridge_inspection"), "--at 0 0 9.8 --at 0 0.32 9.8 --at -3 0 7.8")
+            .at("points");
     REQUIRE(points.size() == 3);
     const auto& direct = points[0];
     CHECK(direct.at("flyable") == true);
@@ -103,7 +98,7 @@ TEST_CASE("A point query superposes both sides and is null where not flyable") {
 
 TEST_CASE("Planners are listed for people and for programs") {
     const Workspace work;
-    const auto planners = work.run("planners --json").json().at("planners");
+    const auto planners = work.json("planners").at("planners");
     REQUIRE_FALSE(planners.empty());
     const std::string text = work.run("planners").out;
     for (const auto& planner : planners) {

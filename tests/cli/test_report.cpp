@@ -13,22 +13,17 @@ namespace {
 /// A workspace with a run in its folder `flown`.
 class SolvedWorkspace : public Workspace {
  public:
-    SolvedWorkspace() { REQUIRE(run("solve", problem_file("open_air"), "--max-iterations 200 --out flown").code == 0); }
+    SolvedWorkspace() { succeed("solve", problem_file("open_air"), "--max-iterations 200 --out flown"); }
 };
 
 }  // namespace
 
-TEST_CASE("Pictures of a run go into its folder or another") {
+TEST_CASE("Pictures and the page of a run are made again from its files, the page to the byte") {
     const SolvedWorkspace work;
-    const Result here = work.run("report flown --svg --pdf");
-    CHECK(here.code == 0);
-    CHECK(here.out == "flown/flight.svg\nflown/plots.svg\nflown/flight.pdf\nflown/plots.pdf\n");
+    CHECK(work.succeed("report flown --svg --pdf").out ==
+          "flown/flight.svg\nflown/plots.svg\nflown/flight.pdf\nflown/plots.pdf\n");
     CHECK_THAT(work.text("flown/plots.pdf"), StartsWith("%PDF"));
     CHECK(work.run("report flown --png -o figures").out == "figures/flight.png\nfigures/plots.png\n");
-}
-
-TEST_CASE("A page is made again from the files of a run, to the byte") {
-    const SolvedWorkspace work;
     const Result again = work.run("report flown -o page.html");
     if (!has_pages) {
         check_rejected(again, "this build brings no pages");
@@ -48,9 +43,8 @@ TEST_CASE("A run is exported in every format, under the usual name") {
                                        {"vtp-scene", "scene.vtp"},
                                        {"glb", "run.glb"}}) {
         CAPTURE(format);
-        const Result result = work.run("export flown --format", format);
+        const Result result = work.succeed("export flown --format", format);
         CHECK(result.err.empty());
-        CHECK(result.code == 0);
         CHECK(result.out == std::string("flown/") + name + "\n");
         CHECK(work.text(std::string("flown/") + name).size() > 200);
     }
@@ -59,8 +53,7 @@ TEST_CASE("A run is exported in every format, under the usual name") {
 TEST_CASE("Results stand without their page") {
     const Workspace work;
     std::filesystem::create_directories(work.in_run("x/report.html"));
-    const Result result = work.run("solve", problem_file("open_air"), "--max-iterations 100 --out x");
-    CHECK(result.code == 0);
+    const Result result = work.succeed("solve", problem_file("open_air"), "--max-iterations 100 --out x");
     CHECK_THAT(result.out, StartsWith("Solved. "));
 }
 
@@ -70,28 +63,27 @@ TEST_CASE("A plan whose flight failed is not handed on unasked") {
         work.run("solve", problem_file("bridge_inspection"), "--variant mp-arm --max-iterations 1000 --out x").code ==
         3);
     check_rejected(work.run("export x --format csv"), "its flight ended 'collision'; --anyway");
-    CHECK(work.run("export x --format csv --anyway").code == 0);
-    CHECK(work.run("export x --format glb").code == 0);
+    work.succeed("export x --format csv --anyway");
+    work.succeed("export x --format glb");
 }
 
 TEST_CASE("A first problem is written, sound and solved, and nothing is replaced") {
     const Workspace work;
     CHECK(work.run("init").out == "my_problem.yaml\nars_lrm.yaml\n");
     CHECK(work.run("check my_problem.yaml").out == "my_problem.yaml: ok\n");
-    CHECK(work.run("solve my_problem.yaml --max-iterations 500").code == 0);
+    work.succeed("solve my_problem.yaml --max-iterations 500");
     check_rejected(work.run("init"), "my_problem.yaml exists already");
-    CHECK(work.run("init other-1.yaml").code == 0);
+    work.succeed("init other-1.yaml");
     CHECK_THAT(work.text("other-1.yaml"), Contains("\nname: other-1                           # becomes") &&
                                               Contains("#   downwash check other-1.yaml          checks the file"));
     const std::string odd = "an odd name.yaml";
-    CHECK(work.run("init", odd).code == 0);
-    CHECK(work.run("check other-1.yaml", odd).code == 0);
+    work.succeed("init", odd);
+    work.succeed("check other-1.yaml", odd);
 }
 
 TEST_CASE("Keys are explained from the table that reads them") {
     const Workspace work;
-    const Result margin = work.run("explain safety_margin_m");
-    CHECK(margin.code == 0);
+    const Result margin = work.succeed("explain safety_margin_m");
     CHECK_THAT(margin.out, StartsWith("planner.safety_margin_m\n") && Contains("expected: a number in m"));
     CHECK_THAT(work.run("explain environment.obstacles[3].name").out, Contains("environment.obstacles[].name"));
     CHECK_THAT(work.run("explain goal").out, Contains("hold_s"));
@@ -115,7 +107,7 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK_THAT(shown, Catch::EndsWith("\na whole number from 0 to 4294967295; default 1"));
     CHECK_THAT(work.run("manual aeromap plot").out,
                StartsWith(".TH DOWNWASH-AEROMAP-PLOT 1") && Contains(".SH OPTIONS"));
-    CHECK(work.run("manual --all man").code == 0);
+    work.succeed("manual --all man");
     CHECK(work.text("man/downwash-aeromap-plot.1") == work.run("manual aeromap plot").out);
     CHECK(work.text("man/downwash.1") == work.run("manual").out);
     CHECK(work.run("manual solve --all man").code == 2);

@@ -7,17 +7,20 @@ using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
 
 namespace {
 
-const Words long_search = words("solve", problem_file("open_air"), "--time-limit 600 --out x");
+/// A search that goes on for ten minutes, running as far as it says `text`.
+struct LongSearch : Workspace {
+    explicit LongSearch(const std::string& text) { REQUIRE(program.has_said(text)); }
+
+    Program program{*this, words("solve", problem_file("open_air"), "--time-limit 600 --out x")};
+};
 
 }  // namespace
 
 TEST_CASE("A signal in the middle of a search writes the best plan so far") {
     const auto [signal, code] = GENERATE(std::pair(SIGINT, 130), std::pair(SIGTERM, 143));
-    const Workspace work;
-    const Program program(work, long_search);
-    REQUIRE(program.has_said("best cost"));
-    program.send(signal);
-    const Result result = program.wait();
+    const LongSearch work("best cost");
+    work.program.send(signal);
+    const Result result = work.program.wait();
     CHECK(result.code == code);
     CHECK_THAT(result.out, Catch::StartsWith("Interrupted. Solved. "));
 
@@ -31,23 +34,19 @@ TEST_CASE("A signal in the middle of a search writes the best plan so far") {
 }
 
 TEST_CASE("A signal at the very beginning leaves valid files too") {
-    const Workspace work;
-    const Program program(work, long_search);
-    REQUIRE(program.has_said("planning"));
-    program.send(SIGINT);
-    CHECK(program.wait().code == 130);
+    const LongSearch work("planning");
+    work.program.send(SIGINT);
+    CHECK(work.program.wait().code == 130);
     const auto files = work.files("x");
     REQUIRE(files.size() == files_of_a_run);
     CHECK(nlohmann::json::parse(files.at("solution.json")).at("interrupted") == true);
 }
 
 TEST_CASE("Two signals end the program at once and leave no half file") {
-    const Workspace work;
-    const Program program(work, long_search);
-    REQUIRE(program.has_said("planning"));
-    program.send(SIGINT);
-    program.send(SIGTERM);
-    const Result result = program.wait();
+    const LongSearch work("planning");
+    work.program.send(SIGINT);
+    work.program.send(SIGTERM);
+    const Result result = work.program.wait();
     CHECK((result.code == 130 || result.code == 143));
     for (const auto& [name, text] : work.files()) {
         CHECK_FALSE(name.ends_with("solution.json"));

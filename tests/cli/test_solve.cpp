@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
-#include <sstream>
 
+#include "../support/csv_rows.hpp"
 #include "program.hpp"
 
 using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
@@ -31,27 +31,13 @@ std::set<std::string> keys_of(const nlohmann::json& group) {
     return keys;
 }
 
-/// The rows of a trajectory by the names of their columns; NAN where a cell is empty.
-std::vector<std::map<std::string, double>> rows_of(const std::string& trajectory) {
-    const auto cells_of = [](const std::string& line) {
-        Words cells;
-        std::istringstream stream(line);
-        for (std::string cell; std::getline(stream, cell, ',');) {
-            cells.push_back(cell);
-        }
-        return cells;
-    };
-    std::istringstream lines(trajectory);
-    std::string line;
-    std::getline(lines, line);
-    const Words names = cells_of(line);
+/// The rows of a trajectory as numbers; NAN where a cell is empty.
+std::vector<std::map<std::string, double>> numbers_of(const std::string& trajectory) {
     std::vector<std::map<std::string, double>> rows;
-    while (std::getline(lines, line)) {
-        const Words cells = cells_of(line);
-        REQUIRE(cells.size() == names.size());
+    for (const auto& cells : rows_of(trajectory)) {
         auto& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            row[names[i]] = cells[i].empty() ? NAN : std::strtod(cells[i].c_str(), nullptr);
+        for (const auto& [name, cell] : cells) {
+            row[name] = cell.empty() ? NAN : std::strtod(cell.c_str(), nullptr);
         }
     }
     return rows;
@@ -85,8 +71,7 @@ std::string without_obstacles(std::string problem) {
 
 TEST_CASE("Solve writes a solution and a trajectory and the effective problem into its own folder") {
     const Workspace work;
-    const Result result = work.run("solve", problem_file("open_air"), "--max-iterations 300 --seed 5");
-    CHECK(result.code == 0);
+    const Result result = work.succeed("solve", problem_file("open_air"), "--max-iterations 300 --seed 5");
     CHECK_THAT(result.out, StartsWith("Solved. "));
     CHECK_THAT(result.err, Contains("planning"));
 
@@ -126,9 +111,8 @@ TEST_CASE("Solve writes a solution and a trajectory and the effective problem in
 
 TEST_CASE("What a solution says of its search and its flight is what the rows of the flight come to") {
     const Workspace work;
-    const auto solution =
-        work.run("solve", problem_file("open_air"), "--max-iterations 300 --seed 5 --out x --json").json();
-    const auto rows = rows_of(work.text("x/trajectory.csv"));
+    const auto solution = work.json("solve", problem_file("open_air"), "--max-iterations 300 --seed 5 --out x");
+    const auto rows = numbers_of(work.text("x/trajectory.csv"));
     REQUIRE(rows.size() > 1000);
 
     // The plan: from the start to within 0.1 m of (5, 6), its corners on its reference, held for 5 s at the end.
@@ -192,7 +176,9 @@ TEST_CASE("What a solution says of its search and its flight is what the rows of
     CHECK(planning.at("states_checked") > planning.at("edges_simulated"));
 }
 
-TEST_CASE("Json on standard output is the solution file and quiet leaves standard error empty") {
+TEST_CASE(
+    "Json on standard output is the solution file, quiet leaves standard error empty, and stop at first ends with one "
+    "plan") {
     const Workspace work;
     const Result result =
         work.run("solve", problem_file("open_air"), "--variant mp-arm --max-iterations 300 --out here --json --quiet");
@@ -200,6 +186,9 @@ TEST_CASE("Json on standard output is the solution file and quiet leaves standar
     CHECK(result.json().at("variant") == "mp-arm");
     CHECK(result.out == work.text("here/solution.json"));
     CHECK(work.files().size() == files_of_a_run);
+    // Without that option the search would go on for an hour, longer than this test may take.
+    const auto solution = work.json("solve", problem_file("open_air"), "--time-limit 3600 --stop-at-first");
+    CHECK(solution.at("planning").at("improvements").size() == 1);
 }
 
 TEST_CASE("Solving the effective problem again gives the same bytes") {
@@ -222,20 +211,6 @@ TEST_CASE("Solving the effective problem again gives the same bytes") {
     }
 }
 
-TEST_CASE("The effective problem finds the meshes and scans of its problem again") {
-    const Workspace work;
-    const auto solve = [&work](const std::string& problem, const std::string& out) {
-        REQUIRE(work.run("solve", problem, "--variant mp-arm --max-iterations 100 --out", out).code != 2);
-        return work.files(out);
-    };
-    const auto one = solve(problem_file("girder_mesh"), "first");
-    const auto two = solve("first/effective.yaml", "deeper/down/second");
-    CHECK(one.at("trajectory.csv") == two.at("trajectory.csv"));
-    CHECK(repeatable(nlohmann::json::parse(one.at("solution.json"))) ==
-          repeatable(nlohmann::json::parse(two.at("solution.json"))));
-    CHECK(one.at("effective.yaml") != two.at("effective.yaml"));  // its paths are two folders longer
-}
-
 TEST_CASE("Without a solution within the limits the exit code is 1 and nobody says solved") {
     const Workspace work;
     const Result result =
@@ -252,32 +227,19 @@ TEST_CASE("Without a solution within the limits the exit code is 1 and nobody sa
     CHECK(solution.at("execution").is_null() == (solution.at("status") == "none"));
 }
 
-TEST_CASE("Stop at first ends with the first accepted plan") {
-    const Workspace work;
-    // Without that option the search would go on for an hour, longer than this test may take.
-    const Result result = work.run("solve", problem_file("open_air"), "--time-limit 3600 --stop-at-first --json");
-    CHECK(result.code == 0);
-    CHECK(result.json().at("planning").at("improvements").size() == 1);
-}
-
-TEST_CASE("Without obstacles there is no clearance to write") {
+TEST_CASE("Without obstacles there is no clearance to write, and rotors that lag have a column of their own") {
     const Workspace work;
     write_file(work / "empty.yaml", without_obstacles(problem_text("open_air")));
-    const Result result = work.run("solve", work / "empty.yaml", "--max-iterations 300 --out x --json");
-    REQUIRE(result.code == 0);
-    CHECK(result.json().at("execution").at("min_clearance_m").is_null());
-    const auto rows = rows_of(work.text("x/trajectory.csv"));
+    const auto solution = work.json("solve", work / "empty.yaml", "--max-iterations 300 --out x");
+    CHECK(solution.at("execution").at("min_clearance_m").is_null());
+    const auto rows = numbers_of(work.text("x/trajectory.csv"));
     CHECK(std::isnan(rows.front().at("clearance_m")));
     CHECK_FALSE(std::isnan(rows.front().at("ee_x_m")));
-}
-
-TEST_CASE("Rotors that lag have a column of their own") {
-    const Workspace work;
     write_file(work / "lagging.yaml", replaced(read_file(std::string(DOWNWASH_PROBLEMS) + "/robots/ars_lrm.yaml"),
                                                "time_constant_s: 0", "time_constant_s: 0.02"));
     write_file(work / "problem.yaml", replaced(read_file(problem_file("open_air")), "robots/ars_lrm", "lagging"));
-    CHECK(work.run("solve", work / "problem.yaml", "--max-iterations 50 --out x").code != 2);
-    const std::string trajectory = work.text("x/trajectory.csv");
+    CHECK(work.run("solve", work / "problem.yaml", "--max-iterations 50 --out lagging").code != 2);
+    const std::string trajectory = work.text("lagging/trajectory.csv");
     CHECK_THAT(trajectory.substr(0, trajectory.find('\n')),
                Catch::EndsWith("rotor_4_cmd_n,rotor_4_aero_factor,rotor_4_lag_n"));
 }

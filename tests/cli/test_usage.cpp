@@ -7,15 +7,19 @@ using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
 using Catch::Contains;
 using Catch::StartsWith;
 
-TEST_CASE("Help and version go to standard output and end well") {
+TEST_CASE("Help and version go to standard output, and an unknown command is named, at any depth") {
     const Workspace work;
     CHECK(work.run("--version").out == "downwash " DOWNWASH_EXPECTED_VERSION "\n");
     for (const char* command : {"", "solve", "execute", "check", "aeromap query", "planners"}) {
-        const Result result = work.run(command, "--help");
-        CHECK(result.code == 0);
+        const Result result = work.succeed(command, "--help");
         CHECK_THAT(result.out, Contains("Usage"));
         CHECK(result.err.empty());
     }
+    CHECK_THAT(work.run("slove").err,
+               StartsWith("downwash: there is no command 'slove': expected") && Contains("did you mean 'solve'?"));
+    CHECK_THAT(work.run("aeromap foo").err,
+               StartsWith("downwash: there is no command 'aeromap foo': expected query, build"));
+    CHECK_THAT(work.run("aeromap biuld").err, Contains("did you mean 'build'?"));
 }
 
 TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
@@ -38,55 +42,45 @@ TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
           "aeromap query --model cheeseman-bennett --z-over-r 1 --max-factor 0.5", "planners rrt-star"}) {
         usages.push_back(words(usage));
     }
-    for (const auto& [command, options] : {std::pair{"check", "--bogus"},
-                                           {"solve", "--seed"},
-                                           {"solve", "--seed -1"},
-                                           {"solve", "--seed 1.5"},
-                                           {"solve", "--seed 0x10"},
-                                           {"solve", "--seed 99999999999999999999999999"},
-                                           {"solve", "--time-limit nan"},
-                                           {"solve", "--time-limit -inf"},
-                                           {"solve", "--time-limit 0"},
-                                           {"solve", "--time-limit soon"},
-                                           {"solve", "--max-iterations 0"},
-                                           {"solve", "--max-iterations -5"},
-                                           {"solve", "--max-iterations 1e3"},
-                                           {"solve", "--margin -0.1"},
-                                           {"solve", "--margin 1e400"},
-                                           {"solve", "--margin 99"},
-                                           {"solve", "--variant mp-arm-adda"},
-                                           {"solve", "--algorithm magic"},
-                                           {"solve", "--algorithm bit-star"},
-                                           {"solve", "--algorithm rrt --variant mp-arm"},
-                                           {"solve", "--threads 0"},
-                                           {"solve", "--threads many"},
-                                           {"solve", "--threads 99999999999999999999"},
-                                           {"execute", ""},
-                                           {"execute", "--plan missing.json"},
-                                           {"execute", "--plan ."},
-                                           {"execute", "--plan ../plan.json"},
-                                           {"execute", "--plan ../plan.json --aero maybe"},
-                                           {"aeromap query", ""},
-                                           {"aeromap query", "--at 1 2"},
-                                           {"aeromap query", "--at 1 2 nan"},
-                                           {"aeromap query", "--z-over-r 1"},
-                                           {"aeromap query", "--model none --z-over-r 1"}}) {
-        usages.push_back(words(command, open_air, options));
-    }
+    const auto with_problem = [&](const char* command, std::initializer_list<const char*> all_options) {
+        for (const char* options : all_options) {
+            usages.push_back(words(command, open_air, options));
+        }
+    };
+    with_problem("check", {"--bogus"});
+    with_problem("solve", {"--seed",
+                           "--seed -1",
+                           "--seed 1.5",
+                           "--seed 0x10",
+                           "--seed 99999999999999999999999999",
+                           "--time-limit nan",
+                           "--time-limit -inf",
+                           "--time-limit 0",
+                           "--time-limit soon",
+                           "--max-iterations 0",
+                           "--max-iterations -5",
+                           "--max-iterations 1e3",
+                           "--margin -0.1",
+                           "--margin 1e400",
+                           "--margin 99",
+                           "--variant mp-arm-adda",
+                           "--algorithm magic",
+                           "--algorithm bit-star",
+                           "--algorithm rrt --variant mp-arm",
+                           "--threads 0",
+                           "--threads many",
+                           "--threads 99999999999999999999"});
+    with_problem("execute",
+                 {"", "--plan missing.json", "--plan .", "--plan ../plan.json", "--plan ../plan.json --aero maybe"});
+    with_problem("aeromap query", {"", "--at 1 2", "--at 1 2 nan", "--z-over-r 1", "--model none --z-over-r 1"});
     for (const Words& arguments : usages) {
         CAPTURE(arguments);
-        const Result result = work.run(arguments);
-        CHECK(result.code == 2);
-        CHECK(result.out.empty());
-        CHECK_FALSE(result.err.empty());
+        check_rejected(work.run(arguments), "\n");
     }
     CHECK(std::filesystem::is_empty(work.in_run()));
-}
-
-TEST_CASE("An error in an option names the option and a remedy") {
-    const Workspace work;
+    // An error in an option names the option and a remedy.
     CHECK_THAT(
-        work.run("solve", problem_file("open_air"), "--variant mp-arm-adda --seed -1").err,
+        work.run("solve", open_air, "--variant mp-arm-adda --seed -1").err,
         Contains("--variant is 'mp-arm-adda'") && Contains("did you mean 'mp-arm-ada'") && Contains("--seed is '-1'"));
 }
 
@@ -112,13 +106,4 @@ TEST_CASE("Check tells of every error with file and line and column") {
         CHECK_FALSE(error.at("message").get<std::string>().empty());
     }
     CHECK(work.run("check", good, "--json").json() == nlohmann::json{{"faults", nlohmann::json::array()}});
-}
-
-TEST_CASE("An unknown command is named, at any depth") {
-    const Workspace work;
-    CHECK_THAT(work.run("slove").err,
-               StartsWith("downwash: there is no command 'slove': expected") && Contains("did you mean 'solve'?"));
-    CHECK_THAT(work.run("aeromap foo").err,
-               StartsWith("downwash: there is no command 'aeromap foo': expected query, build"));
-    CHECK_THAT(work.run("aeromap biuld").err, Contains("did you mean 'build'?"));
 }

@@ -13,13 +13,19 @@ const PlanarVelocity rotation = [](double x, double z) -> std::array<double, 2> 
 
 }  // namespace
 
-TEST_CASE("the streamlines of a rotation are circles, run through in its sense") {
+TEST_CASE("the streamlines of a rotation are circles in its sense, drawn over the axial velocity") {
     const auto points = streamline(rotation, {1, 0}, {-2, 2, -2, 2}, 0.01);
     CHECK(points.size() == 10001);
     for (const PlanePoint& p : points) {
         CHECK(std::hypot(p.x_m, p.z_m) == Approx(1).epsilon(1e-7));
     }
     CHECK(points[100].z_m == Approx(std::sin(1.0)).epsilon(1e-7));
+    FieldFigure figure = flow_figure(rotation, {-2, 2, -1, 1}, {{0.5, 0}, {0.8, 0}}, signed_scale("w", 2));
+    CHECK(figure.value(0.7, 0.1) == 0.7);
+    REQUIRE(figure.lines.size() == 1);
+    CHECK(figure.lines[0].pieces.size() == 2);
+    figure.title = "Rotation";
+    CHECK_THAT(test::texts_of(figure), Catch::Contains("streamlines"));
 }
 
 TEST_CASE("a streamline ends where it leaves the extent, and where the flow stands still or is not finite") {
@@ -56,13 +62,4 @@ TEST_CASE("streamlines of rotor and image keep the flux between them and the axi
             CHECK(stream_function(p) == Approx(stream_function(start)).margin(1e-6));
         }
     }
-}
-
-TEST_CASE("a picture of a flow shows streamlines over the axial velocity") {
-    FieldFigure figure = flow_figure(rotation, {-2, 2, -1, 1}, {{0.5, 0}, {0.8, 0}}, signed_scale("w", 2));
-    CHECK(figure.value(0.7, 0.1) == 0.7);
-    REQUIRE(figure.lines.size() == 1);
-    CHECK(figure.lines[0].pieces.size() == 2);
-    figure.title = "Rotation";
-    CHECK_THAT(test::texts_of(figure), Catch::Contains("streamlines"));
 }

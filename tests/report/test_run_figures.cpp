@@ -39,7 +39,7 @@ TEST_CASE("the arm of every snapshot ends where the end effector was flown") {
     CHECK(figure.points.size() == 1);
 }
 
-TEST_CASE("pictures of a run are the same bytes each time, in every format") {
+TEST_CASE("pictures of a run are the same bytes each time, in every format, and say what they show, with units") {
     const auto plots = time_figures(record());
     for (const PictureFormat format : {PictureFormat::svg, PictureFormat::png, PictureFormat::pdf}) {
         const PictureSettings settings{format, 600};
@@ -47,9 +47,6 @@ TEST_CASE("pictures of a run are the same bytes each time, in every format") {
         CHECK(draw(plots, settings) == draw(plots, settings));
     }
     CHECK_THAT(draw(plots, {PictureFormat::pdf, 600}), Catch::StartsWith("%PDF") && !Contains("CreationDate"));
-}
-
-TEST_CASE("plots over time say what they show, with units") {
     CHECK_THAT(test::texts_of(time_figures(record()), 800),
                Contains("tracking error [m]") && Contains("angle [deg]") && Contains("rotor command [N]") &&
                    Contains("aero factor") && Contains("clearance [m]") && Contains("power [W]") &&

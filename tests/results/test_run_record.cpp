@@ -2,6 +2,8 @@
 #include <cmath>
 #include <string>
 
+#include "../support/error_of.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/solved_run.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/results/run_record.hpp"
@@ -11,14 +13,16 @@ using test::SolvedRun;
 
 namespace {
 
+/// The first error of an action; empty without one.
+template <class Action>
+std::string first_error_of(const Action& action) {
+    const std::vector<KeyError> errors = test::errors_of(action);
+    return errors.empty() ? "" : errors[0].message;
+}
+
 /// What reading the run says.
 std::string error_of(const SolvedRun& run) {
-    try {
-        (void)read_run(run.folder());
-    } catch (const InputError& error) {
-        return error.errors().at(0).message;
-    }
-    return "";
+    return first_error_of([&run] { return read_run(run.folder()); });
 }
 
 std::string content_of(const std::filesystem::path& file) {
@@ -26,39 +30,10 @@ std::string content_of(const std::filesystem::path& file) {
 }
 
 std::string table_error(const std::string& text) {
-    try {
-        (void)read_number_table(text, "file.csv", {"a", "b"});
-    } catch (const InputError& error) {
-        return error.errors().at(0).message;
-    }
-    return "";
+    return first_error_of([&text] { return read_number_table(text, "file.csv", {"a", "b"}); });
 }
 
-}  // namespace
-
-TEST_CASE("a run is read back as it was written") {
-    const SolvedRun run;
-    const RunRecord record = read_run(run.folder());
-    CHECK(record.problem.name == run.problem.name);
-    CHECK(record.solution_text == content_of(run.file("solution.json")));
-    CHECK(record.problem_text == content_of(run.file("effective.yaml")));
-    const auto& rows = run.solution.execution->rows;
-    REQUIRE(record.flight.rows() == rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        REQUIRE(record.flight.find("x_m")->at(i) == rows[i].q[0]);
-        REQUIRE(record.flight.find("energy_j")->at(i) == rows[i].energy_j);
-        REQUIRE(record.flight.find("rotor_1_aero_factor")->at(i) == rows[i].rotor_factor[0]);
-    }
-    REQUIRE(record.tree.rows() == run.solution.tree.size());
-    CHECK(std::isnan(record.tree.find("parent")->at(0)));
-    CHECK(record.tree.find("parent")->at(1) == run.solution.tree[1].parent);
-    CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
-}
-
-TEST_CASE("the record of a run in memory is the one that is read from its files") {
-    const SolvedRun run;
-    const RunRecord read = read_run(run.folder());
-    const RunRecord record = run_record(run.problem, run.solution, *run.solution.execution);
+void check_same(const RunRecord& read, const RunRecord& record) {
     CHECK(record.problem.name == read.problem.name);
     CHECK(record.status == read.status);
     CHECK(record.outcome == read.outcome);
@@ -76,14 +51,31 @@ TEST_CASE("the record of a run in memory is the one that is read from its files"
     }
     REQUIRE(record.plan);
     REQUIRE(read.plan);
-    REQUIRE(record.plan->reference.size() == read.plan->reference.size());
-    for (std::size_t i = 0; i < record.plan->reference.size(); ++i) {
-        CHECK(record.plan->reference[i].tick == read.plan->reference[i].tick);
-        CHECK(record.plan->reference[i].point == read.plan->reference[i].point);
-    }
+    CHECK(test::same_bytes(*record.plan, *read.plan));
 }
 
-TEST_CASE("files that no run left behind are refused with their place") {
+}  // namespace
+
+TEST_CASE("a run is read back as it was written, and as its record in memory") {
+    const SolvedRun run;
+    const RunRecord record = read_run(run.folder());
+    CHECK(record.problem.name == run.problem.name);
+    CHECK(record.solution_text == content_of(run.file("solution.json")));
+    CHECK(record.problem_text == content_of(run.file("effective.yaml")));
+    const auto& rows = run.solution.execution->rows;
+    REQUIRE(record.flight.rows() == rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        REQUIRE(record.flight.find("x_m")->at(i) == rows[i].q[0]);
+        REQUIRE(record.flight.find("energy_j")->at(i) == rows[i].energy_j);
+        REQUIRE(record.flight.find("rotor_1_aero_factor")->at(i) == rows[i].rotor_factor[0]);
+    }
+    REQUIRE(record.tree.rows() == run.solution.tree.size());
+    CHECK(std::isnan(record.tree.find("parent")->at(0)));
+    CHECK(record.tree.find("parent")->at(1) == run.solution.tree[1].parent);
+    CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
+    check_same(record, run_record(run.problem, run.solution, *run.solution.execution));  // the record in memory
+}
+TEST_CASE("files that no run left behind are errors with their place") {
     const SolvedRun run;
     SECTION("no folder") {
         CHECK_THROWS_AS(read_run(run.folder() / "elsewhere"), InputError);
@@ -96,39 +88,34 @@ TEST_CASE("files that no run left behind are refused with their place") {
         std::filesystem::remove(run.file("tree.csv"));
         CHECK(read_run(run.folder()).tree.rows() == 0);
     }
-    SECTION("a solution that is no JSON") {
-        write_file(run.file("solution.json"), "{\"schema\": ");
-        CHECK(error_of(run).find("solution.json: this is not the JSON") != std::string::npos);
-    }
-    SECTION("a solution that nests without end") {
-        write_file(run.file("solution.json"), std::string(100000, '['));
-        CHECK(error_of(run).find("solution.json: this is not the JSON") != std::string::npos);
-    }
-    SECTION("a solution of another schema") {
-        write_file(run.file("solution.json"), R"({"schema": "downwash/solution/v9"})");
-        CHECK(error_of(run).find("its schema is not downwash/solution/v1") != std::string::npos);
-    }
-    SECTION("a flight with a hole") {
-        std::string text = content_of(run.file("trajectory.csv"));
-        const std::size_t second_row = text.find('\n', text.find('\n') + 1) + 1;
-        text.insert(text.find(',', second_row) + 1, ",");
-        write_file(run.file("trajectory.csv"), text);
-        CHECK(error_of(run).find("trajectory.csv:3: ") != std::string::npos);
-    }
-    SECTION("a tree that bites its tail") {
-        write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n\n0,0,0,1\n1,1,0,0\n");
-        CHECK(error_of(run).find("tree.csv:3: its parents run in a circle") != std::string::npos);
-    }
-    SECTION("a flight in which time stands still") {
-        std::string text = content_of(run.file("trajectory.csv"));
-        const std::size_t second = text.find('\n', text.find('\n') + 1) + 1;
-        text.replace(second, text.find(',', second) - second, "0");
-        write_file(run.file("trajectory.csv"), text);
-        CHECK(error_of(run).find("trajectory.csv:3: t_s is 0") != std::string::npos);
-    }
-    SECTION("a tree whose parents are not there") {
-        write_file(run.file("tree.csv"), "x_m,z_m,arm_rad,parent\n0,0,0,\n1,1,0,7\n");
-        CHECK(error_of(run).find("tree.csv:3: parent is 7") != std::string::npos);
+    SECTION("files with other content") {
+        struct Wrong {
+            std::string name, file, content, error;
+        };
+        const std::string flight = content_of(run.file("trajectory.csv"));
+        const std::size_t second_row = flight.find('\n', flight.find('\n') + 1) + 1;
+        const std::string before = flight.substr(0, second_row);
+        const std::string after_time = flight.substr(flight.find(',', second_row));
+        for (const auto& [name, file, content, error] : {
+                 Wrong{"no JSON", "solution.json", "{\"schema\": ", "solution.json: this is not the JSON"},
+                 {"brackets without end", "solution.json", std::string(100000, '['),
+                  "solution.json: this is not the JSON"},
+                 {"another schema", "solution.json", R"({"schema": "downwash/solution/v9"})",
+                  "its schema is not downwash/solution/v1"},
+                 {"a cell too many", "trajectory.csv", before + "0.01," + after_time, "trajectory.csv:3: "},
+                 {"time that stands still", "trajectory.csv", before + "0" + after_time, "trajectory.csv:3: t_s is 0"},
+                 {"a tree that bites its tail", "tree.csv", "x_m,z_m,arm_rad,parent\n\n0,0,0,1\n1,1,0,0\n",
+                  "tree.csv:3: its parents run in a circle"},
+                 {"parents that are not there", "tree.csv", "x_m,z_m,arm_rad,parent\n0,0,0,\n1,1,0,7\n",
+                  "tree.csv:3: parent is 7"},
+             }) {
+            CAPTURE(name);
+            const std::string sound = content_of(run.file(file));
+            write_file(run.file(file), content);
+            CHECK_THAT(error_of(run), Catch::Contains(error));
+            write_file(run.file(file), sound);
+        }
+        CHECK(error_of(run).empty());
     }
 }
 

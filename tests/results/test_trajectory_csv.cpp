@@ -4,58 +4,28 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "../support/csv_rows.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/trajectory_csv.hpp"
 #include "independent_plant.hpp"
 
-using downwash::Problem;
+using namespace downwash;
+using test::rows_of;
 
 namespace {
 
 using Row = std::map<std::string, std::string>;
 
-std::vector<std::string> cells_of(const std::string& line) {
-    std::vector<std::string> cells(1);
-    for (const char c : line) {
-        if (c == ',') {
-            cells.emplace_back();
-        } else {
-            cells.back() += c;
-        }
-    }
-    return cells;
-}
-
-/// The rows of a file by column name.
-std::vector<Row> rows_of(const std::string& text) {
-    std::istringstream stream(text);
-    std::string line;
-    std::getline(stream, line);
-    const std::vector<std::string> names = cells_of(line);
-    std::vector<Row> rows;
-    while (std::getline(stream, line)) {
-        const std::vector<std::string> cells = cells_of(line);
-        REQUIRE(cells.size() == names.size());
-        Row row;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            row[names[i]] = cells[i];
-        }
-        rows.push_back(row);
-    }
-    return rows;
-}
-
 double number(const Row& row, const std::string& column) {
     return std::strtod(row.at(column).c_str(), nullptr);
 }
 
-downwash::test::PlantVector state_in(const Row& row, std::size_t rotors, bool lags) {
-    downwash::test::PlantVector state;
+test::PlantVector state_in(const Row& row, std::size_t rotors, bool lags) {
+    test::PlantVector state;
     for (const char* column :
          {"x_m", "z_m", "pitch_rad", "arm_rad", "vx_m_s", "vz_m_s", "pitch_rate_rad_s", "arm_rate_rad_s", "energy_j"}) {
         state.push_back(number(row, column));
@@ -66,8 +36,8 @@ downwash::test::PlantVector state_in(const Row& row, std::size_t rotors, bool la
     return state;
 }
 
-downwash::test::HeldCommand command_in(const Row& row, std::size_t rotors) {
-    downwash::test::HeldCommand command;
+test::HeldCommand command_in(const Row& row, std::size_t rotors) {
+    test::HeldCommand command;
     for (std::size_t i = 1; i <= rotors; ++i) {
         command.rotor_n.push_back(number(row, "rotor_" + std::to_string(i) + "_cmd_n"));
     }
@@ -75,8 +45,9 @@ downwash::test::HeldCommand command_in(const Row& row, std::size_t rotors) {
     return command;
 }
 
-/// Integrates the plant anew from every row, in so many steps per tick, and tells the greatest difference to the next.
-double worst_difference(const Problem& problem, const std::vector<Row>& rows, int steps) {
+/// Integrates the plant anew from every row and checks that it comes to the next: any integrator does that is fine
+/// enough where a disc passes an edge.
+void check_that_rows_follow(const Problem& problem, const std::vector<Row>& rows) {
     const auto model = make_flight_model(problem);
     const std::size_t rotors = problem.robot.rotors.positions_m.size();
     const bool lags = problem.robot.rotors.time_constant_s > 0;
@@ -86,36 +57,26 @@ double worst_difference(const Problem& problem, const std::vector<Row>& rows, in
     double worst = 0;
     for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
         const auto next = integrated(problem.robot, factor, state_in(rows[k], rotors, lags),
-                                     command_in(rows[k], rotors), 1 / problem.robot.controller.rate_hz, steps);
+                                     command_in(rows[k], rotors), 1 / problem.robot.controller.rate_hz, 200);
         const auto written = state_in(rows[k + 1], rotors, lags);
         for (std::size_t i = 0; i < written.size(); ++i) {
             worst = std::max(worst, std::abs(next[i] - written[i]) / std::max(1.0, std::abs(written[i])));
         }
     }
-    return worst;
-}
-
-/// Any integrator that is fine enough where a disc passes an edge reaches the next row.
-void check_that_rows_follow(const Problem& problem, const std::vector<Row>& rows) {
-    CHECK(worst_difference(problem, rows, 200) < 1e-6);
-}
-
-downwash::ReferenceKnot rest_at(std::int64_t tick, double x_m, double z_m, double arm_rad) {
-    return {tick, {{x_m, z_m, arm_rad}, {0, 0, 0}, {0, 0, 0}}};
+    CHECK(worst < 1e-6);
 }
 
 /// A flight up to the deck of the bridge, one rotor radius below it, with a swing of the arm.
-downwash::Execution flight_to_deck(const Problem& problem) {
+Execution flight_to_deck(const Problem& problem) {
     const auto model = make_flight_model(problem);
-    const auto& start = problem.start;
-    return execute(
-        *model, start_state(*model, start),
-        {rest_at(0, start.x_m, start.z_m, start.arm_rad), rest_at(400, -9.5, 9.4, 0.6), rest_at(800, -8.5, 9.7, 1.2)},
-        problem.goal, true);
+    const std::vector<ReferenceKnot> knots{{0, at_rest(problem.start.configuration())},
+                                           {400, at_rest({-9.5, 9.4, 0.6})},
+                                           {800, at_rest({-8.5, 9.7, 1.2})}};
+    return execute(*model, start_state(*model, problem.start), knots, problem.goal, true);
 }
 
 Problem bridge() {
-    return downwash::read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
+    return read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
 }
 
 }  // namespace
@@ -130,9 +91,9 @@ TEST_CASE("A trajectory can be integrated again from its rows") {
     } else if (vehicle != "as shipped") {
         problem.robot.arm.joint_x_m = 0.1;
         problem.robot.arm.joint_z_m = -0.05;
-        problem.plane = downwash::PlaneOfMotion({0.3, 0.1, -0.1}, 0.05);
+        problem.plane = PlaneOfMotion({0.3, 0.1, -0.1}, 0.05);
     }
-    const downwash::Execution flight = flight_to_deck(problem);
+    const Execution flight = flight_to_deck(problem);
     CAPTURE(name_of(flight.outcome));
     const std::vector<Row> rows = rows_of(trajectory_csv(flight));
     REQUIRE(rows.size() > 600);
@@ -143,16 +104,16 @@ TEST_CASE("A trajectory can be integrated again from its rows") {
 TEST_CASE("A solved flight past walkway and deck can be integrated again") {
     Problem problem = bridge();
     problem.planner.max_iterations = 150;
-    const downwash::Solution solution = solve(problem);
+    const Solution solution = solve(problem);
     REQUIRE(solution.execution);
     check_that_rows_follow(problem, rows_of(trajectory_csv(*solution.execution)));
 }
 
 TEST_CASE("The numbers of a trajectory read back as the very same") {
-    downwash::Execution execution;
+    Execution execution;
     execution.rotor_count = 2;
     execution.rows.resize(1);
-    downwash::FlightRow& flown = execution.rows[0];
+    FlightRow& flown = execution.rows[0];
     flown.t_s = 0.1 + 0.2;
     flown.q[0] = 1e-310;
     flown.q[1] = -0.0;
@@ -171,8 +132,7 @@ TEST_CASE("The numbers of a trajectory read back as the very same") {
     CHECK(row.at("clearance_m").empty());
     CHECK(row.count("rotor_1_lag_n") == 0);
     CHECK(text.substr(0, text.find('\n'))
-              .ends_with(",energy_j,rotor_1_cmd_n,rotor_1_aero_factor,rotor_2_cmd_n,"
-                         "rotor_2_aero_factor"));
+              .ends_with(",energy_j,rotor_1_cmd_n,rotor_1_aero_factor,rotor_2_cmd_n,rotor_2_aero_factor"));
     execution.has_rotor_lag = true;
     CHECK(rows_of(trajectory_csv(execution)).at(0).at("rotor_2_lag_n") == "0");
 }

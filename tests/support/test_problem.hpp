@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,6 +58,14 @@ inline Problem cluttered_problem() {
     problem.obstacles.push_back(box("slab", {2, 3, 0.4}, {0, 0, 3}));
     problem.obstacles.push_back({"pipe", Cylinder{0.25, 6, {0, 1, 0}}, {3, 0, 2.5}, {}});
     return problem;
+}
+
+/// How far the tip of the arm of a level vehicle is from the end-effector goal of a problem.
+inline double tip_error_m(const Problem& problem, const Configuration& at) {
+    const EndEffectorGoal& goal = *problem.goal.end_effector;
+    const double arm_m = problem.robot.arm.length_m;
+    return std::hypot(at.x_m + arm_m * std::cos(at.arm_rad) - goal.x_m,
+                      at.z_m - arm_m * std::sin(at.arm_rad) - goal.z_m);
 }
 
 /// The ceiling problem with a wall across the whole space between start and goal.
