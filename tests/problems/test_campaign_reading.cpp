@@ -62,61 +62,54 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
 TEST_CASE("what cannot be run in a campaign is an error with its place and a remedy") {
     static const Edit edits[] = {
         {"campaign/v1", "campaign/v2",
-         "campaign.yaml:1:9: schema is 'downwash/campaign/v2': expected downwash/campaign/v1, no other is read"},
-        {"margins_m", "margin_m", "campaign.yaml:6:1: unknown key 'margin_m' at the top: did you mean 'margins_m'?"},
+         "1:9: schema is 'downwash/campaign/v2': expected downwash/campaign/v1, no other is read"},
+        {"margins_m", "margin_m", "6:1: unknown key 'margin_m' at the top: did you mean 'margins_m'?"},
         {"[mp-arm, mp-arm-ada]", "[mp-arm, mp-arm-adda]",
-         "campaign.yaml:4:11: variants has 'mp-arm-adda': expected a list of mp-arm, mp-arm-da or mp-arm-ada; did "
-         "you mean 'mp-arm-ada'?"},
+         "4:11: variants has 'mp-arm-adda': expected a list of mp-arm, mp-arm-da or mp-arm-ada; did you mean "
+         "'mp-arm-ada'?"},
         {"[mp-arm, mp-arm-ada]", "mp-arm",
-         "campaign.yaml:4:11: variants is 'mp-arm': expected a list of mp-arm, mp-arm-da or mp-arm-ada"},
+         "4:11: variants is 'mp-arm': expected a list of mp-arm, mp-arm-da or mp-arm-ada"},
         {"[energy, time]", "[]",
-         "campaign.yaml:5:13: objectives is empty: expected a list of energy, time, length or clearance, or null"},
+         "5:13: objectives is empty: expected a list of energy, time, length or clearance, or null"},
         {"[energy, time]", "[time, time]",
-         "campaign.yaml:5:13: objectives has 'time' twice: expected a list of energy, time, length or clearance, "
-         "or null"},
+         "5:13: objectives has 'time' twice: expected a list of energy, time, length or clearance, or null"},
         {"[0.05, 0.2]", "[0.05, -1]",
-         "campaign.yaml:6:12: margins_m is -1: expected a list of different numbers in m from 0 to 100, or null"},
+         "6:12: margins_m is -1: expected a list of different numbers in m from 0 to 100, or null"},
         {"{first: 3, count: 2}", "[1, 2.5]",
-         "campaign.yaml:7:12: seeds is '2.5': expected a group of keys or a list of whole numbers from 0 to "
-         "4294967295"},
+         "7:12: seeds is '2.5': expected a group of keys or a list of whole numbers from 0 to 4294967295"},
         {"{first: 3, count: 2}", "[5, 6, 5]",
-         "campaign.yaml:7:8: seeds has 5 twice: expected a group of keys or a list of whole numbers from 0 to "
-         "4294967295"},
+         "7:8: seeds has 5 twice: expected a group of keys or a list of whole numbers from 0 to 4294967295"},
         {"first: 3", "first: 4294967295",
-         "campaign.yaml:7:1: seeds go beyond 4294967295, the highest seed: expected a smaller first or count"},
+         "7:1: seeds go beyond 4294967295, the highest seed: expected a smaller first or count"},
         {"count: 2", "count: 200000",
-         "campaign.yaml:7:1: seeds make more than 1000000 runs with all problems, variants, algorithms, "
-         "objectives, margins and parameters: expected fewer of one of them"},
+         "7:1: seeds make more than 1000000 runs with all problems, variants, algorithms, objectives, margins and "
+         "parameters: expected fewer of one of them"},
         {"margins_m: [0.05, 0.2]", "parameters: [{}, {goal_bais: 0.2}]",
-         "campaign.yaml:6:19: unknown key 'goal_bais' in parameters[1]: did you mean 'goal_bias'?"},
+         "6:19: unknown key 'goal_bais' in parameters[1]: did you mean 'goal_bias'?"},
         {"margins_m: [0.05, 0.2]", "parameters: [{goal_bias: 1.5}]",
-         "campaign.yaml:6:26: parameters[0].goal_bias is 1.5: expected a number from 0 to 1, or null"},
+         "6:26: parameters[0].goal_bias is 1.5: expected a number from 0 to 1, or null"},
         {"margins_m: [0.05, 0.2]", "parameters: [{batch_size: 1.5}]",
-         "campaign.yaml:6:27: parameters[0].batch_size is 1.5: expected a whole number"},
+         "6:27: parameters[0].batch_size is 1.5: expected a whole number"},
         {"margins_m: [0.05, 0.2]", "parameters: [{pruning_radius: 1}]",
-         "campaign.yaml:6:31: parameters[0].pruning_radius has a meaning only with sst: remove it"},
+         "6:31: parameters[0].pruning_radius has a meaning only with sst: remove it"},
         {"margins_m: [0.05, 0.2]", "parameters: [{}, {goal_bias: 0.2}, {}]",
-         "campaign.yaml:6:36: parameters[2] is the same as parameters[0]: expected every set once"},
+         "6:36: parameters[2] is the same as parameters[0]: expected every set once"},
         {"variant: mp-arm-ada", "variant: mp-arm-da",
-         "campaign.yaml:9:20: expect[0].variant is mp-arm-da, which is not run: expected one of the campaign's "
-         "variants"},
+         "9:20: expect[0].variant is mp-arm-da, which is not run: expected one of the campaign's variants"},
         {"failed_flights: 0", "algorithm: sst",
-         "campaign.yaml:9:62: expect[0].algorithm is sst, which is not run: expected one of the campaign's "
-         "algorithms"},
+         "9:62: expect[0].algorithm is sst, which is not run: expected one of the campaign's algorithms"},
         {"failed_flights: 0", "cost_to_best: 1.05",
-         "campaign.yaml:9:65: expect[0].cost_to_best does not say when: expected cost_after_s beside it"},
+         "9:65: expect[0].cost_to_best does not say when: expected cost_after_s beside it"},
         {"failed_flights: 0", "cheaper_than_after_s: 30",
-         "campaign.yaml:9:73: expect[0].cheaper_than_after_s is half of a comparison: expected cheaper_than and "
-         "cheaper_than_after_s together"},
+         "9:73: expect[0].cheaper_than_after_s is half of a comparison: expected cheaper_than and cheaper_than_after_s "
+         "together"},
         {"[problem.yaml]", "[problem.yaml, ./problem.yaml]",
-         "campaign.yaml:3:11: problems name './problem.yaml', which has the name of another, test: expected every "
-         "problem once, with a name of its own"},
-        {"[problem.yaml]", "[none.yaml]", "none.yaml:1:1: cannot be read: there is no such file"}};
+         "3:11: problems name './problem.yaml', which has the name of another, test: expected every problem once, with "
+         "a name of its own"}};
     const CampaignFolder folder;
-    for (const Edit& edit : edits) {
-        CAPTURE(edit.to);
-        CHECK(folder.errors_after(edit.from, edit.to) == edit.errors);
-    }
+    check(edits, "campaign.yaml", [&folder](auto from, auto to) { return folder.errors_after(from, to); });
+    CHECK(folder.errors_after("[problem.yaml]", "[none.yaml]") ==
+          "none.yaml:1:1: cannot be read: there is no such file");
     // Errors of its problems are reported where they stand.
     folder.folder.write("problem.yaml", edited(good_problem, "seed: 1", "sead: 1"));
     CHECK(folder.errors_after("trial", "other") ==

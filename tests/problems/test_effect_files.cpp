@@ -86,15 +86,23 @@ TEST_CASE("a grid of factors takes the place of the models, which are errors bes
           "problem.yaml:12:3: aero.ceiling has a meaning only without aero.map: remove it");
 }
 
-TEST_CASE("a grid that does not reach as far as the rotors is an error") {
+TEST_CASE("a grid that does not fit its problem is an error") {
     const TestFolder folder;
     const std::string said = errors_with_map(folder, grid_csv("-5"));
     CHECK_THAT(said, Catch::StartsWith("problem.yaml:10:8: aero.map does not reach the world point (-6.3, 0.3, 0.2)") &&
                          Catch::Contains("-6.3 to 6.3 m along the plane"));
-}
-
-TEST_CASE("a planar grid in another vertical plane is an error") {
-    const TestFolder folder;
+    // One of other rotors.
+    const auto errors_with = [&](const std::string& radius) {
+        return errors_with_map(folder, "# rotor_radius_m: " + radius + "\n" + grid_csv("-7"));
+    };
+    CHECK(errors_with("0.2") ==
+          "problem.yaml:10:8: aero.map is of rotors of 0.2 m radius, as its rotor_radius_m says: expected "
+          "robot.rotors.radius_m, 0.19 m");
+    CHECK(errors_with("0.190001") != "sound");
+    for (const char* radius : {"0.1900001", "0.19", "about 8 inches"}) {
+        CHECK(errors_with(radius) == "sound");
+    }
+    // A planar one in another vertical plane.
     const std::string heading = "# frame_heading_rad: ";
     const std::string sixty_degrees = "1.0471975511965976";
     CHECK(errors_with_map(folder, heading + sixty_degrees + "\n" + grid_csv("-7")) ==
@@ -109,18 +117,4 @@ TEST_CASE("a planar grid in another vertical plane is an error") {
         volume += std::string(node) + ",1.25\n";
     }
     CHECK(errors_with_map(folder, volume) == "sound");
-}
-
-TEST_CASE("a grid of other rotors is an error") {
-    const TestFolder folder;
-    const auto errors_with = [&](const std::string& radius) {
-        return errors_with_map(folder, "# rotor_radius_m: " + radius + "\n" + grid_csv("-7"));
-    };
-    CHECK(errors_with("0.2") ==
-          "problem.yaml:10:8: aero.map is of rotors of 0.2 m radius, as its rotor_radius_m says: expected "
-          "robot.rotors.radius_m, 0.19 m");
-    CHECK(errors_with("0.190001") != "sound");
-    for (const char* radius : {"0.1900001", "0.19", "about 8 inches"}) {
-        CHECK(errors_with(radius) == "sound");
-    }
 }

@@ -116,6 +116,10 @@ TEST_CASE("surfaces that cannot be placed are errors at their obstacle") {
           "farther than 1e6 m from its origin");
     CHECK(errors_with(folder, "mesh: {file: pole.stl, scale: 0}") ==
           "problem.yaml:8:50: environment.obstacles[1].mesh.scale is 0: expected a number from 1e-06 to 1000000");
+    // Bodies of a robot are no meshes.
+    CHECK(errors_after_robot(folder, "box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "mesh: {file: a.stl}") ==
+          "robot.yaml:7:7: unknown key 'mesh' in multirotor.body[0]: expected box, cylinder or sphere\n"
+          "robot.yaml:7:7: multirotor.body[0] needs exactly one of box, cylinder or sphere");
 }
 
 TEST_CASE("more triangles than a scene holds are not even kept") {
@@ -128,13 +132,6 @@ TEST_CASE("more triangles than a scene holds are not even kept") {
     CHECK(errors_with(folder, "mesh: {file: fan.obj}}\n    - {name: other, mesh: {file: fan.obj}") ==
           "problem.yaml:9:34: environment.obstacles[2].mesh.file 'fan.obj' makes 2400000 triangles and cubes of all "
           "obstacles: expected at most 2000000");
-}
-
-TEST_CASE("bodies of a robot are no meshes") {
-    const TestFolder folder;
-    CHECK(errors_after_robot(folder, "box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "mesh: {file: a.stl}") ==
-          "robot.yaml:7:7: unknown key 'mesh' in multirotor.body[0]: expected box, cylinder or sphere\n"
-          "robot.yaml:7:7: multirotor.body[0] needs exactly one of box, cylinder or sphere");
 }
 
 TEST_CASE("a problem that is written elsewhere finds its files again, and is the same problem") {

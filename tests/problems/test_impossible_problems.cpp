@@ -10,68 +10,59 @@ using namespace downwash::test;
 namespace {
 
 const Edit edits[] = {
-    {"x_m: -4", "x_m: -7", "problem.yaml:12:14: start.x_m is -7, outside the bounds: expected -6 to 6"},
-    {"z_m: 2, arm_deg", "z_m: 5.5, arm_deg",
-     "problem.yaml:12:23: start.z_m is 5.5, outside the bounds: expected 0.5 to 5"},
+    {"x_m: -4", "x_m: -7", "12:14: start.x_m is -7, outside the bounds: expected -6 to 6"},
+    {"z_m: 2, arm_deg", "z_m: 5.5, arm_deg", "12:23: start.z_m is 5.5, outside the bounds: expected 0.5 to 5"},
     {"z_m: 2, arm_deg", "z_m: 1, arm_deg",
-     "problem.yaml:12:1: start is in collision with an obstacle: move the start or the obstacle"},
+     "12:1: start is in collision with an obstacle: move the start or the obstacle"},
     {"z_m: 2, arm_deg", "z_m: 1.25, arm_deg",
-     "problem.yaml:12:1: start is 0.02 m from an obstacle, nearer than planner.safety_margin_m, 0.05: move the start "
-     "or the obstacle"},
+     "12:1: start is 0.02 m from an obstacle, nearer than planner.safety_margin_m, 0.05: move the start or the "
+     "obstacle"},
     {"k1: 6.9}", "k1: 6.9}\n  min_distance_radii: 12",
-     "problem.yaml:13:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at "
-     "least 2.28 m (aero.min_distance_radii times the rotor radius)"},
+     "13:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at least 2.28 m "
+     "(aero.min_distance_radii times the rotor radius)"},
     {"ceiling: {model: sanchez-cuevas, k1: 6.9}", "min_distance_radii: 100",
-     "problem.yaml:12:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at "
-     "least 19 m (aero.min_distance_radii times the rotor radius)"},
+     "12:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at least 19 m "
+     "(aero.min_distance_radii times the rotor radius)"},
     {"arm_deg: 90", "arm_deg: 90, pitch_deg: 20, vx_m_s: 1.2, arm_rate_deg_s: -60",
-     "problem.yaml:12:62: start.vx_m_s makes a start speed of 1.2 m/s: expected at most motion.max_speed_m_s, 1\n"
-     "problem.yaml:12:83: start.arm_rate_deg_s is faster than motion.max_arm_rate_deg_s: expected at most 45 in size"},
-    {"x_m: [-6, 6]", "x_m: [6, -6]",
-     "problem.yaml:5:17: environment.bounds.x_m is [low, high]: expected low below high"},
-    {"z_m: [0.5, 5]", "z_m: [5, 5]",
-     "problem.yaml:5:31: environment.bounds.z_m is [low, high]: expected low below high"},
+     "12:62: start.vx_m_s makes a start speed of 1.2 m/s: expected at most motion.max_speed_m_s, 1\n12:83: "
+     "start.arm_rate_deg_s is faster than motion.max_arm_rate_deg_s: expected at most 45 in size"},
+    {"x_m: [-6, 6]", "x_m: [6, -6]", "5:17: environment.bounds.x_m is [low, high]: expected low below high"},
+    {"z_m: [0.5, 5]", "z_m: [5, 5]", "5:31: environment.bounds.z_m is [low, high]: expected low below high"},
     {"x_m: [-6, 6], z_m: [0.5, 5]", "x_m: [-6000, 6000], z_m: [0.5, 50]",
-     "problem.yaml:9:1: aero.grid_m makes a map of 4.81e+08 cells over the bounds: expected at most 1.678e+07; "
-     "choose a coarser grid or narrower bounds"},
+     "9:1: aero.grid_m makes a map of 4.81e+08 cells over the bounds: expected at most 1.678e+07; choose a coarser "
+     "grid or narrower bounds"},
     {"x_m: 3, z_m: 2.5", "x_m: 9, z_m: 2.5",
-     "problem.yaml:14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it "
-     "by 1.7 m; widen environment.bounds or move the goal"},
+     "14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it by 1.7 m; "
+     "widen environment.bounds or move the goal"},
     {"x_m: 3, z_m: 2.5", "x_m: 3, z_m: -2",
-     "problem.yaml:14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it "
-     "by 1.2 m; widen environment.bounds or move the goal"},
+     "14:3: goal.end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it by 1.2 m; "
+     "widen environment.bounds or move the goal"},
     {"x_m: 3, z_m: 2.5", "x_m: 3, z_m: -0.4",
-     "problem.yaml:14:3: goal.end_effector is out of reach: in every pose that gets there the robot touches an "
-     "obstacle or is nearer to it than planner.safety_margin_m"},
+     "14:3: goal.end_effector is out of reach: in every pose that gets there the robot touches an obstacle or is "
+     "nearer to it than planner.safety_margin_m"},
     {"x_m: 3, z_m: 2.5, tolerance_m: 0.1", "x_m: 3, z_m: 6, tolerance_m: 0.1, direction_deg: 90",
-     "problem.yaml:14:3: goal.end_effector is out of reach: the limits of the arm, the wanted direction and the bounds "
-     "leave no pose that gets there"},
+     "14:3: goal.end_effector is out of reach: the limits of the arm, the wanted direction and the bounds leave no "
+     "pose that gets there"},
     {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 7, z_m: 0.1",
-     "problem.yaml:14:24: goal.configuration.x_m is 7, outside the bounds: expected -6 to 6\n"
-     "problem.yaml:14:32: goal.configuration.z_m is 0.1, outside the bounds: expected 0.5 to 5"},
+     "14:24: goal.configuration.x_m is 7, outside the bounds: expected -6 to 6\n14:32: goal.configuration.z_m is 0.1, "
+     "outside the bounds: expected 0.5 to 5"},
     {"end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1, arm_deg: 90",
-     "problem.yaml:14:3: goal.configuration is in collision with an obstacle or nearer to it than "
-     "planner.safety_margin_m, anywhere within its tolerances: move the goal or the obstacle"},
+     "14:3: goal.configuration is in collision with an obstacle or nearer to it than planner.safety_margin_m, anywhere "
+     "within its tolerances: move the goal or the obstacle"},
     {"seed: 1", "seed: 1, safety_margin_m: 1",
-     "problem.yaml:12:1: start is 0.77 m from an obstacle, nearer than planner.safety_margin_m, 1: move the start or "
-     "the obstacle"},
+     "12:1: start is 0.77 m from an obstacle, nearer than planner.safety_margin_m, 1: move the start or the obstacle"},
 };
 
 }  // namespace
 
 TEST_CASE("an impossible problem is an error where it is posed") {
-    check(edits, errors_after);
-}
-
-TEST_CASE("a narrow but possible goal is accepted") {
+    check(edits, "problem.yaml", [](auto from, auto to) { return errors_after(TestFolder(), from, to); });
+    // A narrow but possible goal is accepted.
     const TestFolder folder;
     CHECK(errors_after(folder, "tolerance_m: 0.1",
                        "tolerance_m: 0.1, direction_deg: 90, direction_tolerance_deg: 0.1") == "sound");
     CHECK(errors_after(folder, "end_effector: {x_m: 3, z_m: 2.5", "configuration: {x_m: 3, z_m: 1") == "sound");
-}
-
-TEST_CASE("without surface effects the flyable area does not matter") {
-    const TestFolder folder;
+    // Without surface effects the flyable area does not matter.
     CHECK(errors_after(folder, "  ceiling: {model: sanchez-cuevas, k1: 6.9}\n", "  min_distance_radii: 12\n") !=
           "sound");
     CHECK(errors_after(folder,

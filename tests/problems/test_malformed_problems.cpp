@@ -5,217 +5,187 @@ using namespace downwash::test;
 
 namespace {
 
+constexpr std::string_view pole = "name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}";
+constexpr std::string_view size = "size_m: [30, 20, 1]";
+constexpr std::string_view tip = "end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}";
+constexpr std::string_view tip_and_hold = "  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n";
+constexpr std::string_view goal = "goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n";
+constexpr std::string_view start = "start: {x_m: -4, z_m: 2, arm_deg: 90}";
+
 const Edit edits[] = {
-    {"start: {x_m: -4", "strat: {x_m: -4", "problem.yaml:12:1: unknown key 'strat' at the top: did you mean 'start'?"},
-    {"hold_s: 5", "hold: 5", "problem.yaml:15:3: unknown key 'hold' in goal: its unit is missing; expected hold_s"},
+    {"start: {x_m: -4", "strat: {x_m: -4", "12:1: unknown key 'strat' at the top: did you mean 'start'?"},
+    {"hold_s: 5", "hold: 5", "15:3: unknown key 'hold' in goal: its unit is missing; expected hold_s"},
     {"tolerance_m: 0.1", "tolerance_mm: 100",
-     "problem.yaml:14:36: unknown key 'tolerance_mm' in goal.end_effector: its unit is wrong; expected tolerance_m"},
+     "14:36: unknown key 'tolerance_mm' in goal.end_effector: its unit is wrong; expected tolerance_m"},
     {"tolerance_m: 0.1", "tolerance: 0.1",
-     "problem.yaml:14:36: unknown key 'tolerance' in goal.end_effector: its unit is missing; expected tolerance_m"},
-    {"arm_deg: 90", "arm_rad: 1.57",
-     "problem.yaml:12:26: unknown key 'arm_rad' in start: its unit is wrong; expected arm_deg"},
+     "14:36: unknown key 'tolerance' in goal.end_effector: its unit is missing; expected tolerance_m"},
+    {"arm_deg: 90", "arm_rad: 1.57", "12:26: unknown key 'arm_rad' in start: its unit is wrong; expected arm_deg"},
     {"arm_deg: 90", "color: red",
-     "problem.yaml:12:1: start.arm_deg is missing: expected a number in deg from -3600 to 3600\n"
-     "problem.yaml:12:26: unknown key 'color' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, "
-     "pitch_rate_deg_s or arm_rate_deg_s"},
-    {"x_m: -4", "x_m: left", "problem.yaml:12:14: start.x_m is 'left': expected a number in m from -100000 to 100000"},
+     "12:1: start.arm_deg is missing: expected a number in deg from -3600 to 3600\n12:26: unknown key 'color' in "
+     "start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s or arm_rate_deg_s"},
+    {"x_m: -4", "x_m: left", "12:14: start.x_m is 'left': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: \"-4\"",
-     "problem.yaml:12:14: start.x_m is text in quotes, \"-4\": expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: ", "problem.yaml:12:14: start.x_m has no value: expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: [-4]", "problem.yaml:12:14: start.x_m is a list: expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: {is: -4}",
-     "problem.yaml:12:14: start.x_m is a group of keys: expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: 4 m", "problem.yaml:12:14: start.x_m is '4 m': expected a number in m from -100000 to 100000"},
+     "12:14: start.x_m is text in quotes, \"-4\": expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: ", "12:14: start.x_m has no value: expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: [-4]", "12:14: start.x_m is a list: expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: {is: -4}", "12:14: start.x_m is a group of keys: expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: 4 m", "12:14: start.x_m is '4 m': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 4,5",
-     "problem.yaml:12:16: unknown key '5' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, "
-     "pitch_rate_deg_s or arm_rate_deg_s"},
-    {"x_m: -4", "x_m: 0x10", "problem.yaml:12:14: start.x_m is '0x10': expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: 1_000",
-     "problem.yaml:12:14: start.x_m is '1_000': expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: .nan",
-     "problem.yaml:12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: -.inf",
-     "problem.yaml:12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: 1e999",
-     "problem.yaml:12:14: start.x_m is '1e999': expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: 1e9",
-     "problem.yaml:12:14: start.x_m is 1000000000: expected a number in m from -100000 to 100000"},
-    {"arm_deg: 90", "arm_deg: 4000",
-     "problem.yaml:12:35: start.arm_deg is 4000: expected a number in deg from -3600 to 3600"},
-    {"size_m: [30, 20, 1]", "size_m: [30, 20]",
-     "problem.yaml:7:36: environment.obstacles[0].box.size_m has 2 elements: expected [x, y, z] in m above 0 and at "
-     "most 100000"},
-    {"size_m: [30, 20, 1]", "size_m: [30, 20, one]",
-     "problem.yaml:7:45: environment.obstacles[0].box.size_m is 'one': expected [x, y, z] in m above 0 and at most "
-     "100000"},
-    {"size_m: [30, 20, 1]", "size_m: 30",
-     "problem.yaml:7:36: environment.obstacles[0].box.size_m is '30': expected [x, y, z] in m above 0 and at most "
-     "100000"},
-    {"size_m: [30, 20, 1]", "size_m: [30, 20, 0]",
-     "problem.yaml:7:36: environment.obstacles[0].box.size_m is 0: expected [x, y, z] in m above 0 and at most 100000"},
-    {"size_m: [30, 20, 1]", "size_m: [30, 20, .inf]",
-     "problem.yaml:7:45: environment.obstacles[0].box.size_m is not finite: expected [x, y, z] in m above 0 and at "
-     "most 100000"},
+     "12:16: unknown key '5' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s or "
+     "arm_rate_deg_s"},
+    {"x_m: -4", "x_m: 0x10", "12:14: start.x_m is '0x10': expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: 1_000", "12:14: start.x_m is '1_000': expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: .nan", "12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: -.inf", "12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: 1e999", "12:14: start.x_m is '1e999': expected a number in m from -100000 to 100000"},
+    {"x_m: -4", "x_m: 1e9", "12:14: start.x_m is 1000000000: expected a number in m from -100000 to 100000"},
+    {"arm_deg: 90", "arm_deg: 4000", "12:35: start.arm_deg is 4000: expected a number in deg from -3600 to 3600"},
+    {size, "size_m: [30, 20]",
+     "7:36: environment.obstacles[0].box.size_m has 2 elements: expected [x, y, z] in m above 0 and at most 100000"},
+    {size, "size_m: [30, 20, one]",
+     "7:45: environment.obstacles[0].box.size_m is 'one': expected [x, y, z] in m above 0 and at most 100000"},
+    {size, "size_m: 30",
+     "7:36: environment.obstacles[0].box.size_m is '30': expected [x, y, z] in m above 0 and at most 100000"},
+    {size, "size_m: [30, 20, 0]",
+     "7:36: environment.obstacles[0].box.size_m is 0: expected [x, y, z] in m above 0 and at most 100000"},
+    {size, "size_m: [30, 20, .inf]",
+     "7:45: environment.obstacles[0].box.size_m is not finite: expected [x, y, z] in m above 0 and at most 100000"},
     {"radius_m: 0.2", "radius_m: -0.2",
-     "problem.yaml:8:41: environment.obstacles[1].cylinder.radius_m is -0.2: expected a number in m above 0 and at "
-     "most 100000"},
+     "8:41: environment.obstacles[1].cylinder.radius_m is -0.2: expected a number in m above 0 and at most 100000"},
     {"length_m: 5, ", "",
-     "problem.yaml:8:20: environment.obstacles[1].cylinder.length_m is missing: expected a number in m above 0 and at "
-     "most 100000"},
+     "8:20: environment.obstacles[1].cylinder.length_m is missing: expected a number in m above 0 and at most 100000"},
     {"length_m: 5, ", "length_m: 5, axis: [0, 0, 0], ",
-     "problem.yaml:8:65: environment.obstacles[1].cylinder.axis has no direction: expected a vector other than [0, 0, "
-     "0]"},
+     "8:65: environment.obstacles[1].cylinder.axis has no direction: expected a vector other than [0, 0, 0]"},
     {", center_m: [4, 3, 2.5]", "",
-     "problem.yaml:8:20: environment.obstacles[1].cylinder.center_m is missing: expected [x, y, z] in m from -100000 "
-     "to 100000"},
+     "8:20: environment.obstacles[1].cylinder.center_m is missing: expected [x, y, z] in m from -100000 to 100000"},
     {"cylinder: {", "cilinder: {",
-     "problem.yaml:8:20: unknown key 'cilinder' in environment.obstacles[1]: did you mean 'cylinder'?"},
-    {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}", "name: pole",
-     "problem.yaml:8:7: environment.obstacles[1] needs exactly one of box, cylinder, sphere, mesh or octomap"},
+     "8:20: unknown key 'cilinder' in environment.obstacles[1]: did you mean 'cylinder'?"},
+    {pole, "name: pole", "8:7: environment.obstacles[1] needs exactly one of box, cylinder, sphere, mesh or octomap"},
     {"name: pole, cylinder: {", "name: pole, sphere: {radius_m: 1, center_m: [4, 3, 2]}, cylinder: {",
-     "problem.yaml:8:64: environment.obstacles[1] has both sphere and cylinder: expected exactly one of box, cylinder, "
-     "sphere, mesh or octomap"},
-    {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}",
-     "name: girder, mesh: {file: girder.stl}",
-     "problem.yaml:8:35: environment.obstacles[1].mesh.file 'girder.stl' cannot be read: there is no such file"},
-    {"name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}",
-     "name: scan, octomap: {file: pier.bt}",
-     "problem.yaml:8:36: environment.obstacles[1].octomap.file 'pier.bt' cannot be read: there is no such file"},
+     "8:64: environment.obstacles[1] has both sphere and cylinder: expected exactly one of box, cylinder, sphere, mesh "
+     "or octomap"},
+    {pole, "name: girder, mesh: {file: girder.stl}",
+     "8:35: environment.obstacles[1].mesh.file 'girder.stl' cannot be read: there is no such file"},
+    {pole, "name: scan, octomap: {file: pier.bt}",
+     "8:36: environment.obstacles[1].octomap.file 'pier.bt' cannot be read: there is no such file"},
     {"name: pole", "name: ground",
-     "problem.yaml:8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used "
-     "once"},
+     "8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used once"},
     {"{name: pole, cylinder: {radius_m: 0.2, length_m: 5, center_m: [4, 3, 2.5]}}", "pole",
-     "problem.yaml:8:7: environment.obstacles[1] is 'pole': expected a group of keys"},
-    {"start: {x_m: -4, z_m: 2, arm_deg: 90}", "start: {x_m: -4}",
-     "problem.yaml:12:1: start.z_m is missing: expected a number in m from -100000 to 100000\n"
-     "problem.yaml:12:1: start.arm_deg is missing: expected a number in deg from -3600 to 3600"},
-    {"start: {x_m: -4, z_m: 2, arm_deg: 90}\n", "", "problem.yaml:1:1: start is missing: expected a group of keys"},
-    {"start: {x_m: -4, z_m: 2, arm_deg: 90}", "start: [-4, 2, 90]",
-     "problem.yaml:12:8: start is a list: expected a group of keys"},
-    {"start: {x_m: -4", "start: {x_m: -3, x_m: -4",
-     "problem.yaml:12:18: start.x_m is written twice: expected once, as in line 12"},
+     "8:7: environment.obstacles[1] is 'pole': expected a group of keys"},
+    {start, "start: {x_m: -4}",
+     "12:1: start.z_m is missing: expected a number in m from -100000 to 100000\n12:1: start.arm_deg is missing: "
+     "expected a number in deg from -3600 to 3600"},
+    {"start: {x_m: -4, z_m: 2, arm_deg: 90}\n", "", "1:1: start is missing: expected a group of keys"},
+    {start, "start: [-4, 2, 90]", "12:8: start is a list: expected a group of keys"},
+    {"start: {x_m: -4", "start: {x_m: -3, x_m: -4", "12:18: start.x_m is written twice: expected once, as in line 12"},
     {"name: test", "name: ../../etc/passwd",
-     "problem.yaml:2:7: name is '../../etc/passwd': expected 1 to 64 letters, digits, '_' or '-'"},
+     "2:7: name is '../../etc/passwd': expected 1 to 64 letters, digits, '_' or '-'"},
     {"name: test", "name: nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn",
-     "problem.yaml:2:7: name is 'nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn...': expected 1 to 64 letters, "
-     "digits, '_' or '-'"},
-    {"name: test", "name: [a]", "problem.yaml:2:7: name is a list: expected 1 to 64 letters, digits, '_' or '-'"},
+     "2:7: name is 'nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn...': expected 1 to 64 letters, digits, '_' or "
+     "'-'"},
+    {"name: test", "name: [a]", "2:7: name is a list: expected 1 to 64 letters, digits, '_' or '-'"},
     {"schema: downwash/problem/v1", "schema: downwash/problem/v2",
-     "problem.yaml:1:9: schema is 'downwash/problem/v2': expected downwash/problem/v1, no other is read"},
-    {"schema: downwash/problem/v1", "schema: 1",
-     "problem.yaml:1:9: schema is '1': expected downwash/problem/v1, no other is read"},
-    {"schema: downwash/problem/v1\n", "", "problem.yaml:1:1: schema is missing: expected downwash/problem/v1"},
+     "1:9: schema is 'downwash/problem/v2': expected downwash/problem/v1, no other is read"},
+    {"schema: downwash/problem/v1", "schema: 1", "1:9: schema is '1': expected downwash/problem/v1, no other is read"},
+    {"schema: downwash/problem/v1\n", "", "1:1: schema is missing: expected downwash/problem/v1"},
     {"robot: robot.yaml", "robot: robots/missing.yaml",
-     "problem.yaml:3:8: robot 'robots/missing.yaml' cannot be read: there is no such file"},
-    {"robot: robot.yaml", "robot: \"\"",
-     "problem.yaml:3:8: robot is '': expected a group of keys or the path of a file"},
-    {"robot: robot.yaml", "robot: 7", "problem.yaml:3:8: robot '7' cannot be read: there is no such file"},
+     "3:8: robot 'robots/missing.yaml' cannot be read: there is no such file"},
+    {"robot: robot.yaml", "robot: \"\"", "3:8: robot is '': expected a group of keys or the path of a file"},
+    {"robot: robot.yaml", "robot: 7", "3:8: robot '7' cannot be read: there is no such file"},
     {"robot: robot.yaml", "robot: [robot.yaml]",
-     "problem.yaml:3:8: robot is a list: expected a group of keys or the path of a file"},
+     "3:8: robot is a list: expected a group of keys or the path of a file"},
     {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n", "",
-     "problem.yaml:13:1: goal needs exactly one of end_effector, configuration or any_of"},
+     "13:1: goal needs exactly one of end_effector, configuration or any_of"},
     {"  end_effector: {", "  configuration: {x_m: 1}\n  end_effector: {",
-     "problem.yaml:15:3: goal has both configuration and end_effector: expected exactly one of end_effector, "
-     "configuration or any_of"},
-    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n", "  any_of: []\n",
-     "problem.yaml:14:11: goal.any_of is empty: expected one element at least"},
+     "15:3: goal has both configuration and end_effector: expected exactly one of end_effector, configuration or "
+     "any_of"},
+    {tip_and_hold, "  any_of: []\n", "14:11: goal.any_of is empty: expected one element at least"},
     {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n",
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {hold_s: 2}]\n",
-     "problem.yaml:14:48: goal.any_of[1] needs exactly one of end_effector or configuration\n"
-     "problem.yaml:15:3: goal.hold_s has a meaning only without any_of: remove it"},
-    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "14:48: goal.any_of[1] needs exactly one of end_effector or configuration\n15:3: goal.hold_s has a meaning only "
+     "without any_of: remove it"},
+    {tip_and_hold,
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30, tolerance_x_m: 0, hold_s: 2}}]\n",
-     "problem.yaml:14:89: goal.any_of[1].configuration.tolerance_x_m is 0: expected a number in m above 0 and at most "
-     "100, or null\n"
-     "problem.yaml:14:92: unknown key 'hold_s' in goal.any_of[1].configuration: expected x_m, z_m, arm_deg, "
-     "tolerance_m, tolerance_x_m, tolerance_z_m or tolerance_deg"},
-    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
-     "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30}}]\n",
-     "problem.yaml:14:70: goal.any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
-    {"end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}", "configuration: {z_m: 3, tolerance_x_m: 0.1}",
-     "problem.yaml:14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
-    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n", "goal: []\n",
-     "problem.yaml:13:7: goal is empty: expected one element at least"},
-    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
-     "goal: [{end_effector: {x_m: 3, z_m: 9}}, {any_of: []}, {configuration: {x_m: 3}, hold_s: 0}]\n",
-     "problem.yaml:13:42: goal[1] needs exactly one of end_effector or configuration\n"
-     "problem.yaml:13:43: unknown key 'any_of' in goal[1]: expected end_effector, configuration or hold_s\n"
-     "problem.yaml:13:90: goal[2].hold_s is 0: expected a number in s from 1 to 3600"},
-    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
-     "goal: [{end_effector: {x_m: 3, z_m: 9}}, {configuration: {x_m: 3}}]\n",
-     "problem.yaml:13:9: goal[0].end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses "
-     "it by 2.7 m; widen environment.bounds or move the goal"},
-    {"goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n",
+     "14:89: goal.any_of[1].configuration.tolerance_x_m is 0: expected a number in m above 0 and at most 100, or "
+     "null\n14:92: unknown key 'hold_s' in goal.any_of[1].configuration: expected x_m, z_m, arm_deg, tolerance_m, "
+     "tolerance_x_m, tolerance_z_m or tolerance_deg"},
+    {tip_and_hold, "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30}}]\n",
+     "14:70: goal.any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
+    {tip, "configuration: {z_m: 3, tolerance_x_m: 0.1}",
+     "14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
+    {goal, "goal: []\n", "13:7: goal is empty: expected one element at least"},
+    {goal, "goal: [{end_effector: {x_m: 3, z_m: 9}}, {any_of: []}, {configuration: {x_m: 3}, hold_s: 0}]\n",
+     "13:42: goal[1] needs exactly one of end_effector or configuration\n13:43: unknown key 'any_of' in goal[1]: "
+     "expected end_effector, configuration or hold_s\n13:90: goal[2].hold_s is 0: expected a number in s from 1 to "
+     "3600"},
+    {goal, "goal: [{end_effector: {x_m: 3, z_m: 9}}, {configuration: {x_m: 3}}]\n",
+     "13:9: goal[0].end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it by 2.7 m; "
+     "widen environment.bounds or move the goal"},
+    {goal,
      "goal: [{configuration: {x_m: 1}, hold_s: 3000}, {configuration: {x_m: 2}, hold_s: 600}, {configuration: {x_m: "
      "3}}]\n",
-     "problem.yaml:13:1: goal is held for 3600 s before its last entry: expected less than 3600 s, 360000 control "
-     "ticks, in one plan"},
-    {"end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}", "configuration: {tolerance_m: 0.1}",
-     "problem.yaml:14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
-    {"hold_s: 5", "hold_s: 0.5", "problem.yaml:15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},
+     "13:1: goal is held for 3600 s before its last entry: expected less than 3600 s, 360000 control ticks, in one "
+     "plan"},
+    {tip, "configuration: {tolerance_m: 0.1}",
+     "14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
+    {"hold_s: 5", "hold_s: 0.5", "15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},
     {"cheeseman-bennett", "cheesman-bennett",
-     "problem.yaml:10:19: aero.ground.model is 'cheesman-bennett': expected one of none, cheeseman-bennett, "
-     "multirotor-images, multirotor-body, hayden, li, he, sanchez-cuevas, fairing-cfd, momentum-theory or table; did "
-     "you mean 'cheeseman-bennett'?"},
+     "10:19: aero.ground.model is 'cheesman-bennett': expected one of none, cheeseman-bennett, multirotor-images, "
+     "multirotor-body, hayden, li, he, sanchez-cuevas, fairing-cfd, momentum-theory or table; did you mean "
+     "'cheeseman-bennett'?"},
     {"{model: cheeseman-bennett}", "{model: cheeseman-bennett, k1: 3}",
-     "problem.yaml:10:38: aero.ground.k1 has a meaning only with the model sanchez-cuevas: remove it"},
-    {"{model: cheeseman-bennett}", "off", "problem.yaml:10:11: aero.ground is 'off': expected a group of keys or none"},
-    {"k1: 6.9", "k1: 0", "problem.yaml:11:40: aero.ceiling.k1 is 0: expected a number above 0 and at most 1000000"},
+     "10:38: aero.ground.k1 has a meaning only with the model sanchez-cuevas: remove it"},
+    {"{model: cheeseman-bennett}", "off", "10:11: aero.ground is 'off': expected a group of keys or none"},
+    {"k1: 6.9", "k1: 0", "11:40: aero.ceiling.k1 is 0: expected a number above 0 and at most 1000000"},
     {"variant: mp-arm-ada", "variant: mp-arm-aad",
-     "problem.yaml:16:20: planner.variant is 'mp-arm-aad': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you "
-     "mean 'mp-arm-ada'?"},
+     "16:20: planner.variant is 'mp-arm-aad': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you mean "
+     "'mp-arm-ada'?"},
     {"algorithm: rrt-star", "algorithm: rrt_star",
-     "problem.yaml:16:43: planner.algorithm is 'rrt_star': expected one of rrt-star, rrt-connect, informed-rrt-star, "
-     "bit-star, rrt, sst, kpiece1 or est; did you mean 'rrt-star'?"},
-    {"algorithm: rrt-star", "algorithm: bit-star",
-     "problem.yaml:16:43: planner.algorithm is 'bit-star', which does not plan for mp-arm-ada: expected rrt-star, rrt, "
+     "16:43: planner.algorithm is 'rrt_star': expected one of rrt-star, rrt-connect, informed-rrt-star, bit-star, rrt, "
      "sst, kpiece1 or est; did you mean 'rrt-star'?"},
+    {"algorithm: rrt-star", "algorithm: bit-star",
+     "16:43: planner.algorithm is 'bit-star', which does not plan for mp-arm-ada: expected rrt-star, rrt, sst, kpiece1 "
+     "or est; did you mean 'rrt-star'?"},
     {"objective: energy", "objective: comfort",
-     "problem.yaml:16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance, or a "
-     "group "
-     "of keys"},
+     "16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance, or a group of keys"},
     {"objective: energy", "objective: {energy: 1, times: 2, length: -1}",
-     "problem.yaml:16:76: unknown key 'times' in planner.objective: did you mean 'time'?\n"
-     "problem.yaml:16:94: planner.objective.length is -1: expected a number from 0 to 1000000000"},
+     "16:76: unknown key 'times' in planner.objective: did you mean 'time'?\n16:94: planner.objective.length is -1: "
+     "expected a number from 0 to 1000000000"},
     {"objective: energy", "objective: {energy: 0, time: 0}",
-     "problem.yaml:16:64: planner.objective has no weight above 0: expected one at least"},
-    {"objective: energy", "objective: {}",
-     "problem.yaml:16:64: planner.objective has no weight above 0: expected one at least"},
+     "16:64: planner.objective has no weight above 0: expected one at least"},
+    {"objective: energy", "objective: {}", "16:64: planner.objective has no weight above 0: expected one at least"},
     {"objective: energy", "objective: [energy, time]",
-     "problem.yaml:16:64: planner.objective is a list: expected one of energy, time, length or clearance, or a group "
-     "of keys"},
+     "16:64: planner.objective is a list: expected one of energy, time, length or clearance, or a group of keys"},
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
-     "problem.yaml:16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n"
-     "problem.yaml:16:101: unknown key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, "
-     "max_iterations, seed, safety_margin_m or parameters\n"
-     "problem.yaml:16:112: unknown key 'max_iteration' in planner: did you mean 'max_iterations'?"},
-    {"aero:\n", "aero: none\naero2:\n", "problem.yaml:10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
-    {"seed: 1", "seed: -1", "problem.yaml:16:78: planner.seed is '-1': expected a whole number from 0 to 4294967295"},
-    {"seed: 1", "seed: 1.5", "problem.yaml:16:78: planner.seed is '1.5': expected a whole number from 0 to 4294967295"},
-    {"seed: 1", "seed: 5000000000",
-     "problem.yaml:16:78: planner.seed is 5000000000: expected a whole number from 0 to 4294967295"},
+     "16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n16:101: unknown "
+     "key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
+     "safety_margin_m or parameters\n16:112: unknown key 'max_iteration' in planner: did you mean 'max_iterations'?"},
+    {"aero:\n", "aero: none\naero2:\n", "10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
+    {"seed: 1", "seed: -1", "16:78: planner.seed is '-1': expected a whole number from 0 to 4294967295"},
+    {"seed: 1", "seed: 1.5", "16:78: planner.seed is '1.5': expected a whole number from 0 to 4294967295"},
+    {"seed: 1", "seed: 5000000000", "16:78: planner.seed is 5000000000: expected a whole number from 0 to 4294967295"},
     {"seed: 1", "seed: 1, max_iterations: 0",
-     "problem.yaml:16:97: planner.max_iterations is 0: expected a whole number from 1 to 1e+15, or null"},
+     "16:97: planner.max_iterations is 0: expected a whole number from 1 to 1e+15, or null"},
     {"seed: 1", "seed: 1, time_limit_s: 0",
-     "problem.yaml:16:95: planner.time_limit_s is 0: expected a number in s above 0 and at most 1000000, or null"},
-    {"seed: 1", "seed: !!int 1", "problem.yaml:16:78: a tag (!...) is not understood here: remove it"},
-    {"seed: 1", "seed: 1, ? [a] : 2", "problem.yaml:16:83: a key of planner is no word: expected 'name: value'"},
+     "16:95: planner.time_limit_s is 0: expected a number in s above 0 and at most 1000000, or null"},
+    {"seed: 1", "seed: !!int 1", "16:78: a tag (!...) is not understood here: remove it"},
+    {"seed: 1", "seed: 1, ? [a] : 2", "16:83: a key of planner is no word: expected 'name: value'"},
     {"seed: 1", "seed: 1, parameters: {goal_bais: 0.2}",
-     "problem.yaml:16:94: unknown key 'goal_bais' in planner.parameters: did you mean 'goal_bias'?"},
+     "16:94: unknown key 'goal_bais' in planner.parameters: did you mean 'goal_bias'?"},
     {"seed: 1", "seed: 1, parameters: {goal_bias: 1.5}",
-     "problem.yaml:16:105: planner.parameters.goal_bias is 1.5: expected a number from 0 to 1"},
+     "16:105: planner.parameters.goal_bias is 1.5: expected a number from 0 to 1"},
     {"seed: 1", "seed: 1, parameters: {batch_size: 1.5}",
-     "problem.yaml:16:106: planner.parameters.batch_size is 1.5: expected a whole number"},
+     "16:106: planner.parameters.batch_size is 1.5: expected a whole number"},
     {"seed: 1", "seed: 1, parameters: {pruning_radius: 0.2}",
-     "problem.yaml:16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
+     "16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
-     "problem.yaml:16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, "
-     "max_iterations, seed, safety_margin_m or parameters"},
+     "16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
+     "safety_margin_m or parameters"},
 };
 
 }  // namespace
 
 TEST_CASE("a malformed problem is an error with place, reason and remedy") {
     CHECK(TestFolder().errors_of(good_problem, good_robot) == "sound");
-    check(edits, errors_after);
+    check(edits, "problem.yaml", [](auto from, auto to) { return errors_after(TestFolder(), from, to); });
 }

@@ -6,89 +6,80 @@ using namespace downwash::test;
 namespace {
 
 const Edit edits[] = {
-    {"  mass_kg: 4.5", "  mass: 4.5",
-     "robot.yaml:4:3: unknown key 'mass' in multirotor: its unit is missing; expected mass_kg"},
+    {"  mass_kg: 4.5", "  mass: 4.5", "4:3: unknown key 'mass' in multirotor: its unit is missing; expected mass_kg"},
     {"  mass_kg: 4.5", "  mass_g: 4500",
-     "robot.yaml:4:3: unknown key 'mass_g' in multirotor: its unit is wrong; expected mass_kg"},
+     "4:3: unknown key 'mass_g' in multirotor: its unit is wrong; expected mass_kg"},
     {"  mass_kg: 4.5", "  mass_kg: 4.5 kg",
-     "robot.yaml:4:12: multirotor.mass_kg is '4.5 kg': expected a number in kg above 0 and at most 10000"},
+     "4:12: multirotor.mass_kg is '4.5 kg': expected a number in kg above 0 and at most 10000"},
     {"  mass_kg: 4.5", "  mass_kg: 0",
-     "robot.yaml:4:12: multirotor.mass_kg is 0: expected a number in kg above 0 and at most 10000"},
-    {"arm: {length_m", "arm: {lenght_m", "robot.yaml:13:7: unknown key 'lenght_m' in arm: did you mean 'length_m'?"},
-    {"multirotor:", "multi_rotor:", "robot.yaml:3:1: unknown key 'multi_rotor' at the top: did you mean 'multirotor'?"},
-    {"schema: downwash/robot/v1\n", "",
-     "robot.yaml:1:1: schema is missing: expected 'schema: downwash/robot/v1' at the top"},
+     "4:12: multirotor.mass_kg is 0: expected a number in kg above 0 and at most 10000"},
+    {"arm: {length_m", "arm: {lenght_m", "13:7: unknown key 'lenght_m' in arm: did you mean 'length_m'?"},
+    {"multirotor:", "multi_rotor:", "3:1: unknown key 'multi_rotor' at the top: did you mean 'multirotor'?"},
+    {"schema: downwash/robot/v1\n", "", "1:1: schema is missing: expected 'schema: downwash/robot/v1' at the top"},
     {"schema: downwash/robot/v1", "schema: downwash/problem/v1",
-     "robot.yaml:1:9: schema is 'downwash/problem/v1': expected downwash/robot/v1, no other is read"},
+     "1:9: schema is 'downwash/problem/v1': expected downwash/robot/v1, no other is read"},
     {"radius_m: 0.19\n", "radius_m: -0.19\n",
-     "robot.yaml:9:13: rotors.radius_m is -0.19: expected a number in m above 0 and at most 10"},
+     "9:13: rotors.radius_m is -0.19: expected a number in m above 0 and at most 10"},
     {"[0.3, 0.3, 0], ", "[0.3, 0.3], ",
-     "robot.yaml:10:17: rotors.positions_m has 2 elements: expected a list of [x, y, z] in m from -100 to 100"},
+     "10:17: rotors.positions_m has 2 elements: expected a list of [x, y, z] in m from -100 to 100"},
     {"[[0.3, 0.3, 0], [0.3, -0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0]]", "0.3",
-     "robot.yaml:10:16: rotors.positions_m is '0.3': expected a list of [x, y, z] in m from -100 to 100"},
+     "10:16: rotors.positions_m is '0.3': expected a list of [x, y, z] in m from -100 to 100"},
     {"[[0.3, 0.3, 0], [0.3, -0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0]]", "[[0, 0, 0]]",
-     "robot.yaml:10:16: rotors.positions_m has 1 rotor: expected 2 to 8"},
+     "10:16: rotors.positions_m has 1 rotor: expected 2 to 8"},
     {"[[0.3, 0.3, 0], [0.3, -0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0]]", "[[0, 0.3, 0], [0, -0.3, 0]]",
-     "robot.yaml:10:16: rotors.positions_m gives every rotor the same x: without a lever they cannot turn the vehicle "
-     "in pitch; place rotors in front of and behind the centre of mass"},
+     "10:16: rotors.positions_m gives every rotor the same x: without a lever they cannot turn the vehicle in pitch; "
+     "place rotors in front of and behind the centre of mass"},
     {"[0.3, 0.3, 0], ", "[0.3, 0.3, 0], [0.1, 0, 0], [0.1, 1, 0], [0.1, 2, 0], [-0.1, 0, 0], [-0.1, 1, 0], ",
-     "robot.yaml:10:16: rotors.positions_m has 9 rotors: expected 2 to 8"},
+     "10:16: rotors.positions_m has 9 rotors: expected 2 to 8"},
     {"[-0.3, 0.3, 0], [-0.3, -0.3, 0]", "[0.1, 0.3, 0], [0.1, -0.3, 0]",
-     "robot.yaml:10:16: rotors.positions_m has all rotors on one side of the centre of mass (x = 0): thrust that "
-     "carries the weight would turn the vehicle over"},
+     "10:16: rotors.positions_m has all rotors on one side of the centre of mass (x = 0): thrust that carries the "
+     "weight would turn the vehicle over"},
     {"max_thrust_n: 28", "max_thrust_n: 11",
-     "robot.yaml:11:17: rotors.max_thrust_n gives 44 N with 4 rotors, which cannot lift the weight of 48.54 N: 4.543 N "
-     "are missing; expected more than 12.14 N a rotor"},
+     "11:17: rotors.max_thrust_n gives 44 N with 4 rotors, which cannot lift the weight of 48.54 N: 4.543 N are "
+     "missing; expected more than 12.14 N a rotor"},
     {"max_thrust_n: 28", "max_thrust_n: 28\n  min_thrust_n: 13",
-     "robot.yaml:12:17: rotors.min_thrust_n gives 52 N with 4 rotors, more than the weight of 48.54 N: the vehicle "
-     "could not descend"},
+     "12:17: rotors.min_thrust_n gives 52 N with 4 rotors, more than the weight of 48.54 N: the vehicle could not "
+     "descend"},
     {"max_thrust_n: 28", "max_thrust_n: 28\n  min_thrust_n: 30",
-     "robot.yaml:12:17: rotors.min_thrust_n is 30: expected less than max_thrust_n, which is 28"},
+     "12:17: rotors.min_thrust_n is 30: expected less than max_thrust_n, which is 28"},
     {"max_thrust_n: 28", "max_thrust_n: 28\n  time_constant_s: 0.001",
-     "robot.yaml:12:20: rotors.time_constant_s is 0.001: expected 0 for no lag, or at least half a control tick, "
-     "0.005 s"},
+     "12:20: rotors.time_constant_s is 0.001: expected 0 for no lag, or at least half a control tick, 0.005 s"},
     {"max_thrust_n: 28", "max_thrust: 28",
-     "robot.yaml:11:3: unknown key 'max_thrust' in rotors: its unit is missing; expected max_thrust_n"},
+     "11:3: unknown key 'max_thrust' in rotors: its unit is missing; expected max_thrust_n"},
     {"pitch_inertia_kg_m2: 0.2", "pitch_inertia_kg_m2: 20",
-     "robot.yaml:5:24: multirotor.pitch_inertia_kg_m2 is more than its whole mass at the outermost rotor tips would "
-     "have (1.08 kg m2)"},
-    {"inertia_kg_m2: 0.06", "inertia_kg_m2: 6",
-     "robot.yaml:13:75: arm.inertia_kg_m2 is more than the arm's whole mass at its full length would have (0.6808 kg "
+     "5:24: multirotor.pitch_inertia_kg_m2 is more than its whole mass at the outermost rotor tips would have (1.08 kg "
      "m2)"},
+    {"inertia_kg_m2: 0.06", "inertia_kg_m2: 6",
+     "13:75: arm.inertia_kg_m2 is more than the arm's whole mass at its full length would have (0.6808 kg m2)"},
     {"center_of_mass_m: 0.7", "center_of_mass_m: 1.3",
-     "robot.yaml:13:55: arm.center_of_mass_m is 1.3: expected at most the arm's length, 1.2 m"},
+     "13:55: arm.center_of_mass_m is 1.3: expected at most the arm's length, 1.2 m"},
     {"max_torque_nm: 12", "max_torque_nm: 3",
-     "robot.yaml:13:112: arm.max_torque_nm is 3, too little to hold the arm level: expected at least 3.089 Nm"},
+     "13:112: arm.max_torque_nm is 3, too little to hold the arm level: expected at least 3.089 Nm"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, -90]",
-     "robot.yaml:13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one"},
+     "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: 90",
-     "robot.yaml:13:128: arm.limits_deg is '90': expected [lower, upper] in deg from -3600 to 3600, or null"},
+     "13:128: arm.limits_deg is '90': expected [lower, upper] in deg from -3600 to 3600, or null"},
     {"    - box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "    []",
-     "robot.yaml:6:3: multirotor.body is empty: expected at least one box, cylinder or sphere that encloses the "
-     "multirotor"},
+     "6:3: multirotor.body is empty: expected at least one box, cylinder or sphere that encloses the multirotor"},
     {"center_m: [0, 0, 0]", "center_m: [0, 0, 0], rpy_deg: [0, 0, 9]",
-     "robot.yaml:7:55: unknown key 'rpy_deg' in multirotor.body[0].box: expected size_m or center_m"},
+     "7:55: unknown key 'rpy_deg' in multirotor.body[0].box: expected size_m or center_m"},
     {"max_tilt_deg: 35", "max_tilt_deg: 90",
-     "robot.yaml:18:17: controller.max_tilt_deg is 90: expected a number in deg above 0 and below 90"},
-    {"max_tilt_deg: 35", "rate_hz: 5",
-     "robot.yaml:18:12: controller.rate_hz is 5: expected a number in Hz from 10 to 1000"},
+     "18:17: controller.max_tilt_deg is 90: expected a number in deg above 0 and below 90"},
+    {"max_tilt_deg: 35", "rate_hz: 5", "18:12: controller.rate_hz is 5: expected a number in Hz from 10 to 1000"},
     {"max_tilt_deg: 35", "rate_khz: 0.1",
-     "robot.yaml:18:3: unknown key 'rate_khz' in controller: its unit is wrong; expected rate_hz"},
+     "18:3: unknown key 'rate_khz' in controller: its unit is wrong; expected rate_hz"},
     {"attitude: {k5: 8, ", "attitude: {k5: 8, rate_feed_forward: yes, ",
-     "robot.yaml:16:40: controller.attitude.rate_feed_forward is 'yes': expected true or false"},
-    {"attitude: {k5: 8, ", "attitude: {",
-     "robot.yaml:16:3: controller.attitude.k5 is missing: expected a number from 0 to 10000"},
+     "16:40: controller.attitude.rate_feed_forward is 'yes': expected true or false"},
+    {"attitude: {k5: 8, ", "attitude: {", "16:3: controller.attitude.k5 is missing: expected a number from 0 to 10000"},
     {"position: {kp: 2, kd: 2.6}", "position: {Kp: 2, kd: 2.6}",
-     "robot.yaml:15:14: unknown key 'Kp' in controller.position: did you mean 'kp'?"},
+     "15:14: unknown key 'Kp' in controller.position: did you mean 'kp'?"},
 };
 
 }  // namespace
 
 TEST_CASE("a malformed robot is an error in its own file") {
-    check(edits, errors_after_robot);
-}
-
-TEST_CASE("errors of a robot inline stand in the problem's file") {
+    check(edits, "robot.yaml", [](auto from, auto to) { return errors_after_robot(TestFolder(), from, to); });
+    // Errors of a robot inline stand in the problem's file.
     const TestFolder folder;
     std::string indented = "robot:";
     for (const char c : "\n" + edited(good_robot, "mass_kg: 4.5", "mass_kg: -4.5")) {
@@ -101,14 +92,6 @@ TEST_CASE("errors of a robot inline stand in the problem's file") {
 TEST_CASE("a robot file that is read alone names its errors without the problem's prefix") {
     const TestFolder folder;
     folder.write("robot.yaml", edited(good_robot, "mass_kg: 4.5", "mass: 4.5"));
-    std::string said;
-    try {
-        (void)read_robot(folder / "robot.yaml");
-    } catch (const ProblemFileError& error) {
-        REQUIRE(error.errors().size() == 1);
-        CHECK(error.errors()[0].line == 4);
-        CHECK(error.errors()[0].column == 3);
-        said = error.errors()[0].message;
-    }
-    CHECK(said == "unknown key 'mass' in multirotor: its unit is missing; expected mass_kg");
+    CHECK(folder.errors_in([&] { return read_robot(folder / "robot.yaml"); }) ==
+          "robot.yaml:4:3: unknown key 'mass' in multirotor: its unit is missing; expected mass_kg");
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "edits.hpp"
 
 using namespace downwash;
@@ -105,12 +107,6 @@ TEST_CASE("aliases are understood, but not those that never end or explode") {
 }
 
 TEST_CASE("a file full of errors is not read to the end") {
-    const TestFolder folder;
-    folder.write("problem.yaml", std::string(good_problem) + repeated("wrong: 1\n", 100000));
-    try {
-        (void)read_problem(folder / "problem.yaml");
-        FAIL("was accepted");
-    } catch (const ProblemFileError& error) {
-        CHECK(error.errors().size() == 100);
-    }
+    const std::string errors = errors_of_text(std::string(good_problem) + repeated("wrong: 1\n", 100000));
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 99);
 }
