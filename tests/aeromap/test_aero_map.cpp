@@ -87,25 +87,21 @@ TEST_CASE("Up to the edge of the flyable area no value of the other side is seen
     CHECK(points > 20000);
 }
 
-TEST_CASE("A map of a bridge is within 0.01 of the direct effect wherever one may fly") {
+TEST_CASE("A map of a bridge, and one with another cap and distance, is within 0.01 of the direct effect") {
     const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {-0.18, 0.18}), {}, {-12, 12, 0, 12}, 2);
     const MapComparison found = compare(map, 40000, 21, 10000);
     CAPTURE(found.worst);
     CHECK(found.points == 40000);
     CHECK(found.worst <= 0.01);
     CHECK(map.memory_bytes() < 64U << 20U);
-}
-
-TEST_CASE("Another cap and another distance are met as well") {
     AeroSettings settings;
     settings.max_factor = 3;
     settings.min_distance_radii = 0.2;
-    const auto effect = test::effect_in(
+    const auto effect_to_three = test::effect_in(
         {{"", Box{{4, 4, 1}}, {0, 0, -0.5}, {}}, {"", Cylinder{0.2, 2, {0, 1, 0}}, {0, 0, 1}, {}}}, 0.12, settings);
-    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 0, 2}, 1);
-    const MapComparison found = compare(map, 20000, 31);
-    CAPTURE(found.worst);
-    CHECK(found.worst <= 0.01);
+    const AeroMap map_to_three(test::layers(effect_to_three, {0}), {}, {-1, 1, 0, 2}, 1);
+    const MapComparison to_three = compare(map_to_three, 20000, 31);
+    CHECK(to_three.worst <= 0.01);
 }
 
 TEST_CASE("A map of a table with values below one and of wall distances is within 0.01 as well") {
@@ -126,7 +122,6 @@ TEST_CASE("A map of a table with values below one and of wall distances is withi
         const double x = random.uniform(-1.5, 1.5);
         least = std::min(least, found.look(1, x, random.uniform(0, 2)).value_or(1));
     }
-    CAPTURE(found.worst);
     CHECK(found.worst <= 0.01);
     CHECK(least < 0.94);
 }
@@ -156,7 +151,7 @@ TEST_CASE("Over level ground a map that is wider keeps no more values") {
     CHECK(bytes(11) - bytes(1) == cells_added * bytes_per_cell);
 }
 
-TEST_CASE("Outside its extent a map evaluates directly") {
+TEST_CASE("Outside its extent a map evaluates directly, and its borders belong to it") {
     const auto effect = effect_in(test::bridge(), 0.15);
     const PlaneOfMotion plane({0, 0, 0}, 0.2);
     const AeroMap map(test::layers(effect, {0.18}), plane, {-1, 1, 1, 2}, 1);
@@ -167,9 +162,17 @@ TEST_CASE("Outside its extent a map evaluates directly") {
         }
     }
     CHECK(map.factor(0, 0, 0.06) > 1.6);
+    const auto coarse = effect_in(test::bridge(), 0.15, 0.07);
+    const AeroMap bordered(test::layers(coarse, {0}), {}, {-1, 1, 0.06, 1}, 1);
+    for (const double x : {-1.0, std::nextafter(1.0, 0.0), 1.0}) {
+        for (const double z : {0.06, 0.2, std::nextafter(1.0, 0.0), 1.0}) {
+            CHECK(bordered.factor(0, x, z) == Approx(coarse->factor({x, 0, z})).margin(0.01));
+        }
+    }
 }
 
-TEST_CASE("A position that is not finite has the factor 1 in a map and is not flyable") {
+TEST_CASE(
+    "A position that is not finite has the factor 1 in a map and is not flyable, and without effects every one is") {
     const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {0}), {}, {-1, 1, 0, 1}, 1);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
@@ -178,24 +181,11 @@ TEST_CASE("A position that is not finite has the factor 1 in a map and is not fl
         CHECK(map.factor(0, 0.5, bad) == 1);
         CHECK(!map.is_flyable(0, bad, 0.5));
     }
-}
-
-TEST_CASE("Map borders belong to the map and stay inside its memory") {
-    const auto effect = effect_in(test::bridge(), 0.15, 0.07);
-    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 0.06, 1}, 1);
-    for (const double x : {-1.0, std::nextafter(1.0, 0.0), 1.0}) {
-        for (const double z : {0.06, 0.2, std::nextafter(1.0, 0.0), 1.0}) {
-            CHECK(map.factor(0, x, z) == Approx(effect->factor({x, 0, z})).margin(0.01));
-        }
-    }
-}
-
-TEST_CASE("With the effects disabled a map is 1 and flyable throughout") {
     AeroSettings settings;
     settings.enabled = false;
-    const AeroMap map(test::layers(test::effect_in(test::bridge(), 0.15, settings), {0}), {}, {-12, 12, 0, 12}, 1);
-    CHECK(map.factor(0, 3, 5) == 1);
-    CHECK(map.is_flyable(0, 3, 5));
+    const AeroMap free_air(test::layers(test::effect_in(test::bridge(), 0.15, settings), {0}), {}, {-12, 12, 0, 12}, 1);
+    CHECK(free_air.factor(0, 3, 5) == 1);
+    CHECK(free_air.is_flyable(0, 3, 5));
 }
 
 TEST_CASE("A map without extent, place or grid, or of too many cells, is an error") {

@@ -165,7 +165,6 @@ TEST_CASE("Whichever of a tilted block's faces lie over one chord, each counts a
         worst = std::max(worst, std::abs(effect.factors(hub).ground - test::by_rays(effect, hub, 150).ground));
         ++compared;
     }
-    CAPTURE(worst);
     CHECK(worst < 3e-3);  // of which the rays' own error is half
 }
 
@@ -210,7 +209,6 @@ TEST_CASE("Anywhere flyable among random obstacles the effect agrees with counte
             std::max({worst, std::abs(factors.ground - counted.ground), std::abs(factors.ceiling - counted.ceiling)});
         ++compared;
     }
-    CAPTURE(worst);
     CHECK(worst < 2e-3);
 }
 

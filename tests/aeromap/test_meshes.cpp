@@ -189,7 +189,6 @@ TEST_CASE("Among many triangles at random the effect agrees with counted rays") 
             ++compared;
         }
     }
-    CAPTURE(worst);
     CHECK(worst < 5e-3);
 }
 
@@ -227,28 +226,6 @@ TEST_CASE("Moving or mirroring scene and rotor together changes nothing") {
             REQUIRE(difference(reflection.factors({hub[0], -hub[1], hub[2]}), before) < allowed);
         }
     }
-}
-
-TEST_CASE("A map among meshes and octrees stays within a hundredth of the direct effect") {
-    const auto is_inside = [](const Vector3& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 0.16; };
-    const auto effect = test::effect_in(
-        {{"pipe", test::pipe_mesh(0.25, 4, 16, 4), {-1, 0, 0}, {0.1, 0, 0.2}},
-         {"ball", test::octree_of(is_inside, {-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}, 0.1), {1, 0, 0.3}, {}},
-         {"ground", test::box_mesh({20, 20, 1}), {0, 0, -2}, {}}},
-        radius);
-    const AeroMap map(test::layers(effect, {0}), {}, {-1.6, 1.5, -0.6, 1.1});
-    test::Random random(68);
-    test::MapComparison found{map};
-    int felt = 0;
-    for (int i = 0; i < 4000; ++i) {
-        const double x = random.uniform(-1.6, 1.5);
-        const double z = random.uniform(-0.6, 1.1);
-        REQUIRE(map.is_flyable(0, x, z) == effect->is_flyable({x, 0, z}));
-        felt += found.look(0, x, z).value_or(1) > 1.05;
-    }
-    CAPTURE(found.worst);
-    CHECK(found.worst < 0.01);
-    CHECK(felt > 200);
 }
 
 TEST_CASE("Rotors that may come as near as they like are forbidden where they would touch, and nowhere else") {

@@ -28,7 +28,9 @@ double ulps(double value, long double exact) {
 
 /// The worst of many samples and where it was.
 struct Worst {
-    double error_ulp = 0, at = 0, at_y = 0;
+    double error_ulp = 0;
+    double at = 0;
+    double at_y = 0;
     void add(double ulp, double x, double y = 0) {
         if (!(ulp <= error_ulp)) {
             error_ulp = ulp;
@@ -43,7 +45,8 @@ struct Worst {
 };
 
 void add_sin_cos(Worst& worst, double x) {
-    double sine = 0, cosine = 0;
+    double sine = 0;
+    double cosine = 0;
     lane::sin_cos(x, sine, cosine);
     worst.add(ulps(sine, std::sin(static_cast<long double>(x))), x);
     worst.add(ulps(cosine, std::cos(static_cast<long double>(x))), x);
@@ -84,7 +87,10 @@ TEST_CASE("Sine is odd and cosine even to the last bit") {
     int odd = 0;
     for (int i = 0; i < 100'000; ++i) {
         const double x = random.uniform(0, 1000);
-        double s1 = 0, c1 = 0, s2 = 0, c2 = 0;
+        double s1 = 0;
+        double c1 = 0;
+        double s2 = 0;
+        double c2 = 0;
         lane::sin_cos(x, s1, c1);
         lane::sin_cos(-x, s2, c2);
         odd += s1 == -s2 && c1 == c2 ? 0 : 1;

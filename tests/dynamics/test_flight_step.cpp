@@ -98,7 +98,8 @@ TEST_CASE("Ten seconds without forces keep energy, momentum and spin") {
     }
 }
 
-TEST_CASE("Without thrust the manipulator falls along the parabola of the textbook") {
+TEST_CASE(
+    "Without thrust the manipulator falls along the parabola of the textbook, with that of its weight it hovers") {
     const PlantModel model = plant_of(test_robot());
     const State state = flown(model, state_of({1, 50, 0.2, 0.7}, {0.5, 1, 0, 0}), Command{}, 0.01, 200);
     CHECK(state.q[0] == Approx(1 + 0.5 * 2));
@@ -106,19 +107,15 @@ TEST_CASE("Without thrust the manipulator falls along the parabola of the textbo
     CHECK(state.q[2] == Approx(0.2));
     CHECK(state.q[3] == Approx(0.7));
     CHECK(state.u[1] == Approx(1 - 9.80665 * 2));
-}
-
-TEST_CASE("Thrust of the weight with the arm hanging hovers") {
-    const PlantModel model = plant_of(test_robot());
     const State start = state_of({1, 2, 0, quarter_turn});
-    const State state = flown(model, start, even_command(model, weight_n, 0), 0.01, 100);
+    const State hovering = flown(model, start, even_command(model, weight_n, 0), 0.01, 100);
     for (int i = 0; i < 4; ++i) {
-        CHECK(state.q[i] == Approx(start.q[i]).margin(1e-9));
-        CHECK(state.u[i] == Approx(0).margin(1e-9));
+        CHECK(hovering.q[i] == Approx(start.q[i]).margin(1e-9));
+        CHECK(hovering.u[i] == Approx(0).margin(1e-9));
     }
 }
 
-TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
+TEST_CASE("Accelerations by hand: one front rotor that lifts more, a pitched body, a step of joint torque") {
     const PlantModel model = plant_of(test_robot());
     Command command = even_command(model, weight_n, 0);
     command.thrust_n[0] += 1;
@@ -127,27 +124,21 @@ TEST_CASE("One front rotor that lifts more raises the vehicle and its nose") {
     CHECK(rate.u[2] == Approx(-0.32 * 1 / 0.20));  // the hanging arm pulls through the centre of mass
     // Pitch and arm angle change together: the arm stays hanging.
     CHECK(rate.u[3] == Approx(0.32 * 1 / 0.20));
-}
-
-TEST_CASE("Thrust acts along the body's axis") {
-    const PlantModel model = plant_of(test_robot());
+    // Thrust acts along the body's axis.
     const double pitch = 0.4;
     const State state = state_of({0, 2, pitch, quarter_turn - pitch});
-    const Accelerations rate(model, state, even_command(model, 60, 0));
+    const Accelerations pitched(model, state, even_command(model, 60, 0));
     // Vertical pull goes through the hanging arm's centre of mass: the whole mass rises; sideways the arm swings.
-    CHECK(rate.u[1] == Approx(60 * std::cos(pitch) / 4.95 - 9.80665));
+    CHECK(pitched.u[1] == Approx(60 * std::cos(pitch) / 4.95 - 9.80665));
     const double swung_mass_kg = 4.5 + 0.45 * 0.06 / (0.06 + 0.45 * 0.72 * 0.72);
-    CHECK(rate.u[0] == Approx(60 * std::sin(pitch) / swung_mass_kg));
-    CHECK(rate.u[2] == Approx(0).margin(1e-9));
-}
-
-TEST_CASE("A step of joint torque swings the arm and pushes the vehicle the other way round") {
-    const PlantModel model = plant_of(test_robot());
-    const Accelerations rate(model, state_of({0, 2, 0, quarter_turn}), even_command(model, weight_n, 1));
+    CHECK(pitched.u[0] == Approx(60 * std::sin(pitch) / swung_mass_kg));
+    CHECK(pitched.u[2] == Approx(0).margin(1e-9));
+    // A step of joint torque swings the arm and pushes the vehicle the other way round.
+    const Accelerations swung(model, state_of({0, 2, 0, quarter_turn}), even_command(model, weight_n, 1));
     // The arm's absolute angular acceleration: torque about a joint that the vehicle's mass holds back sideways.
     const double reduced_kg = 4.5 * 0.45 / 4.95;
-    CHECK(rate.u[2] + rate.u[3] == Approx(1 / (0.06 + reduced_kg * 0.72 * 0.72)));
-    CHECK(rate.u[2] == Approx(-1 / 0.20));
+    CHECK(swung.u[2] + swung.u[3] == Approx(1 / (0.06 + reduced_kg * 0.72 * 0.72)));
+    CHECK(swung.u[2] == Approx(-1 / 0.20));
 }
 
 TEST_CASE("Allocation is the pseudo-inverse for any layout, centred or not") {
@@ -189,9 +180,7 @@ TEST_CASE("Allocation is the pseudo-inverse for any layout, centred or not") {
     }
     CHECK(wrench_error < 1e-9);
     CHECK(least_squares_error < 1e-9);
-}
-
-TEST_CASE("In a symmetric layout each rotor takes its part of the thrust and its lever's part of the torque") {
+    // In a symmetric layout each rotor takes its part of the thrust and its lever's part of the torque.
     const PlantModel model = plant_of(test_robot());
     double share[max_rotors] = {};
     dynamics::allocate(model, 40.0, 3.0, share);
@@ -215,7 +204,7 @@ TEST_CASE("A layout whose rotors share one lever cannot command thrust and torqu
     }
 }
 
-TEST_CASE("Rotors with lag follow a step of command exponentially") {
+TEST_CASE("Rotors with lag follow a step of command exponentially, those without lag at once") {
     const PlantModel model = model_with_lag(0.05);
     const Command command = even_command(model, 40, 0);
     State state = state_of({0, 100, 0, quarter_turn});
@@ -229,14 +218,11 @@ TEST_CASE("Rotors with lag follow a step of command exponentially") {
     // Velocity from thrust that builds up: integral of L / m - g.
     const double lost_s = 0.05 * (1 - std::exp(-0.5 / 0.05));
     CHECK(state.u[1] == Approx(40 / 4.95 * (0.5 - lost_s) - 9.80665 * 0.5).epsilon(1e-5));
-}
-
-TEST_CASE("Rotors without lag give the commanded thrust at once") {
-    const PlantModel model = plant_of(test_robot());
-    const Command command = even_command(model, 40, 0);
-    const State state = flown(model, state_of({0, 9, 0, quarter_turn}), command, 0.01, 1);
-    CHECK(state.thrust_n[3] == 10);
-    CHECK(state.u[1] == Approx((40 / 4.95 - 9.80665) * 0.01));
+    const PlantModel without_lag = plant_of(test_robot());
+    const Command at_once = even_command(without_lag, 40, 0);
+    const State after_a_step = flown(without_lag, state_of({0, 9, 0, quarter_turn}), at_once, 0.01, 1);
+    CHECK(after_a_step.thrust_n[3] == 10);
+    CHECK(after_a_step.u[1] == Approx((40 / 4.95 - 9.80665) * 0.01));
 }
 
 TEST_CASE("Rotor energy is the power of the commanded thrust, whatever a surface makes of it") {

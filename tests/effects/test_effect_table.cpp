@@ -208,35 +208,38 @@ TEST_CASE("A table is read from rows in any order") {
 
 TEST_CASE("Tables that cannot be used are errors with their line") {
     const std::string head = "z_over_r,factor\n";
-    CHECK(error_of("") == "t.csv: holds no table; expected a line with the names of the columns, then rows");
-    CHECK(error_of("# nothing\n") == error_of(""));
-    CHECK(error_of(head) == "t.csv:1: no rows follow; expected a table of two or more distances");
-    CHECK(error_of("#\nz_over_r;factor\n1;2\n") ==
-          "t.csv:2: expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
-    CHECK(error_of("z_over_r,factor,rpm\n1,2,3\n") ==
-          "t.csv:1: expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
-    CHECK(error_of("z_over_r,z_over_r\n") ==
-          "t.csv:1: the column 'z_over_r' stands there twice; expected the names of the columns, separated by commas");
-    CHECK(error_of(head + "1,1.2,3\n") == "t.csv:2: holds 3 cells; expected 2, one for each column of line 1");
-    CHECK(error_of(head + "1,1.2\n\n2,\n") == "t.csv:4: factor is ''; expected a number from 0 to 100");
-    CHECK(error_of(head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n") ==
-          "t.csv:2: factor is 'nan'; expected a number from 0 to 100\n"
-          "t.csv:3: factor is 'inf'; expected a number from 0 to 100\n"
-          "t.csv:4: factor is '-0.1'; expected a number from 0 to 100\n"
-          "t.csv:5: factor is '101'; expected a number from 0 to 100\n"
-          "t.csv:6: factor is '1.2x'; expected a number from 0 to 100");
-    CHECK(error_of(head + "-1,1.2\n2,1\n") == "t.csv:2: z_over_r is '-1'; expected a number from 0 to 1000");
-    CHECK(error_of(head + "\"1\",1.2\n") ==
-          "t.csv:2: holds a quotation mark; expected plain cells, separated by commas");
-    CHECK(error_of(head + "1,1.2\n1.0,1.1\n") == "t.csv: z_over_r is 1 in every row; expected two or more distances");
-    CHECK(error_of(head + "1,1.2\n2,1.1\n1.0,1.3\n") == "t.csv:4: z_over_r 1 stands in line 2 already");
-    CHECK(
-        error_of(head + "1,1.2\n1.0000001,1.1\n") ==
-        "t.csv:3: z_over_r 1.0000001 is hardly more than 1; expected steps of at least 1e-6, or the very same number");
-    CHECK(error_of("z_over_r,d_over_r,factor\n1,1,1\n1,2,1\n2,1,1\n") ==
-          "t.csv: has no row for z_over_r 2, d_over_r 2; expected one for every combination of distances");
-    CHECK(error_of("z_over_r,d_over_r,factor\n1,1,1\n2,1,1\n") ==
-          "t.csv: d_over_r is 1 in every row; expected two or more distances, or no such column");
+    const std::string with_d = "z_over_r,d_over_r,factor\n";
+    const std::string columns = "expected the columns z_over_r,factor or z_over_r,d_over_r,factor";
+    const std::string no_factor = "; expected a number from 0 to 100";
+    for (const auto& [text, error] : {
+             std::pair<std::string, std::string>{
+                 "", ": holds no table; expected a line with the names of the columns, then rows"},
+             {"# nothing\n", ": holds no table; expected a line with the names of the columns, then rows"},
+             {head, ":1: no rows follow; expected a table of two or more distances"},
+             {"#\nz_over_r;factor\n1;2\n", ":2: " + columns},
+             {"z_over_r,factor,rpm\n1,2,3\n", ":1: " + columns},
+             {"z_over_r,z_over_r\n",
+              ":1: the column 'z_over_r' stands there twice; expected the names of the columns, separated by commas"},
+             {head + "1,1.2,3\n", ":2: holds 3 cells; expected 2, one for each column of line 1"},
+             {head + "1,1.2\n\n2,\n", ":4: factor is ''" + no_factor},
+             {head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n",
+              ":2: factor is 'nan'" + no_factor + "\nt.csv:3: factor is 'inf'" + no_factor +
+                  "\nt.csv:4: factor is '-0.1'" + no_factor + "\nt.csv:5: factor is '101'" + no_factor +
+                  "\nt.csv:6: factor is '1.2x'" + no_factor},
+             {head + "-1,1.2\n2,1\n", ":2: z_over_r is '-1'; expected a number from 0 to 1000"},
+             {head + "\"1\",1.2\n", ":2: holds a quotation mark; expected plain cells, separated by commas"},
+             {head + "1,1.2\n1.0,1.1\n", ": z_over_r is 1 in every row; expected two or more distances"},
+             {head + "1,1.2\n2,1.1\n1.0,1.3\n", ":4: z_over_r 1 stands in line 2 already"},
+             {head + "1,1.2\n1.0000001,1.1\n",
+              ":3: z_over_r 1.0000001 is hardly more than 1; expected steps of at least 1e-6, or the very same "
+              "number"},
+             {with_d + "1,1,1\n1,2,1\n2,1,1\n",
+              ": has no row for z_over_r 2, d_over_r 2; expected one for every combination of distances"},
+             {with_d + "1,1,1\n2,1,1\n",
+              ": d_over_r is 1 in every row; expected two or more distances, or no such column"},
+         }) {
+        CHECK(error_of(text) == "t.csv" + error);
+    }
 }
 
 TEST_CASE("Long files are errors before they fill the memory, and not every error is told") {

@@ -83,14 +83,11 @@ TEST_CASE("Multirotor models are compared when the vehicle is known") {
     CHECK(has_model(sets[0], EffectModel::multirotor_body));
 }
 
-TEST_CASE("Where a refit is impossible only the source's numbers are compared") {
+TEST_CASE("Where a refit is impossible only the source's numbers are compared, from hundreds of sources nothing") {
     const auto sets = compare_effects(parse_measurements("z_over_r,thrust_ratio\n1,1.1\n1,1.2\n", "m.csv"));
     REQUIRE(sets.size() == 1);
     const auto is_of_he = [](const ModelScore& score) { return score.effect.model == EffectModel::he; };
     CHECK(std::count_if(sets[0].scores.begin(), sets[0].scores.end(), is_of_he) == 1);
-}
-
-TEST_CASE("Measurements from hundreds of sources are no comparison") {
     std::string text = "z_over_r,thrust_ratio,source\n";
     for (int i = 0; i < 101; ++i) {
         text += "1,1.1," + std::to_string(i) + "\n";

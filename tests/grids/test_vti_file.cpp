@@ -81,21 +81,18 @@ TEST_CASE("nodes stand where VTK puts them") {
     CHECK(foreign("turned").factor({10 + 0.2, -2 + 0.15, 0.5}) == Approx(1.125));
 }
 
-TEST_CASE("another array can be asked for") {
-    GridReading reading;
-    reading.array = "K";
-    const std::string text = with(foreign_text("ascii"), "Name=\"factor\"", "Name=\"K\"");
-    CHECK(parse_factor_grid(text, "g.vti", reading).nodes() == 6);
-    CHECK(error_of(text) == "g.vti:4:4: PointData holds no array 'factor'; it holds K");
-}
-
-TEST_CASE("a grid that another program cut out of ours stands where that program says") {
+TEST_CASE("a grid that another program cut out or named otherwise is read where and as that program says") {
     FactorGridParts parts = test::two_by_two();
     parts.frame = PlaneOfMotion({5, 0, 0}, 0);
     const std::string text = with(vti_text(FactorGrid(parts)), "Origin=\"5 0 0\"", "Origin=\"7 0 0\"");
     const FactorGrid moved = parse_factor_grid(text, "g.vti");
     CHECK(moved.factor({7.5, 0, 0}) == 1.5);
     CHECK_FALSE(moved.contains({5.5, 0, 0}));
+    GridReading reading;
+    reading.array = "K";
+    const std::string renamed = with(foreign_text("ascii"), "Name=\"factor\"", "Name=\"K\"");
+    CHECK(parse_factor_grid(renamed, "g.vti", reading).nodes() == 6);
+    CHECK(error_of(renamed) == "g.vti:4:4: PointData holds no array 'factor'; it holds K");
 }
 
 TEST_CASE("what is no image of thrust factors is an error with its place") {
@@ -180,7 +177,8 @@ TEST_CASE("no truncated file passes for a whole one") {
 
 TEST_CASE("a damaged byte is named or read, and never makes a reader crash") {
     test::Random random(5);
-    int named = 0, read = 0;
+    int named = 0;
+    int read = 0;
     for (const char* name :
          {"appended_raw", "appended_raw_zlib", "appended_base64_zlib_blocks", "binary_zlib", "turned"}) {
         const std::string text = foreign_text(name);

@@ -225,6 +225,39 @@ downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles,
     return {std::make_shared<const downwash::Scene>(std::move(obstacles)), plane, robot};
 }
 
+int contacts_of_equals(const std::vector<downwash::Obstacle>& found, const std::vector<downwash::Obstacle>& expected,
+                       Dice& dice) {
+    const downwash::RobotShape robot = dice.robot();
+    const downwash::PlaneOfMotion plane = dice.plane();
+    const downwash::CollisionChecker checker = checker_of(found, robot, plane);
+    const downwash::CollisionChecker other = checker_of(expected, robot, plane);
+    const downwash::Scene scene(found), other_scene(expected);
+    int contacts = 0;
+    for (int i = 0; i < 20; ++i) {
+        const downwash::PlanarPose pose = dice.pose();
+        const double clearance = other.clearance_m(pose);
+        CAPTURE(i);
+        REQUIRE(std::max(0.0, checker.clearance_m(pose)) == about(std::max(0.0, clearance)));
+        REQUIRE((checker.clearance_m(pose) <= 0) == (clearance <= 0));
+        REQUIRE(checker.is_nearer_than(pose, 0) == (clearance <= 0));
+        if (std::abs(clearance - 0.3) > 1e-8) {
+            REQUIRE(checker.is_nearer_than(pose, 0.3) == (clearance < 0.3));
+        }
+        contacts += clearance <= 0 ? 1 : 0;
+
+        const Vector3 hub = dice.vector(-2, 2);
+        const double radius = dice.between(0.05, 0.5);
+        const double distance = disc_clearance_m(other_scene, hub, radius);
+        REQUIRE(disc_clearance_m(scene, hub, radius) == about(distance));
+        if (std::abs(distance - 0.2) > 1e-8) {
+            REQUIRE(disc_is_clear(scene, hub, radius, 0.2) == (distance >= 0.2));
+        }
+        REQUIRE(horizontal_clearance_m(scene, hub) ==
+                Approx(horizontal_clearance_m(other_scene, hub)).epsilon(0).margin(1e-5));
+    }
+    return contacts;
+}
+
 downwash::Primitive Dice::shape(double least_m, double most_m) {
     const auto length = [&] { return between(least_m, most_m); };
     const double kind = between(0, 3);

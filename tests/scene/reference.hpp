@@ -62,6 +62,13 @@ Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash:
 downwash::CollisionChecker checker_of(std::vector<downwash::Obstacle> obstacles, const downwash::RobotShape& robot,
                                       const downwash::PlaneOfMotion& plane = {});
 
+class Dice;
+
+/// Requires that two scenes are as near to a robot, to a disc and, at one height, to a point, at twenty places.
+/// @return at how many of them the robot is in contact
+int contacts_of_equals(const std::vector<downwash::Obstacle>& found, const std::vector<downwash::Obstacle>& expected,
+                       Dice& dice);
+
 /// Draws scenes, robots, planes and poses.
 class Dice {
  public:

@@ -81,27 +81,23 @@ TEST_CASE("The same triangles come from binary STL, ASCII STL and OBJ") {
     CHECK(triangles_of(parse_mesh(binary_stl(triangles), "a.stl")) == triangles);
     CHECK(triangles_of(parse_mesh(ascii_stl(triangles), "a.stl")) == triangles);
     CHECK(triangles_of(parse_mesh(obj(triangles), "a.obj")) == triangles);
+    // A binary STL file is told by its size, even when it begins with solid.
+    const auto box = box_triangles({0, 0, 0}, {1, 2, 3});
+    CHECK(triangles_of(parse_mesh(binary_stl(box, "solid box"), "a.STL")) == box);
 }
 
-TEST_CASE("A binary STL file is told by its size, even when it begins with solid") {
-    const auto triangles = box_triangles({0, 0, 0}, {1, 2, 3});
-    CHECK(triangles_of(parse_mesh(binary_stl(triangles, "solid box"), "a.STL")) == triangles);
-}
-
-TEST_CASE("ASCII STL may hold several solids, upper case and CRLF") {
+TEST_CASE(
+    "ASCII STL may hold several solids, upper case and CRLF, OBJ texture, normals, polygons and corners counted back") {
     std::string text;
     for (const char c : std::string(ascii_triangle) + std::string(ascii_triangle)) {
         text += c == '\n' ? "\r\n" : std::string(1, static_cast<char>(std::toupper(c)));
     }
     const Triangle triangle{Vector3{0, 0, 0}, {1, 0, 0}, {0, 1, 2.5}};
     CHECK(triangles_of(parse_mesh(text, "a.stl")) == std::vector<Triangle>{triangle, triangle});
-}
-
-TEST_CASE("OBJ corners may name texture and normals, count backwards, and make polygons") {
-    const std::string text =
+    const std::string polygons =
         "# a pentagon\nmtllib a.mtl\no part\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .5 .5 .5\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
         "usemtl steel\ns off\nf 1/1 2//1 3/1/1 -1/-1/-1\nv 0 0 5\n  f +1 2 -1\n";
-    const TriangleMesh mesh = parse_mesh(text, "a.obj");
+    const TriangleMesh mesh = parse_mesh(polygons, "a.obj");
     CHECK(mesh.vertices_m == std::vector<Vector3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 5}});
     CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}});
 }

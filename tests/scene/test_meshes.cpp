@@ -186,34 +186,8 @@ TEST_CASE("A box of triangles is as near as the same box as a primitive, from ou
         const Obstacle box{"", Box{dice.vector(0.1, 3)}, dice.vector(-1, 1), dice.vector(-4, 4)};
         Obstacle mesh = box;
         mesh.shape = box_mesh(std::get<Box>(box.shape).size_m);
-        const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = dice.plane();
-        const CollisionChecker expected = checker_of({box}, robot, plane);
-        const CollisionChecker found = checker_of({mesh}, robot, plane);
-        const Scene box_scene({box});
-        const Scene mesh_scene({mesh});
-        for (int i = 0; i < 20; ++i) {
-            const PlanarPose pose = dice.pose();
-            CAPTURE(round, i);
-            const double clearance = expected.clearance_m(pose);
-            REQUIRE(std::max(0.0, found.clearance_m(pose)) == about(std::max(0.0, clearance)));
-            REQUIRE((found.clearance_m(pose) <= 0) == (clearance <= 0));
-            REQUIRE(found.is_nearer_than(pose, 0) == (clearance <= 0));
-            if (std::abs(clearance - 0.3) > 1e-8) {
-                REQUIRE(found.is_nearer_than(pose, 0.3) == (clearance < 0.3));
-            }
-            inside += clearance <= 0;
-
-            const Vector3 hub = dice.vector(-2, 2);
-            const double radius = dice.between(0.05, 0.5);
-            const double distance = disc_clearance_m(box_scene, hub, radius);
-            REQUIRE(disc_clearance_m(mesh_scene, hub, radius) == about(distance));
-            if (std::abs(distance - 0.2) > 1e-8) {
-                REQUIRE(disc_is_clear(mesh_scene, hub, radius, 0.2) == (distance >= 0.2));
-            }
-            REQUIRE(horizontal_clearance_m(mesh_scene, hub) ==
-                    Approx(horizontal_clearance_m(box_scene, hub)).epsilon(0).margin(1e-5));
-        }
+        CAPTURE(round);
+        inside += reference::contacts_of_equals({mesh}, {box}, dice);
     }
     CHECK(inside > 500);
 }

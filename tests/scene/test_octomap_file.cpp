@@ -86,11 +86,18 @@ void fill(octomap::OcTree& tree, Random& random) {
 
 }  // namespace
 
-TEST_CASE("Two bits for each child: free, occupied, or a node that follows") {
+TEST_CASE("Two bits for each child, out to voxels in the outermost corners") {
     const OccupancyTree tree = parse_octomap(sound(), "a.bt");
     CHECK(tree.resolution_m == 0.5);
     // The lowest eighth of 65536 cells of half a metre.
     CHECK(cubes_of(tree) == Cubes{{16384, -8192, -8192, -8192}});
+    octomap::OcTree corners(0.25);
+    corners.updateNode(octomap::OcTreeKey(0, 0, 0), true);
+    corners.updateNode(octomap::OcTreeKey(65535, 65535, 65535), true);
+    std::stringstream stream;
+    corners.writeBinary(stream);
+    CHECK(cubes_of(parse_octomap(stream.str(), "a.bt")) ==
+          Cubes{{0.25, -8191.875, -8191.875, -8191.875}, {0.25, 8191.875, 8191.875, 8191.875}});
 }
 
 TEST_CASE("What OctoMap writes is read as OctoMap holds it") {
@@ -116,54 +123,37 @@ TEST_CASE("What OctoMap writes is read as OctoMap holds it") {
     }
 }
 
-TEST_CASE("Voxels in the outermost corners are where OctoMap has them") {
-    octomap::OcTree tree(0.25);
-    tree.updateNode(octomap::OcTreeKey(0, 0, 0), true);
-    tree.updateNode(octomap::OcTreeKey(65535, 65535, 65535), true);
-    std::stringstream stream;
-    tree.writeBinary(stream);
-    CHECK(cubes_of(parse_octomap(stream.str(), "a.bt")) ==
-          Cubes{{0.25, -8191.875, -8191.875, -8191.875}, {0.25, 8191.875, 8191.875, 8191.875}});
-}
-
 TEST_CASE("Wrong octree headers are errors with their line") {
     REQUIRE(said_of(sound()) == "none");
-    CHECK(said_of("") == "'a.bt' line 1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
-    CHECK(said_of("solid\n") ==
-          "'a.bt' line 1: found 'solid', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'");
-    CHECK(said_of(with("id OcTree", "id ColorOcTree")) ==
-          "'a.bt' line 3: a tree of kind 'ColorOcTree': expected OcTree");
-    CHECK(said_of(with("id OcTree\n", "")) == "'a.bt' line 5: the header ends: expected a line 'id' before it");
-    CHECK(said_of(with("size 4", "size -4")) == "'a.bt' line 4: found '-4', expected the number of nodes");
-    CHECK(said_of(with("res 0.5", "res 0")) == "'a.bt' line 5: found '0', expected a resolution from 0.0001 to 30 m");
-    CHECK(said_of(with("res 0.5", "res nan")) ==
-          "'a.bt' line 5: found 'nan', expected a resolution from 0.0001 to 30 m");
-    CHECK(said_of(with("res 0.5", "res 31")) == "'a.bt' line 5: found '31', expected a resolution from 0.0001 to 30 m");
-    CHECK(said_of(with("res 0.5", "size 4")) ==
-          "'a.bt' line 5: found 'size', expected id, size and res once each, then 'data'");
-    CHECK(said_of(with("res 0.5", "res 0.5 m")) ==
-          "'a.bt' line 5: found 3 words, expected a key and its value, or 'data'");
-    CHECK(said_of(sound().substr(0, sound().find("data"))) ==
-          "'a.bt' line 5: the header ends here: expected a line 'data' of its own");
+    for (const auto& [bytes, said] : {
+             std::pair<std::string, std::string>{
+                 "", "1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'"},
+             {"solid\n", "1: found 'solid', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'"},
+             {with("id OcTree", "id ColorOcTree"), "3: a tree of kind 'ColorOcTree': expected OcTree"},
+             {with("id OcTree\n", ""), "5: the header ends: expected a line 'id' before it"},
+             {with("size 4", "size -4"), "4: found '-4', expected the number of nodes"},
+             {with("res 0.5", "res 0"), "5: found '0', expected a resolution from 0.0001 to 30 m"},
+             {with("res 0.5", "res nan"), "5: found 'nan', expected a resolution from 0.0001 to 30 m"},
+             {with("res 0.5", "res 31"), "5: found '31', expected a resolution from 0.0001 to 30 m"},
+             {with("res 0.5", "size 4"), "5: found 'size', expected id, size and res once each, then 'data'"},
+             {with("res 0.5", "res 0.5 m"), "5: found 3 words, expected a key and its value, or 'data'"},
+             {sound().substr(0, sound().find("data")), "5: the header ends here: expected a line 'data' of its own"},
+         }) {
+        CHECK(said_of(bytes) == "'a.bt' line " + said);
+    }
 }
 
 TEST_CASE("Wrong streams of nodes are errors with their byte") {
     const std::size_t data = header.size();
-    const std::string at = "'a.bt' byte ";
-    CHECK(said_of(header + nodes) ==
-          at + std::to_string(data + 4) + ": one node more than 3: expected as many as the header's size");
-    CHECK(said_of(with("size 4", "size 5")) ==
-          at + std::to_string(data + 4) + ": the nodes end after 4: expected 5 as the header's size says");
-    CHECK(said_of(sound() + "x") ==
-          at + std::to_string(data + 4) + ": the file goes on after its last node: expected its end");
-    CHECK(said_of(sound().substr(0, data + 3)) ==
-          at + std::to_string(data + 3) + ": the file ends after 3 of 4 nodes: expected all of them");
+    const auto at = [data](std::size_t node) { return "'a.bt' byte " + std::to_string(data + node) + ": "; };
+    CHECK(said_of(header + nodes) == at(4) + "one node more than 3: expected as many as the header's size");
+    CHECK(said_of(with("size 4", "size 5")) == at(4) + "the nodes end after 4: expected 5 as the header's size says");
+    CHECK(said_of(sound() + "x") == at(4) + "the file goes on after its last node: expected its end");
+    CHECK(said_of(sound().substr(0, data + 3)) == at(3) + "the file ends after 3 of 4 nodes: expected all of them");
     CHECK(said_of(with("size 4", "size 18446744073709551615").substr(0, data + 22)) ==
-          at + std::to_string(data + 22) +
-              ": the file ends after 3 of 18446744073709551615 nodes: expected all of them");
+          at(22) + "the file ends after 3 of 18446744073709551615 nodes: expected all of them");
     CHECK(said_of(with(nodes, std::string("\x02\xc0\x00\x00", 4))) ==
-          at + std::to_string(data + 2) +
-              ": a node without children among the inner nodes: expected at least one child");
+          at(2) + "a node without children among the inner nodes: expected at least one child");
     CHECK(said_of(with("size 4", "size 2").substr(0, data) + std::string("\x01\x00", 2)) ==
           "'a.bt' has no occupied leaf: expected at least one");
     // Sixteen levels end at the resolution; there is nothing below.
@@ -171,7 +161,7 @@ TEST_CASE("Wrong streams of nodes are errors with their byte") {
     for (int i = 0; i < 20; ++i) {
         deep += std::string("\x03\x00", 2);
     }
-    CHECK(said_of(deep) == at + std::to_string(data + 33) + ": a node below level 16: expected no more levels");
+    CHECK(said_of(deep) == at(33) + "a node below level 16: expected no more levels");
 }
 
 TEST_CASE("Probabilities that are none are errors, as are those of the other byte order") {

@@ -109,28 +109,18 @@ TEST_CASE("Boxes fill exactly what the cubes fill") {
 
 TEST_CASE("An octree is as near as all of its cubes one by one") {
     reference::Dice dice(42);
-    int apart = 0;
+    int contacts = 0;
     for (int round = 0; round < 60; ++round) {
         const OccupancyTree tree = some_tree(dice);
         const Obstacle octree{"", octomap_of(tree), dice.vector(-1, 1), dice.coin() ? Vector3{} : dice.vector(-4, 4)};
         const std::vector<Obstacle> cubes = cubes_of(tree, octree);
-        const Scene scene({octree});
-        const Scene expected_scene(cubes);
-        const RobotShape robot = dice.robot();
-        const PlaneOfMotion plane = dice.plane();
-        const CollisionChecker found = reference::checker_of({octree}, robot, plane);
-        const CollisionChecker expected = reference::checker_of(cubes, robot, plane);
+        CAPTURE(round);
+        contacts += reference::contacts_of_equals({octree}, cubes, dice);
+        const Scene scene({octree}), expected(cubes);
         for (int i = 0; i < 20; ++i) {
-            const PlanarPose pose = dice.pose();
-            const double clearance = std::max(0.0, expected.clearance_m(pose));
-            CAPTURE(round, i);
-            REQUIRE(std::max(0.0, found.clearance_m(pose)) == reference::about(clearance));
-            REQUIRE(found.is_nearer_than(pose, 0) == (clearance == 0));
-            apart += clearance > 0;
             const Vector3 p = dice.vector(-2, 2);
-            REQUIRE(disc_clearance_m(scene, p, 0.2) == reference::about(disc_clearance_m(expected_scene, p, 0.2)));
-            REQUIRE(highest_at(scene, p) == reference::about(highest_at(expected_scene, p)));
+            REQUIRE(highest_at(scene, p) == reference::about(highest_at(expected, p)));
         }
     }
-    CHECK(apart > 200);
+    CHECK(contacts < 1000);
 }

@@ -2,8 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "../support/test_problem.hpp"
-#include "downwash/planner/solve.hpp"
+#include "../support/flight_fixture.hpp"
 #include "downwash/search/plan_refiner.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -12,15 +11,10 @@ using namespace downwash;
 namespace {
 
 /// The ceiling problem and a plan for it that stops at every corner of a detour.
-struct Fixture {
+struct Fixture : test::FlightFixture {
     explicit Fixture(std::uint32_t seed = 4) : random(seed) {}
 
-    Problem problem = test::ceiling_problem();
-    std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
     planning::Random random;
-    planning::SearchTask task{problem, *model, map.get()};
-    planning::PlannedFlights flights{task};
     planning::PlanRefiner refiner{planning::start_point(task), flights, random};
 
     [[nodiscard]] Plan stop_and_go() const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstring>
+#include <vector>
+
 #include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
@@ -39,6 +42,27 @@ inline FlightRules rules_of(const Problem& problem) {
     rules.bounds = problem.bounds;
     rules.margin_m = problem.planner.safety_margin_m;
     return rules;
+}
+
+/// The same flights one after the other, tick by tick.
+inline void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
+                           std::vector<FlightJob>& jobs) {
+    for (FlightJob& job : jobs) {
+        FlightState state = job.start;
+        for (FlightLeg& leg : job.legs) {
+            leg.flight = fly(model, map, rules, leg.segment, state);
+            leg.end = state;
+            if (leg.flight.rejection != Rejection::none) {
+                break;
+            }
+        }
+    }
+}
+
+inline bool is_same(const FlightLeg& a, const FlightLeg& b) {
+    return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
+           a.flight.length_m == b.flight.length_m && a.flight.clearance_integral == b.flight.clearance_integral &&
+           std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
 }
 
 }  // namespace downwash::test

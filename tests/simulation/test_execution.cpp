@@ -39,6 +39,12 @@ TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, ho
     }
     CHECK(e.energy_j == Approx(integral_j).epsilon(1e-4));
     CHECK(e.rows.back().energy_j == e.energy_j);
+    // Without obstacles the clearance is infinite and nothing collides.
+    Problem open = test::with_place(2, 2.5);
+    open.obstacles.clear();
+    const Execution free = flown(open, from_start(open, {2, 2.5, 1}, 1300));
+    CHECK(free.outcome == Outcome::ok);
+    CHECK(free.min_clearance_m == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("a reference through a wall ends in a collision, or before it where a rotor disc leaves the flyable area") {
@@ -93,14 +99,6 @@ TEST_CASE("surfaces save energy where the vehicle can hold near them") {
     const Execution out_of_effect = flown(problem, hover, false);
     REQUIRE(in_effect.outcome == Outcome::ok);
     CHECK(in_effect.energy_j < out_of_effect.energy_j);
-}
-
-TEST_CASE("without obstacles the clearance is infinite and nothing collides") {
-    Problem problem = test::with_place(2, 2.5);
-    problem.obstacles.clear();
-    const Execution e = flown(problem, from_start(problem, {2, 2.5, 1}, 1300));
-    CHECK(e.outcome == Outcome::ok);
-    CHECK(e.min_clearance_m == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("the flight through the map stays beside the flight with direct aerodynamics") {

@@ -70,7 +70,7 @@ TEST_CASE("far from everything a vehicle feels no surface") {
     CHECK(std::abs(slopes.torque_nm_rad) < 1e-9);
 }
 
-TEST_CASE("two rotors of four over a plate carry more and push the nose up") {
+TEST_CASE("two rotors of four over a plate carry more and push the nose up, under a ceiling pull up their side") {
     // The plate ends below the centre of mass; the front rotors' discs lie over it one radius high, the others beside
     // it.
     const auto model = model_among({test::box("plate", {4, 4, 1}, {2, 0, 0.5})});
@@ -79,14 +79,11 @@ TEST_CASE("two rotors of four over a plate carry more and push the nose up") {
     CHECK(effect.force_factor == Approx(31.0 / 30).epsilon(1e-9));
     CHECK(effect.pitch_torque_nm == Approx(-reach_m * weight_n / 2 / 15).epsilon(1e-9));  // -0.518 Nm
     CHECK(effect.pitch_torque_factor == Approx(-reach_m / 30 / radius_m).epsilon(1e-9));
-}
-
-TEST_CASE("a ceiling over the front rotors alone pulls the nose up, one over the rear rotors the tail") {
     const double z_m = 2 - 1.5 * radius_m - hub_height_m;
     const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * radius_m).value - 1);
     for (const double side : {1.0, -1.0}) {
-        const auto model = model_among({test::box("slab", {4, 4, 1}, {2 * side, 0, 2.5})});
-        CHECK(vehicle_effect(*model, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-side * torque_nm).epsilon(1e-9));
+        const auto below = model_among({test::box("slab", {4, 4, 1}, {2 * side, 0, 2.5})});
+        CHECK(vehicle_effect(*below, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-side * torque_nm).epsilon(1e-9));
     }
 }
 
