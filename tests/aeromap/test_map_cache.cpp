@@ -50,8 +50,8 @@ struct Making {
         edit(parts);
         settings.map = std::make_shared<const FactorGrid>(parts);
     }
-    void give_flags(const std::vector<double>& flags) {
-        give_map([&flags](FactorGridParts& parts) { parts.fields.push_back({"flyable", flags}); });
+    void give_last_flag(double flag) {
+        give_map([flag](FactorGridParts& parts) { parts.fields.push_back({"flyable", {1, 1, 1, flag}}); });
     }
     void give_box(double side_m) { obstacles[0].shape = Box{{side_m, side_m, side_m}}; }
     void place(double lateral_m, double heading_rad) { plane = PlaneOfMotion({0, lateral_m, 0}, heading_rad); }
@@ -176,14 +176,8 @@ TEST_CASE("whatever makes a map is part of its key") {
         {"given map", [](Making& m) { m.give_map([](FactorGridParts&) {}); }},
         {"given value", [](Making& m) { m.give_map([](FactorGridParts& p) { p.fields[0].values[3] = 23; }); }},
         {"given place", [](Making& m) { m.give_map([](FactorGridParts& p) { p.x.high_m = 1.5; }); }},
-        {"given flyable area",
-         [](Making& m) {
-             m.give_flags({1, 1, 1, 1});
-         }},
-        {"given flag",
-         [](Making& m) {
-             m.give_flags({1, 1, 1, 0});
-         }},
+        {"given flyable area", [](Making& m) { m.give_last_flag(1); }},
+        {"given flag", [](Making& m) { m.give_last_flag(0); }},
         {"mesh", [](Making& m) { m.give_mesh(1); }},
         {"mesh scale", [](Making& m) { m.give_mesh(1, 2); }},
         {"mesh vertices", [](Making& m) { m.give_mesh(1.1); }},
@@ -196,9 +190,7 @@ TEST_CASE("whatever makes a map is part of its key") {
         INFO(name << " has the key of " << known->second);
         CHECK(is_new);
     }
-}
-
-TEST_CASE("names of obstacles and files are no part of the key") {
+    // Names of obstacles and files are no part of it.
     Making one, other;
     one.give_mesh(1, 1, "a.stl");
     other.give_mesh(1, 1, "b.stl");
@@ -250,7 +242,7 @@ TEST_CASE("a damaged, cut, foreign or misnamed file of the cache is not trusted"
     CHECK(making.find(cache) != nullptr);
 }
 
-TEST_CASE("bytes that would lead a look-up astray are no map") {
+TEST_CASE("bytes that would lead a look-up astray, or that the effects no longer give, are no map") {
     const Making making = Making::small();
     const AeroMap built = making.build();
     const std::string good = built.to_bytes();
@@ -269,6 +261,9 @@ TEST_CASE("bytes that would lead a look-up astray are no map") {
     std::string no_number = good;
     no_number.replace(no_number.size() - 4, 4, "\xff\xff\xff\xff");
     CHECK_FALSE(making.is_map(no_number));
+    Making changed = making;
+    changed.settings.ground = EffectModel::he;  // as if the code of the model had changed
+    CHECK_FALSE(changed.is_map(good));
 }
 
 TEST_CASE("layers of equal values are kept once, and only such layers") {
@@ -294,13 +289,6 @@ TEST_CASE("layers of equal values are kept once, and only such layers") {
     making.laterals_m = {-0.2, 0.2};
     REQUIRE_FALSE(making.build().are_equal(0, 1));
     CHECK_FALSE(making.is_map(count(2) + alone.substr(sizeof(std::uint64_t)) + count(0)));
-}
-
-TEST_CASE("values that the effects no longer give are no map") {
-    Making making = Making::small();
-    const std::string bytes = making.build().to_bytes();
-    making.settings.ground = EffectModel::he;  // as if the code of the model had changed
-    CHECK_FALSE(making.is_map(bytes));
 }
 
 TEST_CASE("a cache holds 32 maps, the last used ones") {

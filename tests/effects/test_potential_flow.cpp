@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <random>
 
+#include "../support/random.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/effects/potential_flow.hpp"
 
@@ -22,11 +22,10 @@ double slope(const Vector3& at, double height, std::size_t component, std::size_
 }  // namespace
 
 TEST_CASE("away from the two sources the potential flow has neither divergence nor curl") {
-    std::mt19937 generator(11);
-    std::uniform_real_distribution<double> coordinate(-3, 3), height_radii(0.3, 3);
+    test::Random random(11);
     for (int i = 0; i < 200; ++i) {
-        const double height = height_radii(generator);
-        const Vector3 at{coordinate(generator), coordinate(generator), coordinate(generator)};
+        const double height = random.uniform(0.3, 3);
+        const Vector3 at{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
         const double nearest =
             std::min(std::hypot(at[0], at[1], at[2] - height), std::hypot(at[0], at[1], at[2] + height));
         if (nearest < 0.5) {

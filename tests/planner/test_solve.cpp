@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <functional>
 #include <stop_token>
 #include <vector>
@@ -45,27 +44,6 @@ std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obs
 }
 
 }  // namespace
-
-TEST_CASE("each variant solves an easy problem with a plan from where the vehicle is to the goal") {
-    for (const Variant variant : variants) {
-        CAPTURE(name_of(variant));
-        const Problem problem = with(variant, 1500, 1500);
-        const Solution solution = solve(problem);
-        REQUIRE(solution.status == Status::solved);
-        REQUIRE(solution.plan);
-        REQUIRE(solution.execution);
-        CHECK(solution.plan->first().x_m == problem.start.x_m);
-        CHECK(solution.plan->first().z_m == problem.start.z_m);
-        CHECK(solution.plan->reference.front().tick == 0);
-        // The tip of the arm of 1.2 m, at the goal's tolerance of 0.05 m at most.
-        const Configuration end = solution.plan->last();
-        CHECK(std::hypot(end.x_m + 1.2 * std::cos(end.arm_rad) - 3, end.z_m - 1.2 * std::sin(end.arm_rad) - 4.8) <=
-              problem.goal.end_effector->tolerance_m);
-        CHECK(solution.cost > 0);
-        CHECK(solution.planning.first_solution_wall_s);
-        CHECK(solution.planning.iterations <= 1500);
-    }
-}
 
 TEST_CASE("an aerodynamics-aware plan is reported only with a flight that held at the goal under direct aerodynamics") {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -142,6 +120,7 @@ TEST_CASE("improvements only ever get cheaper and the last one is the plan's cos
             REQUIRE(solution.status == Status::solved);
             const auto& improvements = solution.planning.improvements;
             REQUIRE(!improvements.empty());
+            CHECK(test::tip_error_m(problem, solution.plan->last()) <= problem.goal.end_effector->tolerance_m);
             for (std::size_t i = 1; i < improvements.size(); ++i) {
                 CHECK(improvements[i].cost <= improvements[i - 1].cost);
                 if (variant == Variant::mp_arm_ada) {
@@ -233,14 +212,6 @@ TEST_CASE("the time limit is heeded within a long flight") {
     CHECK(solve(problem).planning.wall_s < 1.5);
 }
 
-TEST_CASE("the search may end with the first accepted plan") {
-    SolveOptions options;
-    options.stop_at_first_solution = true;
-    const Solution solution = solve(with(Variant::mp_arm_ada), options);
-    CHECK(solution.status == Status::solved);
-    CHECK(solution.planning.improvements.size() == 1);
-}
-
 TEST_CASE("without surface effects the aware planner is the dynamics-aware one") {
     Problem problem = with(Variant::mp_arm_ada);
     problem.aero.enabled = false;
@@ -253,19 +224,6 @@ TEST_CASE("without surface effects the aware planner is the dynamics-aware one")
     CHECK_FALSE(aware.execution->aero);
     CHECK(aware.planning.edges_simulated == dynamic.planning.edges_simulated);
     CHECK(test::same_bytes(*aware.plan, *dynamic.plan));
-}
-
-TEST_CASE("a start that already meets the goal is solved by holding there") {
-    Problem problem = with(Variant::mp_arm_ada);
-    problem.start.x_m = 3 - 0.6;
-    problem.start.z_m = 4.8 - 1.2 * std::sin(1.0471975511965976);
-    problem.start.arm_rad = -1.0471975511965976;
-    problem.planner.max_iterations = 1;
-    const Solution solution = solve(problem);
-    REQUIRE(solution.status == Status::solved);
-    CHECK(solution.plan->reference.size() == 1);
-    CHECK(solution.execution->outcome == Outcome::ok);
-    CHECK(solution.execution->duration_s == Approx(problem.goal.hold_s));
 }
 
 TEST_CASE("a flight may begin in motion") {

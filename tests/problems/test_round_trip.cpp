@@ -1,8 +1,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <random>
 
+#include "../support/random.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
@@ -16,7 +16,7 @@ namespace {
 /// Draws sound problems with numbers of many digits.
 class ProblemMaker {
  public:
-    explicit ProblemMaker(std::uint64_t seed) : engine_(seed) {}
+    explicit ProblemMaker(std::uint64_t seed) : random_(seed) {}
 
     /// A sound problem with what may be varied without making it impossible varied a little.
     Problem varied(Problem problem) {
@@ -75,8 +75,9 @@ class ProblemMaker {
         if (coin()) {
             problem.planner.objective.weight(Objective::energy) = uniform();
         }
-        problem.planner.seed = static_cast<std::uint32_t>(engine_());
-        problem.planner.max_iterations = coin() ? std::optional<std::uint64_t>{} : 1 + engine_() % 1000000;
+        problem.planner.seed = static_cast<std::uint32_t>(random_.uniform(0, 0x1p32));
+        problem.planner.max_iterations =
+            coin() ? std::optional<std::uint64_t>{} : static_cast<std::uint64_t>(random_.integer(1, 1000000));
         problem.aero.ceiling = coin() ? EffectModel::sanchez_cuevas : EffectModel::none;
         if (problem.aero.ceiling.model == EffectModel::sanchez_cuevas) {
             problem.aero.ceiling.parameters[0] = 1 + uniform();
@@ -86,10 +87,10 @@ class ProblemMaker {
     }
 
  private:
-    double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-    bool coin() { return engine_() % 2 == 0; }
+    double uniform() { return random_.uniform(0, 1); }
+    bool coin() { return random_.integer(0, 1) == 0; }
 
-    std::mt19937_64 engine_;
+    Random random_;
 };
 
 /// A value down to its bits.

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <random>
 
+#include "../support/random.hpp"
 #include "downwash/report/color_scale.hpp"
 
 using namespace downwash;
@@ -76,11 +76,10 @@ TEST_CASE("equal classes have round limits that hold the range") {
     CHECK(linear_scale("v", 0, 1).limits.size() == 11);
     CHECK(linear_scale("v", 0.03, 0.97).limits.front() == Approx(0.0).margin(1e-12));
     CHECK(linear_scale("v", 0.03, 0.97).limits.back() == Approx(1));
-    std::mt19937 generator(5);
-    std::uniform_real_distribution<double> exponent(-6, 6), place(-1, 1);
+    test::Random random(5);
     for (int i = 0; i < 200; ++i) {
-        const double low = place(generator) * std::pow(10, exponent(generator));
-        const double high = low + std::pow(10, exponent(generator));
+        const double low = random.uniform(-1, 1) * std::pow(10, random.uniform(-6, 6));
+        const double high = low + std::pow(10, random.uniform(-6, 6));
         const ColorScale scale = linear_scale("v", low, high);
         check_is_sound(scale);
         const double step = scale.limits[1] - scale.limits[0];

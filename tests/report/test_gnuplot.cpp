@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -34,14 +33,11 @@ class Environment {
 
 }  // namespace
 
-TEST_CASE("gnuplot answers on its standard output, and its settings are not the user's") {
+TEST_CASE("gnuplot answers on its standard output without the settings of the user, or its package is named") {
     const ScratchFolder home;
     std::ofstream(home / ".gnuplot") << "print 'settings of the user'\nset print '-'\nprint 'again'\n";
     const Environment user("HOME", home.path().c_str());
     CHECK(run_gnuplot("set print '-'\nprint 6 * 7\n") == "42\n");
-}
-
-TEST_CASE("without gnuplot the message names the package to install") {
     const ScratchFolder empty;
     const Environment path("PATH", empty.path().c_str());
     CHECK_THROWS_WITH(run_gnuplot("print 1"), Contains("gnuplot-nox") && Contains("PATH does not contain it"));

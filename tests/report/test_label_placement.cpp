@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <random>
 
+#include "../support/random.hpp"
 #include "downwash/report/label_placement.hpp"
 
 using namespace downwash;
@@ -59,16 +59,15 @@ TEST_CASE("a name avoids colours that it would hide, and says with a line what i
 }
 
 TEST_CASE("names never overlap and stay within the area, however many there are") {
-    std::mt19937 generator(7);
-    std::uniform_real_distribution<double> x(0, 1000), y(0, 600), size(2, 120);
+    test::Random random(7);
+    const auto size = [&random] { return random.uniform(2, 120); };
     for (int round = 0; round < 10; ++round) {
         std::vector<NamedShape> shapes;
         for (int i = 0; i < 25; ++i) {
-            const double left = x(generator), bottom = y(generator);
-            shapes.push_back({"name",
-                              30 + size(generator),
-                              i % 3 != 0,
-                              {rectangle(left, left + size(generator), bottom, bottom + size(generator))}});
+            const double left = random.uniform(0, 1000);
+            const double bottom = random.uniform(0, 600);
+            const std::vector<PixelPoint> outline = rectangle(left, left + size(), bottom, bottom + size());
+            shapes.push_back({"name", 30 + size(), i % 3 != 0, {outline}});
         }
         const auto labels = place_labels(shapes, area, height, plain);
         CHECK(labels.size() > 15);

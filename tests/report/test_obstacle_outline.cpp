@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
-#include <random>
 
 #include "../support/meshes.hpp"
+#include "../support/random.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "pictures.hpp"
 
@@ -77,14 +77,13 @@ TEST_CASE("what the plane misses is projected") {
 }
 
 TEST_CASE("cross sections move with scene and plane") {
-    std::mt19937 generator(3);
-    std::uniform_real_distribution<double> coordinate(-3, 3), angle(-3, 3);
+    test::Random random(3);
     for (int i = 0; i < 50; ++i) {
-        const Vector3 center{coordinate(generator), 0.1 * coordinate(generator), coordinate(generator)};
-        const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
+        const Vector3 center{random.uniform(-3, 3), random.uniform(-0.3, 0.3), random.uniform(-3, 3)};
+        const Vector3 rpy{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
         const std::vector<Shape> shapes{Box{{1, 2, 3}}, Cylinder{0.7, 2, {1, 2, 3}}};
         const Shape& shape = shapes[static_cast<std::size_t>(i % 2)];
-        const PlaneOfMotion moved({5, -7, 2}, angle(generator));
+        const PlaneOfMotion moved({5, -7, 2}, random.uniform(-3, 3));
         const ObstacleOutline here = outline_of(shape, center, rpy);
         const Vector3 there_m = moved.to_world(center[0], center[1], center[2]);
         const ObstacleOutline there = outline_of(shape, there_m, {rpy[0], rpy[1], rpy[2] + moved.heading_rad()}, moved);
@@ -94,10 +93,9 @@ TEST_CASE("cross sections move with scene and plane") {
 }
 
 TEST_CASE("a mesh of a box has the box's cross section, whatever the pose") {
-    std::mt19937 generator(4);
-    std::uniform_real_distribution<double> angle(-3, 3);
+    test::Random random(4);
     for (int i = 0; i < 50; ++i) {
-        const Vector3 rpy{angle(generator), angle(generator), angle(generator)};
+        const Vector3 rpy{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
         const ObstacleOutline outline = outline_of(box_mesh({1, 2, 3}), {0.1, 0.2, 0.3}, rpy);
         REQUIRE(outline.rings.size() == 1);
         CHECK(outline.lines.empty());
@@ -119,7 +117,7 @@ TEST_CASE("corners that a mesh repeats for each triangle are one, and cavities r
     }
 }
 
-TEST_CASE("a sheet is cut in an open line") {
+TEST_CASE("a sheet is cut in an open line, an octree cube by cube") {
     const ObstacleOutline outline =
         outline_of(test::mesh_of({{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}));
     CHECK(outline.is_cut);
@@ -127,14 +125,11 @@ TEST_CASE("a sheet is cut in an open line") {
     REQUIRE(outline.lines.size() == 1);
     CHECK(outline.lines[0].size() == 3);
     CHECK(std::abs(outline.lines[0].front().x_m - outline.lines[0].back().x_m) == Approx(4));
-}
-
-TEST_CASE("an octree is cut cube by cube") {
     const auto tree =
         std::make_shared<const OccupancyTree>(OccupancyTree{0.5, {{{0, 0, 0}, 0.5}, {{3, 0.1, 0}, 1}, {{0, 5, 0}, 1}}});
-    const ObstacleOutline outline = outline_of(Octomap{"", tree});
-    CHECK(outline.is_cut);
-    CHECK(outline.rings.size() == 2);
-    CHECK(area(outline) == Approx(0.25 + 1));
+    const ObstacleOutline cubes = outline_of(Octomap{"", tree});
+    CHECK(cubes.is_cut);
+    CHECK(cubes.rings.size() == 2);
+    CHECK(area(cubes) == Approx(0.25 + 1));
     CHECK_FALSE(outline_of(Octomap{"", tree}, {0, 20, 0}).is_cut);
 }

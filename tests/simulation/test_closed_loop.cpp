@@ -73,20 +73,28 @@ int settling_tick(const std::vector<double>& response, double final, double band
 }
 
 /// The linear loops that the gains were chosen for, sampled and held like the real ones. A step of 1 from rest.
-std::vector<double> ideal_height(const ModelInversion& g, int ticks) {
+std::vector<double> ideal_step(double kp, double kd, double ki, int ticks) {
     const double h = tick_s;
-    double z = 0;
+    double q = 0;
     double u = 0;
     double integral = 0;
     std::vector<double> response;
     for (int i = 0; i < ticks; ++i) {
-        response.push_back(z);
-        const double v = g.position_kp * (1 - z) - g.position_kd * u + g.position_ki * integral;
-        integral += (1 - z) * h;
-        z += u * h + 0.5 * v * h * h;
+        response.push_back(q);
+        const double v = kp * (1 - q) - kd * u + ki * integral;
+        integral += (1 - q) * h;
+        q += u * h + 0.5 * v * h * h;
         u += v * h;
     }
     return response;
+}
+
+std::vector<double> ideal_height(const ModelInversion& g, int ticks) {
+    return ideal_step(g.position_kp, g.position_kd, g.position_ki, ticks);
+}
+
+std::vector<double> ideal_arm(const ModelInversion& g, int ticks) {
+    return ideal_step(g.arm_kp, g.arm_kd, 0, ticks);
 }
 
 /// Sideways the acceleration is g times the pitch, which follows its reference with poles of its own.
@@ -113,20 +121,6 @@ std::vector<double> ideal_sideways(const ModelInversion& g, int ticks) {
         u += gravity * (pitch * h + rate * h * h / 2 + v5 * h * h * h / 6);
         pitch += rate * h + 0.5 * v5 * h * h;
         rate += v5 * h;
-    }
-    return response;
-}
-
-std::vector<double> ideal_arm(const ModelInversion& g, int ticks) {
-    const double h = tick_s;
-    double q = 0;
-    double u = 0;
-    std::vector<double> response;
-    for (int i = 0; i < ticks; ++i) {
-        response.push_back(q);
-        const double v = g.arm_kp * (1 - q) - g.arm_kd * u;
-        q += u * h + 0.5 * v * h * h;
-        u += v * h;
     }
     return response;
 }
