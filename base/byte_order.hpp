@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <concepts>
 #include <cstddef>
 #include <string>
 
 namespace downwash {
 
 /// Appends the bytes of a number to others, the lowest first, on every machine.
-template <std::unsigned_integral Word>
-void append_little_endian(std::string& bytes, Word word) {
-    for (std::size_t i = 0; i < sizeof(Word); ++i) {
-        bytes.push_back(static_cast<char>((word >> (8 * i)) & 0xFFU));
+template <class Number>
+void append_little_endian(std::string& bytes, Number number) {
+    auto own = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+    if (std::endian::native == std::endian::big) {
+        std::reverse(own.begin(), own.end());
     }
+    bytes.append(own.data(), own.size());
 }
 
 /// The number that begins at `bytes`, in the byte order given.

@@ -111,6 +111,17 @@ void sin_cos(T x, T& sine, T& cosine) {
     cosine = select(abs(quadrant + T(0.5)) > T(1.25), -cos_base, cos_base);
 }
 
+/// Sine and cosine of one angle.
+struct SinCos {
+    double sine, cosine;
+};
+/// As sin_cos(x, sine, cosine).
+[[nodiscard]] inline SinCos sin_cos(double x) {
+    SinCos both{};
+    sin_cos(x, both.sine, both.cosine);
+    return both;
+}
+
 /// Angle of the vector (x, y) in (-pi, pi] to 2 ulp; 0 for the zero vector.
 template <class T>
 T atan2(T y, T x) {

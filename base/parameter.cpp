@@ -141,8 +141,8 @@ std::optional<std::string> texts_error(const ParameterInfo& info, const std::vec
 
 template <class Numbers>
 std::optional<std::string> first_error(const ParameterInfo& info, const Numbers& numbers) {
-    for (const double number : numbers) {
-        if (auto error = number_error(info, number)) {
+    for (const auto number : numbers) {
+        if (auto error = number_error(info, static_cast<double>(number))) {
             return error;
         }
     }
@@ -249,7 +249,7 @@ std::optional<std::string> value_error(const ParameterInfo& info, const Value& v
     }
     if (const auto* integers = std::get_if<std::vector<std::uint64_t>>(&value)) {
         const auto error = set_error(info, *integers);
-        return error ? error : first_error(info, std::vector<double>(integers->begin(), integers->end()));
+        return error ? error : first_error(info, *integers);
     }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
         return texts_error(info, *texts);

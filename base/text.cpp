@@ -74,15 +74,45 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
         return {};
     }
     std::string_view nearest;
-    std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+    std::size_t min_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string_view candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);
-        if (distance < least) {
-            least = distance;
+        if (distance < min_distance) {
+            min_distance = distance;
             nearest = candidate;
         }
     }
     return nearest;
+}
+
+std::size_t utf8_length(std::string_view text) {
+    /// First bytes of characters, the range of the byte behind, and how many bytes there are: all others are 80 to BF.
+    struct Row {
+        unsigned char first, last, second_low, second_high;
+        std::size_t length;
+    };
+    constexpr std::array rows{Row{0xC2, 0xDF, 0x80, 0xBF, 2}, Row{0xE0, 0xE0, 0xA0, 0xBF, 3},
+                              Row{0xE1, 0xEC, 0x80, 0xBF, 3}, Row{0xED, 0xED, 0x80, 0x9F, 3},
+                              Row{0xEE, 0xEF, 0x80, 0xBF, 3}, Row{0xF0, 0xF0, 0x90, 0xBF, 4},
+                              Row{0xF1, 0xF3, 0x80, 0xBF, 4}, Row{0xF4, 0xF4, 0x80, 0x8F, 4}};
+    const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(0) < 0x80) {
+        return 1;
+    }
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return byte(0) >= r.first && byte(0) <= r.last; });
+    if (row == rows.end() || text.size() < row->length || byte(1) < row->second_low || byte(1) > row->second_high) {
+        return 0;
+    }
+    const std::string_view rest = text.substr(2, row->length - 2);
+    const bool is_whole =
+        std::all_of(rest.begin(), rest.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; });
+    return is_whole ? row->length : 0;
+}
+
+bool is_same_word(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string excerpt(std::string_view text) {

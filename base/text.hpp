@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +50,13 @@ template <class Number>
 /// have to change).
 [[nodiscard]] DOWNWASH_EXPORT std::string_view nearest_name(std::string_view word,
                                                             std::span<const std::string_view> candidates);
+
+/// Length in bytes of the well-formed UTF-8 character that a text begins with (Unicode 15, table 3-7); 0 if it begins
+/// with none. @pre the text is not empty
+[[nodiscard]] DOWNWASH_EXPORT std::size_t utf8_length(std::string_view text);
+
+/// Whether two words are equal but for the case of their ASCII letters.
+[[nodiscard]] DOWNWASH_EXPORT bool is_same_word(std::string_view a, std::string_view b);
 
 /// A user's text for a message: on one line, cut after about fifty bytes but never within a character.
 [[nodiscard]] DOWNWASH_EXPORT std::string excerpt(std::string_view text);

@@ -2,34 +2,11 @@
 
 #include <string>
 
+#include "downwash/base/text.hpp"
 #include "downwash/problems/yaml_document.hpp"
 
 namespace downwash::problems {
 namespace {
-
-/// Bytes of the well-formed UTF-8 sequence at the start of the text (RFC 3629); 0 when there is none.
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&text](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const auto follows = [&byte](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-    const unsigned first = byte(0);
-    if (first < 0x80) {
-        return 1;
-    }
-    if (first >= 0xC2 && first <= 0xDF) {
-        return follows(1) ? 2 : 0;
-    }
-    if (first >= 0xE0 && first <= 0xEF) {
-        const bool is_overlong = first == 0xE0 && byte(1) < 0xA0;
-        const bool is_surrogate = first == 0xED && byte(1) >= 0xA0;
-        return !is_overlong && !is_surrogate && follows(1) && follows(2) ? 3 : 0;
-    }
-    if (first >= 0xF0 && first <= 0xF4) {
-        const bool is_overlong = first == 0xF0 && byte(1) < 0x90;
-        const bool is_beyond = first == 0xF4 && byte(1) >= 0x90;
-        return !is_overlong && !is_beyond && follows(1) && follows(2) && follows(3) ? 4 : 0;
-    }
-    return 0;
-}
 
 bool is_control(char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
