@@ -25,7 +25,7 @@ std::string header_error(const std::vector<std::string>& columns) {
         }
         if (std::find(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) !=
             columns.begin() + static_cast<std::ptrdiff_t>(i)) {
-            return "the column '" + excerpt(columns[i]) + "' stands there twice";
+            return "the column '" + excerpt(columns[i]) + "' occurs twice";
         }
     }
     return {};
@@ -60,7 +60,7 @@ void add_line(CsvTable& table, const CsvLines& line, LineErrors& errors) {
 
 }  // namespace
 
-std::optional<std::size_t> CsvTable::find(std::string_view column) const {
+std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view column) {
     const auto found = std::find(columns.begin(), columns.end(), column);
     return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
 }

@@ -11,6 +11,9 @@
 
 namespace downwash {
 
+/// The position of a column; empty if there is none of that name.
+[[nodiscard]] std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view column);
+
 /// Comma-separated text. Empty lines and lines that begin with `#` are skipped. The first other line names the columns,
 /// and the following ones have as many cells each. There are no quotes. Spaces around cells are ignored.
 struct CsvTable {
@@ -22,7 +25,7 @@ struct CsvTable {
     std::vector<Row> rows;
     std::size_t header_line = 0;
 
-    [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const;
+    [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const { return index_of(columns, column); }
 };
 
 /// The text of a regular file. @throws InputError if it cannot be read or has more than 16 MiB

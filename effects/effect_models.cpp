@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 namespace downwash {
@@ -104,35 +105,18 @@ struct Model {
 };
 
 constexpr std::array models{
-    Model{{EffectModel::none,
-           "none",
-           "any",
-           "no surface effect; walls: thesis 2.5.3, figure 2.17 (no clear effect on thrust)",
-           "1",
-           "everywhere",
-           0,
-           infinity,
-           {}},
+    Model{{EffectModel::none, "none", "any",
+           "no surface effect; walls: thesis 2.5.3, figure 2.17 (no clear effect on thrust)", "1", "everywhere", 0,
+           infinity},
           no_effect},
-    Model{{EffectModel::cheeseman_bennett,
-           "cheeseman-bennett",
-           "ground",
+    Model{{EffectModel::cheeseman_bennett, "cheeseman-bennett", "ground",
            "Cheeseman and Bennett 1955, ARC R&M 3021; thesis (2.9): one rotor, potential flow with an image",
-           "1 / (1 - (R/4z)^2)",
-           "z/R from 0.64 to 4 (thesis table 2.1); capped below, pole at 0.25",
-           0.64,
-           4,
-           {}},
+           "1 / (1 - (R/4z)^2)", "z/R from 0.64 to 4 (thesis table 2.1); capped below, pole at 0.25", 0.64, 4},
           cheeseman_bennett},
-    Model{{EffectModel::multirotor_images,
-           "multirotor-images",
-           "ground",
+    Model{{EffectModel::multirotor_images, "multirotor-images", "ground",
            "thesis (2.14), (2.15): N rotors and their images, each rotor by its own neighbours",
            "1 / (1 - (R/4z)^2 - (R^2/2) sum_i z / (d_i^2 + 4 z^2)^1.5)",
-           "z/R from 0.64; alone it does not describe a whole multirotor (thesis figure 2.10)",
-           0.64,
-           infinity,
-           {}},
+           "z/R from 0.64; alone it does not describe a whole multirotor (thesis figure 2.10)", 0.64, infinity},
           multirotor_images},
     Model{{EffectModel::multirotor_body, "multirotor-body", "ground",
            "thesis (2.17): N rotors and the fountain between them on the vehicle's body",
@@ -140,15 +124,9 @@ constexpr std::array models{
            "z/R from 0.64. In a scene the rotors take multirotor-images and the body the rest", 0.64, infinity,
            body_parameters},
           multirotor_body},
-    Model{{EffectModel::hayden,
-           "hayden",
-           "ground",
+    Model{{EffectModel::hayden, "hayden", "ground",
            "Hayden 1976, AHS Forum 32: flight-test fit of helicopters, power taken to 2/3",
-           "(0.9926 + 0.03794 (2R/z)^2)^(2/3)",
-           "z/R from 0.6 to 5",
-           0.6,
-           5,
-           {}},
+           "(0.9926 + 0.03794 (2R/z)^2)^(2/3)", "z/R from 0.6 to 5", 0.6, 5},
           hayden},
     Model{{EffectModel::li, "li", "ground", "Li et al. 2015: Cheeseman and Bennett with a measured strength",
            "1 / (1 - rho (R/4z)^2)", "the range it was fitted in", 0, infinity, li_parameters},
@@ -167,25 +145,12 @@ constexpr std::array models{
            "1 / (1 - (1/a1) (R / (z + a2))^2)", "z/R from 0.34 to 4.2 (flow simulations at 4 to 50 cm)", 0.34, 4.2,
            fairing_parameters},
           shifted_image},
-    Model{{EffectModel::momentum_theory,
-           "momentum-theory",
-           "ceiling",
-           "momentum theory of a rotor that draws its air sideways",
-           "1/2 + 1/2 sqrt(1 + 1 / (8 (z/R)^2))",
-           "z/R >= 0.3",
-           0.3,
-           infinity,
-           {}},
+    Model{{EffectModel::momentum_theory, "momentum-theory", "ceiling",
+           "momentum theory of a rotor that draws its air sideways", "1/2 + 1/2 sqrt(1 + 1 / (8 (z/R)^2))",
+           "z/R >= 0.3", 0.3, infinity},
           momentum_theory},
-    Model{{EffectModel::table,
-           "table",
-           "any",
-           "a file of measured or computed values, interpolated monotonically",
-           "the table",
-           "the table's range; held below it, fading like (R/z)^2 above",
-           0,
-           infinity,
-           {}},
+    Model{{EffectModel::table, "table", "any", "a file of measured or computed values, interpolated monotonically",
+           "the table", "the table's range; held below it, fading like (R/z)^2 above", 0, infinity},
           nullptr},
 };
 
@@ -209,6 +174,10 @@ constexpr std::array<EffectModelInfo, models.size()> only_infos() {
 constexpr auto infos = only_infos();
 
 }  // namespace
+
+std::string ModelParameter::range_text() const {
+    return (is_open ? "above " : "of at least ") + to_text(low) + " and at most " + to_text(high);
+}
 
 SurfaceEffect::SurfaceEffect(EffectModel which) : model(which) {
     const auto& known = info(which).parameters;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "downwash/base/export.hpp"
@@ -16,6 +17,12 @@ struct ModelParameter {
     double low, high;       ///< allowed range
     bool is_open;           ///< `low` itself is not allowed
     std::string_view description;
+
+    [[nodiscard]] constexpr bool allows(double value) const {
+        return value >= low && value <= high && !(is_open && value == low);
+    }
+    /// "above 0 and at most 100"
+    [[nodiscard]] DOWNWASH_EXPORT std::string range_text() const;
 };
 
 /// The description of a model.
@@ -28,7 +35,7 @@ struct EffectModelInfo {
     std::string_view validity;  ///< range of z/R in which the model was shown to hold
     double valid_from;          ///< where that range begins; 0 if unknown
     double valid_to;            ///< where that range ends; infinite if unknown
-    std::span<const ModelParameter> parameters;
+    std::span<const ModelParameter> parameters = {};
 };
 
 /// All models, in the order of EffectModel.
@@ -36,6 +43,11 @@ struct EffectModelInfo {
 
 /// The description of one of them.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo& info(EffectModel model);
+
+/// Whether a model considers the vehicle's other rotors.
+[[nodiscard]] constexpr bool is_multirotor(EffectModel model) {
+    return model == EffectModel::multirotor_images || model == EffectModel::multirotor_body;
+}
 
 /// The model of that name; nullptr if there is none.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo* find_effect_model(std::string_view name);

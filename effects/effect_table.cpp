@@ -203,8 +203,8 @@ std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*co
     for (const auto& [value, line] : values) {
         if (axis.empty() || value > axis.back()) {
             if (!axis.empty() && value - axis.back() < min_step) {
-                errors.add(line, name + " " + to_text(value) + " is hardly more than " + to_text(axis.back()) +
-                                     "; expected steps of at least 1e-6, or the very same number");
+                errors.add(line, name + " " + to_text(value) + " is hardly above " + to_text(axis.back()) +
+                                     "; expected steps of at least 1e-6, or exactly the same number");
             }
             axis.push_back(value);
         }
@@ -221,8 +221,8 @@ void check_grid(const std::vector<Entry>& entries, const std::vector<double>& z,
                 bool has_d, LineErrors& errors) {
     for (std::size_t i = 1; i < entries.size(); ++i) {
         if (entries[i].key() == entries[i - 1].key()) {
-            errors.add(entries[i].line, distance_text(entries[i], has_d) + " stands in line " +
-                                            std::to_string(entries[i - 1].line) + " already");
+            errors.add(entries[i].line,
+                       distance_text(entries[i], has_d) + " is already in line " + std::to_string(entries[i - 1].line));
         }
     }
     errors.throw_any();

@@ -20,8 +20,7 @@ std::size_t required(const CsvTable& csv, const std::string& column, LineErrors&
 }  // namespace
 
 std::optional<std::size_t> Measurements::index(std::string_view column) const {
-    const auto found = std::find(columns.begin(), columns.end(), column);
-    return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
+    return index_of(columns, column);
 }
 
 std::vector<std::string> Measurements::entries(std::string_view column) const {

@@ -43,9 +43,8 @@ ModelScore score_of(const SurfaceEffect& effect, bool is_refitted, const std::ve
 
 bool is_comparable(const EffectModelInfo& model, const std::string& surface, const RotorNeighbours& neighbours) {
     const bool is_for_surface = surface.empty() || model.surface == "any" || model.surface == surface;
-    const bool is_multirotor =
-        model.model == EffectModel::multirotor_images || model.model == EffectModel::multirotor_body;
-    return model.model != EffectModel::table && is_for_surface && (!is_multirotor || neighbours.rotors() > 1);
+    return model.model != EffectModel::table && is_for_surface &&
+           (!is_multirotor(model.model) || neighbours.rotors() > 1);
 }
 
 DataSetComparison compare(const std::string& source, const std::string& surface, const std::vector<Measurement>& points,

@@ -211,10 +211,9 @@ SurfaceEffect starting_effect(EffectModel model, const FitOptions& options) {
             throw_input_error("the model " + std::string(known.name) + " has no parameter '" + excerpt(name) +
                               "' to be fixed");
         }
-        if (!(value >= parameter->low && value <= parameter->high) || (parameter->is_open && value == parameter->low)) {
+        if (!parameter->allows(value)) {
             throw_input_error("the parameter " + name + " cannot be fixed at " + to_text(value) +
-                              "; expected a number " + (parameter->is_open ? "above " : "from ") +
-                              to_text(parameter->low) + " up to " + to_text(parameter->high));
+                              "; expected a number " + parameter->range_text());
         }
         effect.parameters[static_cast<std::size_t>(parameter - known.parameters.begin())] = value;
     }

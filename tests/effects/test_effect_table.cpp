@@ -219,7 +219,7 @@ TEST_CASE("Tables that cannot be used are errors with their line") {
              {"#\nz_over_r;factor\n1;2\n", ":2: " + columns},
              {"z_over_r,factor,rpm\n1,2,3\n", ":1: " + columns},
              {"z_over_r,z_over_r\n",
-              ":1: the column 'z_over_r' stands there twice; expected the names of the columns, separated by commas"},
+              ":1: the column 'z_over_r' occurs twice; expected the names of the columns, separated by commas"},
              {head + "1,1.2,3\n", ":2: holds 3 cells; expected 2, one for each column of line 1"},
              {head + "1,1.2\n\n2,\n", ":4: factor is ''" + no_factor},
              {head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n",
@@ -229,9 +229,9 @@ TEST_CASE("Tables that cannot be used are errors with their line") {
              {head + "-1,1.2\n2,1\n", ":2: z_over_r is '-1'; expected a number from 0 to 1000"},
              {head + "\"1\",1.2\n", ":2: holds a quotation mark; expected plain cells, separated by commas"},
              {head + "1,1.2\n1.0,1.1\n", ": z_over_r is 1 in every row; expected two or more distances"},
-             {head + "1,1.2\n2,1.1\n1.0,1.3\n", ":4: z_over_r 1 stands in line 2 already"},
+             {head + "1,1.2\n2,1.1\n1.0,1.3\n", ":4: z_over_r 1 is already in line 2"},
              {head + "1,1.2\n1.0000001,1.1\n",
-              ":3: z_over_r 1.0000001 is hardly more than 1; expected steps of at least 1e-6, or the very same "
+              ":3: z_over_r 1.0000001 is hardly above 1; expected steps of at least 1e-6, or exactly the same "
               "number"},
              {with_d + "1,1,1\n1,2,1\n2,1,1\n",
               ": has no row for z_over_r 2, d_over_r 2; expected one for every combination of distances"},

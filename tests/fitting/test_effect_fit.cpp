@@ -328,9 +328,9 @@ TEST_CASE("Fits that make no sense are errors") {
     CHECK(error_of(EffectModel::table, one) == "a table has no parameters to fit; expected the name of a formula");
     CHECK(error_of(EffectModel::he, one, fixing("k1", 2)) == "the model he has no parameter 'k1' to be fixed");
     CHECK(error_of(EffectModel::he, one, fixing("b", 0)) ==
-          "the parameter b cannot be fixed at 0; expected a number above 0 up to 100");
+          "the parameter b cannot be fixed at 0; expected a number above 0 and at most 100");
     CHECK(error_of(EffectModel::he, one, fixing("a", std::nan(""))) ==
-          "the parameter a cannot be fixed at nan; expected a number from 0 up to 100");
+          "the parameter a cannot be fixed at nan; expected a number of at least 0 and at most 100");
     CHECK(error_of(EffectModel::cheeseman_bennett, points_of({{0.2, 1.5}})) ==
           "the formula of cheeseman-bennett has a pole where there are measurements; leave out those nearest to the "
           "surface");
