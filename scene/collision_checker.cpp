@@ -51,9 +51,8 @@ struct Frame {
 };
 
 Frame frame_at(double x_m, double z_m, double angle_rad) {
-    Frame frame{x_m, z_m, 0, 0};
-    lane::sin_cos(angle_rad, frame.sine, frame.cosine);
-    return frame;
+    const auto [sine, cosine] = lane::sin_cos(angle_rad);
+    return {x_m, z_m, cosine, sine};
 }
 
 /// A piece of the robot in its own frame: that of the multirotor, or that of the arm (from the joint, x along the arm).
@@ -154,10 +153,7 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const Plane
 
 CollisionChecker::CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane,
                                    const RobotShape& robot)
-    : impl_(std::make_unique<const Impl>(std::move(scene), plane, robot)) {}
-CollisionChecker::~CollisionChecker() = default;
-CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
-CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
+    : impl_(std::make_shared<const Impl>(std::move(scene), plane, robot)) {}
 
 bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) const {
     if (!is_finite(pose)) {
@@ -175,12 +171,12 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     if (!is_finite(pose)) {
         return -infinity;
     }
-    double least = infinity;
+    double min_m = infinity;
     impl_->any_piece(pose, [&](const Convex& piece) {
-        least = impl_->solids.clearance_m(piece, least);
+        min_m = impl_->solids.clearance_m(piece, min_m);
         return false;
     });
-    return least < contact_m ? std::min(least, 0.0) : least;
+    return min_m < contact_m ? std::min(min_m, 0.0) : min_m;
 }
 
 }  // namespace downwash

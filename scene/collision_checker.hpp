@@ -18,9 +18,6 @@ class DOWNWASH_EXPORT CollisionChecker {
  public:
     /// @throws InputError when a body or the arm has a size that is not finite and positive; keys as in RobotShape
     CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot);
-    ~CollisionChecker();
-    CollisionChecker(CollisionChecker&&) noexcept;
-    CollisionChecker& operator=(CollisionChecker&&) noexcept;
 
     /// True if a body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Never false if it
     /// is; true is certain but for 1e-8 m.
@@ -34,7 +31,7 @@ class DOWNWASH_EXPORT CollisionChecker {
 
  private:
     struct Impl;
-    std::unique_ptr<const Impl> impl_;
+    std::shared_ptr<const Impl> impl_;
 };
 
 /// Euclidean distance from a level disc to the nearest obstacle [m]; 0 on contact and inside closed meshes, infinity

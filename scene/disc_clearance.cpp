@@ -66,17 +66,17 @@ bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
     const Scene::Solids& solids = scene.solids();
-    double least = infinity;
+    double min_m = infinity;
     const auto gap = [&](const Scene::Bounds& box) { return level_gap_m(box, point_m); };
-    solids.parts.any(gap, least, [&](std::size_t part) {
-        if (gap(solids.parts.bounds(part)) < least) {
-            least = std::min(least, solids.parts.with_convex(part, [&](const Convex& convex) {
-                return touching_radius_m(convex, point_m, least);
+    solids.parts.any(gap, min_m, [&](std::size_t part) {
+        if (gap(solids.parts.bounds(part)) < min_m) {
+            min_m = std::min(min_m, solids.parts.with_convex(part, [&](const Convex& convex) {
+                return touching_radius_m(convex, point_m, min_m);
             }));
         }
-        return least <= 0;
+        return min_m <= 0;
     });
-    return solids.is_inside_mesh(point_m) ? 0 : std::max(0.0, least);
+    return solids.is_inside_mesh(point_m) ? 0 : std::max(0.0, min_m);
 }
 
 }  // namespace downwash

@@ -8,13 +8,6 @@
 #include "downwash/base/text.hpp"
 
 namespace downwash::foreign {
-namespace {
-
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-}  // namespace
 
 std::string read(const std::filesystem::path& file) {
     try {
@@ -30,10 +23,6 @@ void fail(const std::string& name, const std::string& message) {
 
 void fail_at(const std::string& name, std::size_t byte, const std::string& message) {
     fail(name, "byte " + std::to_string(byte) + ": " + message);
-}
-
-bool is_same_word(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
 bool Lines::next() {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/scene/shapes.hpp"
+
 namespace downwash::foreign {
 
 /// Larger files are rejected unread.
@@ -23,9 +25,6 @@ inline constexpr double max_coordinate = 1e6;
 
 /// @throws InputError "'name' byte 84: message", the first byte being 0
 [[noreturn]] void fail_at(const std::string& name, std::size_t byte, const std::string& message);
-
-/// Whether two words are equal but for the case of their ASCII letters.
-[[nodiscard]] bool is_same_word(std::string_view a, std::string_view b);
 
 /// A text, line by line, each as words between blanks.
 class Lines {
@@ -52,5 +51,12 @@ class Lines {
     std::size_t line_ = 0;
     std::vector<std::string_view> words_;
 };
+
+// The formats behind read_mesh.
+
+/// @throws InputError; the caller rejects an empty mesh
+[[nodiscard]] TriangleMesh parse_stl(std::string_view bytes, const std::string& name);
+/// @throws InputError; the caller rejects an empty mesh
+[[nodiscard]] TriangleMesh parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace downwash::foreign

@@ -1,7 +1,7 @@
 #include "downwash/scene/mesh_file.hpp"
 
+#include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
-#include "downwash/scene/mesh_formats.hpp"
 
 namespace downwash {
 
@@ -11,8 +11,8 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& file)
 
 TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
     const std::string ending = std::filesystem::path(name).extension().string();
-    const bool is_stl = foreign::is_same_word(ending, ".stl");
-    if (!is_stl && !foreign::is_same_word(ending, ".obj")) {
+    const bool is_stl = is_same_word(ending, ".stl");
+    if (!is_stl && !is_same_word(ending, ".obj")) {
         foreign::fail(name, "is of an unknown kind: expected a name that ends in .stl or .obj");
     }
     TriangleMesh mesh = is_stl ? foreign::parse_stl(bytes, name) : foreign::parse_obj(bytes, name);

@@ -5,7 +5,6 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
-#include "downwash/scene/mesh_formats.hpp"
 
 namespace downwash::foreign {
 namespace {
@@ -52,7 +51,7 @@ class Obj {
                 read_face();
             } else if (contains(not_read, statement)) {
                 lines_.fail("'" + std::string(statement) +
-                            "' is not read, and a surface may hang on it: expected polygons, 'f', only");
+                            "' is not read, and a surface may depend on it: expected polygons, 'f', only");
             } else if (!statement.starts_with('#') && !contains(passed_over, statement)) {
                 lines_.fail("found '" + excerpt(statement) + "', expected a statement like 'v' or 'f'");
             }
@@ -69,7 +68,7 @@ class Obj {
             lines_.fail("a vertex of " + std::to_string(numbers) + " numbers: expected 3");
         }
         if (mesh_.vertices_m.size() >= max_vertices) {
-            lines_.fail("one vertex more: expected at most 6000000");
+            lines_.fail("too many vertices: expected at most 6000000");
         }
         for (std::size_t i = 4; i < words.size(); ++i) {
             static_cast<void>(lines_.coordinate(words[i]));

@@ -18,21 +18,6 @@ namespace downwash {
              {-sp, cp * sr, cp * cr}}};
 }
 
-/// How an obstacle's own frame lies in the world.
-class ObstaclePlacement {
- public:
-    /// Keeps nothing of the obstacle.
-    explicit ObstaclePlacement(const Obstacle& obstacle)
-        : center_m_(obstacle.center_world_m), rotation_(rotation_of(obstacle.rpy_rad)) {}
-
-    /// A point of the own frame in the world [m].
-    [[nodiscard]] Vector3 to_world(const Vector3& own_m) const { return center_m_ + rotation_ * own_m; }
-
- private:
-    Vector3 center_m_;
-    Matrix3 rotation_;
-};
-
 /// A body of a robot as an obstacle of the robot's own frame.
 [[nodiscard]] inline Obstacle as_obstacle(const BodyShape& body) {
     return {"", std::visit([](const auto& shape) { return Shape(shape); }, body.shape), body.center_body_m, {}};

@@ -28,71 +28,58 @@ struct Header {
 };
 
 /// Reads the lines up to "data".
-class HeaderReader {
- public:
-    HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name), lines_(bytes, name) {}
-
-    Header read() {
-        Header header;
-        header.is_binary = bytes_.starts_with(binary_line);
-        if (!header.is_binary && !bytes_.starts_with(full_line)) {
-            foreign::fail(name_, "line 1: found '" + excerpt(bytes_.substr(0, bytes_.find('\n'))) + "', expected '" +
-                                     std::string(binary_line) + "' or '" + std::string(full_line) + "'");
-        }
-        while (lines_.next() && lines_.words()[0] != "data") {
-            read_line();
-        }
-        if (lines_.words().size() != 1) {
-            lines_.fail("the header ends here: expected a line 'data' of its own");
-        }
-        for (const auto& [key, is_given] : {std::pair("id", has_id_), std::pair("size", nodes_.has_value()),
-                                            std::pair("res", resolution_m_.has_value())}) {
-            if (!is_given) {
-                lines_.fail("the header ends: expected a line '" + std::string(key) + "' before it");
-            }
-        }
-        header.resolution_m = *resolution_m_;
-        header.nodes = *nodes_;
-        header.data_at = bytes_.size() - lines_.rest().size();
-        return header;
+Header read_header(std::string_view bytes, const std::string& name) {
+    Header header;
+    header.is_binary = bytes.starts_with(binary_line);
+    if (!header.is_binary && !bytes.starts_with(full_line)) {
+        foreign::fail(name, "line 1: found '" + excerpt(bytes.substr(0, bytes.find('\n'))) + "', expected '" +
+                                std::string(binary_line) + "' or '" + std::string(full_line) + "'");
     }
-
- private:
-    void read_line() {
-        const auto& words = lines_.words();
+    bool has_id = false;
+    std::optional<std::uint64_t> nodes;
+    std::optional<double> resolution_m;
+    foreign::Lines lines(bytes, name);
+    const auto& words = lines.words();
+    while (lines.next() && words[0] != "data") {
         if (words[0].starts_with('#')) {
-            return;
+            continue;
         }
         if (words.size() != 2) {
-            lines_.fail("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
+            lines.fail("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
         }
-        if (words[0] == "id" && !has_id_) {
-            has_id_ = words[1] == "OcTree";
-            if (!has_id_) {
-                lines_.fail("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
+        if (words[0] == "id" && !has_id) {
+            has_id = words[1] == "OcTree";
+            if (!has_id) {
+                lines.fail("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
             }
-        } else if (words[0] == "size" && !nodes_) {
-            nodes_ = parse_number<std::uint64_t>(words[1]);
-            if (!nodes_) {
-                lines_.fail("found '" + excerpt(words[1]) + "', expected the number of nodes");
+        } else if (words[0] == "size" && !nodes) {
+            nodes = parse_number<std::uint64_t>(words[1]);
+            if (!nodes) {
+                lines.fail("found '" + excerpt(words[1]) + "', expected the number of nodes");
             }
-        } else if (words[0] == "res" && !resolution_m_) {
-            resolution_m_ = parse_number<double>(words[1]);
-            if (!resolution_m_ || *resolution_m_ < min_resolution_m || *resolution_m_ > max_resolution_m) {
-                lines_.fail("found '" + excerpt(words[1]) + "', expected a resolution from 0.0001 to 30 m");
+        } else if (words[0] == "res" && !resolution_m) {
+            resolution_m = parse_number<double>(words[1]);
+            if (!resolution_m || *resolution_m < min_resolution_m || *resolution_m > max_resolution_m) {
+                lines.fail("found '" + excerpt(words[1]) + "', expected a resolution from 0.0001 to 30 m");
             }
         } else {
-            lines_.fail("found '" + excerpt(words[0]) + "', expected id, size and res once each, then 'data'");
+            lines.fail("found '" + excerpt(words[0]) + "', expected id, size and res once each, then 'data'");
         }
     }
-
-    std::string_view bytes_;
-    const std::string& name_;
-    foreign::Lines lines_;
-    bool has_id_ = false;
-    std::optional<std::uint64_t> nodes_;
-    std::optional<double> resolution_m_;
-};
+    if (words.size() != 1) {
+        lines.fail("the header ends here: expected a line 'data' of its own");
+    }
+    for (const auto& [key, is_given] :
+         {std::pair("id", has_id), std::pair("size", nodes.has_value()), std::pair("res", resolution_m.has_value())}) {
+        if (!is_given) {
+            lines.fail("the header ends: expected a line '" + std::string(key) + "' before it");
+        }
+    }
+    header.resolution_m = *resolution_m;
+    header.nodes = *nodes;
+    header.data_at = bytes.size() - lines.rest().size();
+    return header;
+}
 
 /// A cube of the octree: its lowest corner in cells of the finest level, and its level, the root's being 0.
 struct Place {
@@ -130,7 +117,7 @@ class NodeReader {
                  " as the header's size says");
         }
         if (at_ != bytes_.size()) {
-            fail("the file goes on after its last node: expected its end");
+            fail("the file continues after its last node: expected its end");
         }
         if (tree_.cubes.empty()) {
             foreign::fail(name_, "has no occupied leaf: expected at least one");
@@ -206,7 +193,7 @@ class NodeReader {
 
     void count_node() {
         if (++nodes_ > header_.nodes) {
-            fail("one node more than " + std::to_string(header_.nodes) + ": expected as many as the header's size");
+            fail("more nodes than " + std::to_string(header_.nodes) + ": expected as many as the header's size");
         }
     }
 
@@ -218,7 +205,7 @@ class NodeReader {
 
     void add_cube(const Place& place) {
         if (tree_.cubes.size() >= max_pieces) {
-            fail("one occupied leaf more: expected at most " + std::to_string(max_pieces));
+            fail("too many occupied leaves: expected at most " + std::to_string(max_pieces));
         }
         OccupiedCube cube;
         cube.side_m = place.cells() * header_.resolution_m;
@@ -247,7 +234,7 @@ std::shared_ptr<const OccupancyTree> read_octomap(const std::filesystem::path& f
 }
 
 OccupancyTree parse_octomap(std::string_view bytes, const std::string& name) {
-    const Header header = HeaderReader(bytes, name).read();
+    const Header header = read_header(bytes, name);
     return NodeReader(bytes, name, header).read();
 }
 

@@ -12,8 +12,6 @@
 namespace downwash {
 namespace {
 
-constexpr double farthest_m = 1e6;
-
 /// Cubes `low` to `high` - 1 of the grid of one size.
 struct Block {
     double side_m;
@@ -70,28 +68,6 @@ LocalBox box_of(const Block& block) {
 }
 
 }  // namespace
-
-void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyError>& errors) {
-    const auto add = [&](const std::string& message) { errors.push_back({key + ".octomap.file", message}); };
-    if (octomap.tree == nullptr) {
-        add("must have been read: there is no octree");
-        return;
-    }
-    const auto& cubes = octomap.tree->cubes;
-    const auto is_sound = [](const OccupiedCube& cube) {
-        const auto is_near = [](double x) { return std::abs(x) <= farthest_m; };
-        return std::all_of(cube.center_local_m.begin(), cube.center_local_m.end(), is_near) && cube.side_m > 0 &&
-               cube.side_m <= farthest_m;
-    };
-    if (cubes.empty()) {
-        add("has no occupied cube");
-    } else if (cubes.size() > max_pieces) {
-        add("has " + std::to_string(cubes.size()) + " occupied cubes: at most " + std::to_string(max_pieces) +
-            " are allowed");
-    } else if (!std::all_of(cubes.begin(), cubes.end(), is_sound)) {
-        add("has a cube with a centre or side that is not finite, or beyond 1e6 m");
-    }
-}
 
 std::vector<LocalBox> merged_boxes(const OccupancyTree& tree) {
     std::vector<Block> blocks;

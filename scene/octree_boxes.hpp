@@ -11,9 +11,6 @@
 
 namespace downwash {
 
-/// Adds what is wrong with an octree, under keys such as `key`.octomap.file.
-void inspect(const Octomap& octomap, const std::string& key, std::vector<KeyError>& errors);
-
 /// A box in the local frame.
 struct LocalBox {
     Vector3 center_m, size_m;

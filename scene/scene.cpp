@@ -8,7 +8,6 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/mesh_sides.hpp"
-#include "downwash/scene/mesh_surface.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/octree_boxes.hpp"
 #include "downwash/scene/scene_solids.hpp"
@@ -16,14 +15,30 @@
 namespace downwash {
 namespace {
 
-constexpr double greatest_angle_rad = 1e5;  // what lane::sin_cos allows
+constexpr double max_angle_rad = 1e5;  // what lane::sin_cos allows
 
 bool is_length(double x) {
     return std::isfinite(x) && x > 0;
 }
 
-/// Adds the errors of a shape's sizes to a list, under the shape's key.
-struct SizeInspector {
+/// Farther from its own origin no corner is of use, and squares stay finite.
+constexpr double farthest_m = 1e6;
+
+Triangle corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    const auto corner = [&](std::size_t i) { return mesh.scale * mesh.surface->vertices_m[triangle[i]]; };
+    return {corner(0), corner(1), corner(2)};
+}
+
+bool is_near(const Vector3& p_m) {
+    return std::all_of(p_m.begin(), p_m.end(), [](double x) { return std::abs(x) <= farthest_m; });
+}
+
+bool has_area(const Triangle& triangle) {
+    return normal_of(triangle) != Vector3{};
+}
+
+/// Adds what is wrong with a shape to a list, under the shape's key.
+struct ShapeInspector {
     const std::string& key;
     std::vector<KeyError>& errors;
 
@@ -33,26 +48,88 @@ struct SizeInspector {
                 "must be three finite numbers above 0, the full edge lengths in metres");
     }
     void operator()(const Cylinder& cylinder) const {
-        require(is_length(cylinder.radius_m), ".cylinder.radius_m", "must be a finite length above 0 in metres");
-        require(is_length(cylinder.length_m), ".cylinder.length_m", "must be a finite length above 0 in metres");
+        require_length(cylinder.radius_m, ".cylinder.radius_m");
+        require_length(cylinder.length_m, ".cylinder.length_m");
         require(is_finite(cylinder.axis) && cylinder.axis != Vector3{0, 0, 0}, ".cylinder.axis",
                 "must be three finite numbers that are not all 0, for example [0, 0, 1]");
     }
-    void operator()(const Sphere& sphere) const {
-        require(is_length(sphere.radius_m), ".sphere.radius_m", "must be a finite length above 0 in metres");
+    void operator()(const Sphere& sphere) const { require_length(sphere.radius_m, ".sphere.radius_m"); }
+    void operator()(const Mesh& mesh) const {
+        const bool has_scale =
+            require(std::isfinite(mesh.scale) && mesh.scale > 0, ".mesh.scale", "must be a finite number above 0");
+        if (!has_scale || !require(mesh.surface != nullptr, ".mesh.file", "must have been read: there is no surface")) {
+            return;
+        }
+        const TriangleMesh& surface = *mesh.surface;
+        const auto is_vertex = [&](const Vector3& v) { return is_near(mesh.scale * v); };
+        const auto is_known = [&](const std::array<std::uint32_t, 3>& triangle) {
+            return std::all_of(triangle.begin(), triangle.end(),
+                               [&](std::uint32_t corner) { return corner < surface.vertices_m.size(); });
+        };
+        const auto has_extent = [&](const std::array<std::uint32_t, 3>& triangle) {
+            return has_area(corners_of(mesh, triangle));
+        };
+        const auto& triangles = surface.triangles;
+        if (require_pieces(triangles.size(), "triangles", ".mesh.file") &&
+            require(std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_vertex), ".mesh.file",
+                    "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin") &&
+            require(std::all_of(triangles.begin(), triangles.end(), is_known), ".mesh.file",
+                    "has a triangle with a corner that is not among its vertices")) {
+            require(std::any_of(triangles.begin(), triangles.end(), has_extent), ".mesh.file",
+                    "has no triangle with an area");
+        }
     }
-    void require(bool holds, const char* name, const char* message) const {
+    void operator()(const Octomap& octomap) const {
+        if (!require(octomap.tree != nullptr, ".octomap.file", "must have been read: there is no octree")) {
+            return;
+        }
+        const auto& cubes = octomap.tree->cubes;
+        const auto is_sound = [](const OccupiedCube& cube) {
+            return is_near(cube.center_local_m) && cube.side_m > 0 && cube.side_m <= farthest_m;
+        };
+        require(!cubes.empty(), ".octomap.file", "has no occupied cube") &&
+            require_pieces(cubes.size(), "occupied cubes", ".octomap.file") &&
+            require(std::all_of(cubes.begin(), cubes.end(), is_sound), ".octomap.file",
+                    "has a cube with a centre or side that is not finite, or beyond 1e6 m");
+    }
+
+    bool require(bool holds, const char* name, const std::string& message) const {
         if (!holds) {
             errors.push_back({key + name, message});
         }
+        return holds;
+    }
+    void require_length(double length_m, const char* name) const {
+        require(is_length(length_m), name, "must be a finite length above 0 in metres");
+    }
+    bool require_pieces(std::size_t count, const std::string& pieces, const char* name) const {
+        return require(
+            count <= max_pieces, name,
+            "has " + std::to_string(count) + " " + pieces + ": at most " + std::to_string(max_pieces) + " are allowed");
     }
 };
+
+std::vector<Triangle> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned) {
+    const auto& triangles = mesh.surface->triangles;
+    std::vector<Triangle> all;
+    all.reserve(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        Triangle corners = corners_of(mesh, triangles[i]);
+        if (has_area(corners)) {
+            if (!is_turned.empty() && is_turned[i]) {
+                std::swap(corners[1], corners[2]);
+            }
+            all.push_back(corners);
+        }
+    }
+    return all;
+}
 
 void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<KeyError>& errors) {
     if (!is_finite(obstacle.center_world_m)) {
         errors.push_back({key + ".center_m", "must be three finite numbers, the position in the world in metres"});
     }
-    const auto is_small = [](double angle_rad) { return std::abs(angle_rad) <= greatest_angle_rad; };
+    const auto is_small = [](double angle_rad) { return std::abs(angle_rad) <= max_angle_rad; };
     if (!std::all_of(obstacle.rpy_rad.begin(), obstacle.rpy_rad.end(), is_small)) {
         errors.push_back({key + ".rpy_rad", "must be three angles of at most 1e5 rad; leave out whole turns"});
     }
@@ -62,7 +139,7 @@ void require_valid(const std::vector<Obstacle>& obstacles) {
     std::vector<KeyError> errors;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
-        std::visit([&](const auto& shape) { inspect(shape, key, errors); }, obstacles[i].shape);
+        std::visit(ShapeInspector{key, errors}, obstacles[i].shape);
         inspect_pose(obstacles[i], key, errors);
     }
     throw_if_any(std::move(errors));
@@ -79,7 +156,7 @@ struct PartsMaker {
     }
     void require_room(std::size_t more, const char* name) const {
         if (solids.parts.count() + more > max_pieces) {
-            throw_input_error("brings the scene above " + std::to_string(max_pieces) +
+            throw_input_error("raises the scene above " + std::to_string(max_pieces) +
                                   " triangles and boxes: leave out what the robot cannot reach",
                               key + name);
         }
@@ -133,9 +210,9 @@ struct PartsMaker {
     static constexpr Scene::Bounds nothing{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
 };
 
-std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
+std::shared_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
     require_valid(obstacles);
-    auto solids = std::make_unique<Scene::Solids>();
+    auto solids = std::make_shared<Scene::Solids>();
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
         solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], key, *solids}, obstacles[i].shape));
@@ -148,13 +225,10 @@ std::unique_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
 }  // namespace
 
 void inspect(const Primitive& shape, const std::string& key, std::vector<KeyError>& errors) {
-    std::visit(SizeInspector{key, errors}, shape);
+    std::visit(ShapeInspector{key, errors}, shape);
 }
 
 Scene::Scene(std::vector<Obstacle> obstacles) : solids_(placed(std::move(obstacles))) {}
-Scene::~Scene() = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
 
 const std::vector<Obstacle>& Scene::obstacles() const noexcept {
     return solids_->obstacles;

@@ -19,18 +19,13 @@ struct Interval {
     [[nodiscard]] bool empty() const noexcept { return low > high; }
 };
 
-/// The obstacles of the world, placed once and never changed; safe to share between threads.
+/// The obstacles of the world, placed once and never changed; safe to share between threads, and copies share them.
 class DOWNWASH_EXPORT Scene {
  public:
     /// @throws InputError when a shape has a size that is not finite and positive, or an axis of no length; when a mesh
     /// or an octree has nothing in it, is not finite, refers to vertices it has not got, or the scene has more than
     /// 2,000,000 triangles and boxes. Triangles without area are left out.
     explicit Scene(std::vector<Obstacle> obstacles);
-    ~Scene();
-    Scene(const Scene&) = delete;
-    Scene& operator=(const Scene&) = delete;
-    Scene(Scene&&) noexcept;
-    Scene& operator=(Scene&&) noexcept;
 
     [[nodiscard]] const std::vector<Obstacle>& obstacles() const noexcept;
 
@@ -38,6 +33,12 @@ class DOWNWASH_EXPORT Scene {
     struct Bounds {
         Vector3 low_m, high_m;
 
+        /// The smallest one that holds two points.
+        [[nodiscard]] static Bounds around(const Vector3& a, const Vector3& b) noexcept {
+            Bounds both{a, a};
+            both.include({b, b});
+            return both;
+        }
         /// Grows until it holds another box, or a point given as both corners of one.
         void include(const Bounds& other) noexcept {
             for (std::size_t k = 0; k < 3; ++k) {
@@ -96,7 +97,7 @@ class DOWNWASH_EXPORT Scene {
     [[nodiscard]] const Solids& solids() const noexcept;
 
  private:
-    std::unique_ptr<const Solids> solids_;
+    std::shared_ptr<const Solids> solids_;
 };
 
 }  // namespace downwash

@@ -16,17 +16,17 @@ bool Scene::Solids::are_near(const Convex& solid, double distance_m) const {
 }
 
 double Scene::Solids::clearance_m(const Convex& solid, double enough_m) const {
-    double least = enough_m;
+    double min_m = enough_m;
     const Bounds around = bounds_of(solid);
     const auto gap = [&](const Bounds& box) { return box_distance_m(around, box); };
-    parts.any(gap, least, [&](std::size_t part) {
-        if (gap(parts.bounds(part)) < least) {
-            least = std::min(
-                least, parts.with_convex(part, [&](const Convex& convex) { return distance_m(solid, convex, least); }));
+    parts.any(gap, min_m, [&](std::size_t part) {
+        if (gap(parts.bounds(part)) < min_m) {
+            min_m = std::min(
+                min_m, parts.with_convex(part, [&](const Convex& convex) { return distance_m(solid, convex, min_m); }));
         }
-        return least <= 0;
+        return min_m <= 0;
     });
-    return least > 0 && is_inside_mesh(solid.center_m) ? 0 : least;
+    return min_m > 0 && is_inside_mesh(solid.center_m) ? 0 : min_m;
 }
 
 bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {

@@ -13,10 +13,6 @@ double without_negligible(double sine) {
     return std::abs(sine) < negligible_tilt ? 0 : sine;
 }
 
-double inverse_or_zero(double x) {
-    return x == 0 ? 0 : 1 / x;
-}
-
 SeenFromAbove prepared(const Box& box, const Placement& placement) {
     return box_from_above(box, placement);
 }

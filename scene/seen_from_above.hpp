@@ -10,6 +10,10 @@
 
 namespace downwash {
 
+[[nodiscard]] inline double inverse_or_zero(double x) {
+    return x == 0 ? 0 : 1 / x;
+}
+
 /// The points between two parallel planes or lines: |gx x + gy y + rise z| <= half, from the obstacle's centre.
 struct Slab {
     double gx, gy;

@@ -28,43 +28,31 @@ void add_shape_rows(std::vector<Parameter<Model>>& rows, const std::string& path
         return std::get<Sphere>(shape(m, i));
     };
 
+    const auto add_length = [&](Parameter<Model> row) {
+        rows.push_back(std::move(row).is_required().above(0).at_most(1e5));
+    };
     rows.push_back(alternative<Box, Model>(path + ".box", "a solid box", shape));
-    rows.push_back(vector<Model>(
-                       path + ".box.size_m", "edge lengths along its own axes",
-                       {"x", "y", "z"}, [box](auto& m, std::size_t i) -> auto& { return box(m, i).size_m; })
-                       .is_required()
-                       .above(0)
-                       .at_most(1e5));
+    add_length(vector<Model>(
+        path + ".box.size_m", "edge lengths along its own axes",
+        {"x", "y", "z"}, [box](auto& m, std::size_t i) -> auto& { return box(m, i).size_m; }));
     add_place(rows, path + ".box");
-
     rows.push_back(alternative<Cylinder, Model>(path + ".cylinder", "a solid cylinder with flat ends", shape));
-    rows.push_back(number<Model>(
-                       path + ".cylinder.radius_m",
-                       "radius", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).radius_m; })
-                       .is_required()
-                       .above(0)
-                       .at_most(1e5));
-    rows.push_back(
-        number<Model>(
-            path + ".cylinder.length_m",
-            "length from end to end", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).length_m; })
-            .is_required()
-            .above(0)
-            .at_most(1e5));
+    add_length(number<Model>(
+        path + ".cylinder.radius_m",
+        "radius", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).radius_m; }));
+    add_length(number<Model>(
+        path + ".cylinder.length_m",
+        "length from end to end", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).length_m; }));
     rows.push_back(vector<Model>(
                        path + ".cylinder.axis", "direction of its length, of any length but zero",
                        {"x", "y", "z"}, [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).axis; })
                        .at_least(-1e5)
                        .at_most(1e5));
     add_place(rows, path + ".cylinder");
-
     rows.push_back(alternative<Sphere, Model>(path + ".sphere", "a solid sphere", shape));
-    rows.push_back(number<Model>(
-                       path + ".sphere.radius_m",
-                       "radius", [sphere](auto& m, std::size_t i) -> auto& { return sphere(m, i).radius_m; })
-                       .is_required()
-                       .above(0)
-                       .at_most(1e5));
+    add_length(number<Model>(
+        path + ".sphere.radius_m",
+        "radius", [sphere](auto& m, std::size_t i) -> auto& { return sphere(m, i).radius_m; }));
     add_place(rows, path + ".sphere");
 }
 

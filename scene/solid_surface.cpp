@@ -12,8 +12,7 @@ namespace {
 constexpr double whole_turn_rad = 6.283185307179586;
 
 Vector3 on_circle(std::uint32_t i, std::uint32_t sides) {
-    double sine = 0, cosine = 0;
-    lane::sin_cos(whole_turn_rad * i / sides, sine, cosine);
+    const auto [sine, cosine] = lane::sin_cos(whole_turn_rad * i / sides);
     return {cosine, sine, 0};
 }
 
@@ -57,8 +56,7 @@ class SurfaceBuilder {
         constexpr std::uint32_t rings = 24, sides = 48;
         surface.vertices_m = {{0, 0, -radius_m}, {0, 0, radius_m}};
         for (std::uint32_t ring = 1; ring < rings; ++ring) {
-            double sine = 0, cosine = 0;
-            lane::sin_cos(whole_turn_rad / 2 * ring / rings, sine, cosine);
+            const auto [sine, cosine] = lane::sin_cos(whole_turn_rad / 2 * ring / rings);
             for (std::uint32_t i = 0; i < sides; ++i) {
                 const Vector3 rim = on_circle(i, sides);
                 surface.vertices_m.push_back({radius_m * sine * rim[0], radius_m * sine * rim[1], -radius_m * cosine});
@@ -118,9 +116,9 @@ class SurfaceBuilder {
 TriangleMesh surface_of(const Obstacle& obstacle) {
     SurfaceBuilder builder;
     std::visit(builder, obstacle.shape);
-    const ObstaclePlacement placement(obstacle);
+    const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
     for (Vector3& vertex_m : builder.surface.vertices_m) {
-        vertex_m = placement.to_world(vertex_m);
+        vertex_m = obstacle.center_world_m + rotation * vertex_m;
     }
     return builder.surface;
 }

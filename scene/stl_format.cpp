@@ -5,7 +5,6 @@
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
-#include "downwash/scene/mesh_formats.hpp"
 
 namespace downwash::foreign {
 namespace {
@@ -106,7 +105,7 @@ class AsciiStl {
  private:
     void read_facet() {
         if (mesh_.triangles.size() >= max_pieces) {
-            lines_.fail("one triangle more: expected at most " + std::to_string(max_pieces));
+            lines_.fail("too many triangles: expected at most " + std::to_string(max_pieces));
         }
         expect_words({"facet", "normal"}, 3);
         static_cast<void>(numbers(2));  // the normal: only checked

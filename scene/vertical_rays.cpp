@@ -38,10 +38,6 @@ Interval within(double offset, double per_rate, double half) {
     return {middle - reach, middle + reach};
 }
 
-double inverse_or_zero(double x) {
-    return x == 0 ? 0 : 1 / x;
-}
-
 // The stretch of the vertical line through (x, y), all from the part's centre.
 
 Interval vertical(double x, double y, const BoxFromAbove& box) {

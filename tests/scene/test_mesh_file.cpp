@@ -169,7 +169,7 @@ TEST_CASE("Wrong OBJ is an error with its line") {
          "line 4: found '99999999999999999999', expected a corner as i, i/t, i//n or i/t/n, none of them 0"},
         {three + "face 1 2 3\n", "line 4: found 'face', expected a statement like 'v' or 'f'"},
         {three + "surf 0 1 0 1 1 2 3\n",
-         "line 4: 'surf' is not read, and a surface may hang on it: expected polygons, 'f', only"},
+         "line 4: 'surf' is not read, and a surface may depend on it: expected polygons, 'f', only"},
         {three, "has no triangles: expected at least one"},
         {"", "has no triangles: expected at least one"},
     }));

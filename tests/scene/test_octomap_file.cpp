@@ -146,9 +146,9 @@ TEST_CASE("Wrong octree headers are errors with their line") {
 TEST_CASE("Wrong streams of nodes are errors with their byte") {
     const std::size_t data = header.size();
     const auto at = [data](std::size_t node) { return "'a.bt' byte " + std::to_string(data + node) + ": "; };
-    CHECK(said_of(header + nodes) == at(4) + "one node more than 3: expected as many as the header's size");
+    CHECK(said_of(header + nodes) == at(4) + "more nodes than 3: expected as many as the header's size");
     CHECK(said_of(with("size 4", "size 5")) == at(4) + "the nodes end after 4: expected 5 as the header's size says");
-    CHECK(said_of(sound() + "x") == at(4) + "the file goes on after its last node: expected its end");
+    CHECK(said_of(sound() + "x") == at(4) + "the file continues after its last node: expected its end");
     CHECK(said_of(sound().substr(0, data + 3)) == at(3) + "the file ends after 3 of 4 nodes: expected all of them");
     CHECK(said_of(with("size 4", "size 18446744073709551615").substr(0, data + 22)) ==
           at(22) + "the file ends after 3 of 18446744073709551615 nodes: expected all of them");
