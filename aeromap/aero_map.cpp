@@ -42,16 +42,8 @@ void require_valid(double grid_m, const Bounds& extent, const std::vector<MapLay
 }
 
 /// An extent that is a whole number of cells stays so in spite of rounding.
-double cells_over(double length_m, double cells_per_m) {
-    return std::max(1.0, std::ceil(length_m * cells_per_m - 1e-9));
-}
-
-double columns_over(const Bounds& extent, double cells_per_m) {
-    return cells_over(extent.x_high_m - extent.x_low_m, cells_per_m);
-}
-
-double rows_over(const Bounds& extent, double cells_per_m) {
-    return cells_over(extent.z_high_m - extent.z_low_m, cells_per_m);
+double cells_over(double low_m, double high_m, double cells_per_m) {
+    return std::max(1.0, std::ceil((high_m - low_m) * cells_per_m - 1e-9));
 }
 
 double cell_side_m(const std::vector<MapLayer>& layers) {
@@ -67,7 +59,8 @@ double cell_side_m(const std::vector<MapLayer>& layers) {
 
 double map_cells(const std::vector<MapLayer>& layers, const Bounds& extent) {
     const double cells_per_m = 1 / cell_side_m(layers);
-    return columns_over(extent, cells_per_m) * rows_over(extent, cells_per_m) * static_cast<double>(layers.size());
+    return cells_over(extent.x_low_m, extent.x_high_m, cells_per_m) *
+           cells_over(extent.z_low_m, extent.z_high_m, cells_per_m) * static_cast<double>(layers.size());
 }
 
 AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads,
@@ -82,10 +75,10 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     require_valid(layers_.front().effect->settings().grid_m, extent_, layers_);
     cell_m_ = cell_side_m(layers_);
     cells_per_m_ = 1 / cell_m_;
-    const double columns = columns_over(extent_, cells_per_m_);
-    const double rows = rows_over(extent_, cells_per_m_);
+    const double columns = cells_over(extent_.x_low_m, extent_.x_high_m, cells_per_m_);
+    const double rows = cells_over(extent_.z_low_m, extent_.z_high_m, cells_per_m_);
     if (!(columns * rows * static_cast<double>(layers_.size()) <= max_map_cells)) {
-        throw_input_error("gives a map of more than 2^24 cells over these bounds; choose it coarser", "aero.grid_m");
+        throw_input_error("gives a map of more than 2^24 cells over these bounds; choose a larger value", "aero.grid_m");
     }
     columns_ = static_cast<std::uint32_t>(columns);
     rows_ = static_cast<std::uint32_t>(rows);

@@ -98,7 +98,7 @@ class LineProbe {
     std::array<Chord, levels> chords_{};
 };
 
-/// The fewest nodes within the allowance; the least error when nothing is.
+/// The fewest nodes within the allowance; the smallest error when nothing is.
 CellSteps cheapest(const ErrorPerLevel& along_x, const ErrorPerLevel& along_z) {
     CellSteps best{max_steps, max_steps};
     double best_error = along_x[levels - 1] + along_z[levels - 1];

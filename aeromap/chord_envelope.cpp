@@ -2,11 +2,29 @@
 
 #include <algorithm>
 
+#include "downwash/aeromap/gauss_rule.hpp"
+
 namespace downwash {
 namespace {
 
 /// Lines over one piece of a chord change places at most as often; more is rounding.
 constexpr int max_splits = 16;
+
+/// The mean of the factor over a straight slope from one distance to another.
+double mean_factor(const DiscQuery& query, double one_m, double other_m) {
+    if (query.mean != nullptr) {
+        return (*query.mean)(one_m / query.unit_m, other_m / query.unit_m);
+    }
+    const auto there = [&query](double gap_m) { return query.factor(gap_m); };
+    const double low = std::min(one_m, other_m);
+    const double high = std::max(one_m, other_m);
+    if (high - low < 1e-3 * query.unit_m) {
+        return query.factor(0.5 * (low + high));
+    }
+    // The model's cap is a kink which the rule must not run across.
+    const double kink = std::clamp(query.kink_m(), low, high);
+    return (integrate(plain_6, low, kink, there) + integrate(plain_6, kink, high, there)) / (high - low);
+}
 
 }  // namespace
 
@@ -49,9 +67,7 @@ double ChordEnvelope::excess() {
         for (; next < stretches_.size() && stretches_[next].low <= low; ++next) {
             open_.push_back(stretches_[next]);
         }
-        open_.erase(std::remove_if(open_.begin(), open_.end(),
-                                   [&](const SurfaceStretch& stretch) { return stretch.high <= low; }),
-                    open_.end());
+        std::erase_if(open_, [&](const SurfaceStretch& stretch) { return stretch.high <= low; });
         if (low < high && !open_.empty()) {
             sum += between(low, high, first_at(low), first_at(high), max_splits);
         }
@@ -97,7 +113,7 @@ double ChordEnvelope::between(double low, double high, First at_low, First at_hi
 }
 
 double ChordEnvelope::straight(double low, double high, double gap_low, double gap_high) const {
-    return (high - low) * (query_.mean_factor(gap_low, gap_high) - background_);
+    return (high - low) * (mean_factor(query_, gap_low, gap_high) - background_);
 }
 
 }  // namespace downwash

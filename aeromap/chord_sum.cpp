@@ -1,4 +1,4 @@
-#include "downwash/aeromap/chord_sum.hpp"
+#include "downwash/aeromap/disc_average.hpp"
 
 #include <algorithm>
 #include <array>
@@ -85,9 +85,7 @@ class ChordSum {
         // With v = r sin t the integrand is flat at both ends, where the midpoint rule is at its best.
         double sum = 0;
         for (int i = 0; i < count; ++i) {
-            double sine = 0;
-            double cosine = 0;
-            lane::sin_cos(pi * ((i + 0.5) / count - 0.5), sine, cosine);
+            const auto [sine, cosine] = lane::sin_cos(pi * ((i + 0.5) / count - 0.5));
             sum += chord(r * sine, r * cosine) * r * cosine;
         }
         return background_ + sum * (pi / count) / (pi * r * r);
@@ -99,9 +97,7 @@ class ChordSum {
         std::array<ChordFrame, direction_count> frames{};
         std::array<double, direction_count> parallel{};
         for (std::size_t i = 0; i < frames.size(); ++i) {
-            double sine = 0;
-            double cosine = 0;
-            lane::sin_cos(pi * (static_cast<double>(i) + 0.5) / direction_count, sine, cosine);
+            const auto [sine, cosine] = lane::sin_cos(pi * (static_cast<double>(i) + 0.5) / direction_count);
             frames[i] = {query_.hub_m[0], query_.hub_m[1], query_.radius_m, cosine, sine};
         }
         const auto add_edge = [&](double x, double y) {

@@ -7,10 +7,9 @@
 
 #include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/aeromap/disc_average.hpp"
-#include "downwash/aeromap/footprints.hpp"
+#include "downwash/aeromap/footprint.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
-#include "downwash/base/text.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
@@ -31,11 +30,8 @@ void inspect(const SurfaceEffect& effect, const std::string& key, std::vector<Ke
     const auto& parameters = info(effect.model).parameters;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         const ModelParameter& parameter = parameters[i];
-        const double value = effect.parameters[i];
-        if (!(value >= parameter.low && value <= parameter.high) || (parameter.is_open && value == parameter.low)) {
-            errors.push_back({key + "." + std::string(parameter.name),
-                              "must be a number " + std::string(parameter.is_open ? "above " : "of at least ") +
-                                  to_text(parameter.low) + " and at most " + to_text(parameter.high)});
+        if (!parameter.allows(effect.parameters[i])) {
+            errors.push_back({key + "." + std::string(parameter.name), "must be a number " + parameter.range_text()});
         }
     }
 }

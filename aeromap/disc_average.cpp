@@ -12,11 +12,9 @@
 #include <vector>
 
 #include "downwash/aeromap/chord_envelope.hpp"
-#include "downwash/aeromap/chord_sum.hpp"
 #include "downwash/aeromap/facing_surface.hpp"
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
-#include "downwash/aeromap/plane_average.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
@@ -109,9 +107,7 @@ class DiscQuadrature {
         const double first = angle_of(low);
         const double last = angle_of(high);
         const auto f = [this](double t) {
-            double sine = 0;
-            double cosine = 0;
-            lane::sin_cos(t, sine, cosine);
+            const auto [sine, cosine] = lane::sin_cos(t);
             return chord(query_.radius_m * sine) * query_.radius_m * cosine;
         };
         return last - first < 1 ? integrate(plain_6, first, last, f) : integrate(plain_12, first, last, f);
@@ -299,9 +295,7 @@ void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
     const bool is_below = query.side == Side::below;
     query.scene.add_parts_meeting({{x - r, y - r, is_below ? -infinity : z}, {x + r, y + r, is_below ? z : infinity}},
                                   parts);
-    parts.erase(
-        std::remove_if(parts.begin(), parts.end(), [&](std::size_t part) { return !query.scene.has_shadow(part); }),
-        parts.end());
+    std::erase_if(parts, [&](std::size_t part) { return !query.scene.has_shadow(part); });
     std::sort(parts.begin(), parts.end());
 }
 
@@ -337,9 +331,7 @@ double disc_average(const DiscQuery& query, const Footprints& footprints) {
             add_over_disc(footprints.of_other(part, spare));
         }
     }
-    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                    [&](const FacingPart& candidate) { return candidate.gap_m >= cover_m; }),
-                     candidates.end());
+    std::erase_if(candidates, [&](const FacingPart& candidate) { return candidate.gap_m >= cover_m; });
     if (!are_few) {
         for (const FacingPart& candidate : candidates) {
             others.push_back(candidate.footprint->part);

@@ -32,8 +32,6 @@ struct DiscQuery {
     }
     /// The curve's factor at that distance.
     [[nodiscard]] double factor(double gap_m) const { return curve(gap_m / unit_m); }
-    /// The mean of the factor over a straight slope from one distance to another.
-    [[nodiscard]] double mean_factor(double one_m, double other_m) const;
     /// The distance at which the curve meets its cap, negative when it never does.
     [[nodiscard]] double kink_m() const { return unit_m * curve.cap_distance(); }
 };

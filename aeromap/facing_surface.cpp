@@ -34,52 +34,52 @@ double plane_rate(const DiscQuery& query, const Footprint::Plane& plane, double 
     return query.side == Side::below ? -rise : rise;
 }
 
-class Kinks {
- public:
-    Kinks(const DiscQuery& query, const ChordFrame& frame, const Footprint& part, std::pmr::vector<double>& breaks)
-        : query_(query), frame_(frame), part_(part), breaks_(breaks) {}
+struct Kinks {
+    const DiscQuery& query;
+    const ChordFrame& frame;
+    const Footprint& part;
+    std::pmr::vector<double>& breaks;
 
     void add_of_planes() {
-        for (const Footprint::Plane& plane : planes(query_, part_)) {
-            const double along = plane_rate(query_, plane, frame_.du_x, frame_.du_y);
-            const double across = plane_rate(query_, plane, -frame_.du_y, frame_.du_x);
+        for (const Footprint::Plane& plane : planes(query, part)) {
+            const double along = plane_rate(query, plane, frame.du_x, frame.du_y);
+            const double across = plane_rate(query, plane, -frame.du_y, frame.du_x);
             if (std::abs(along) < 0.5 * std::abs(across)) {
-                add_inside((query_.kink_m() - plane_gap_m(query_, plane, frame_.hub_x_m, frame_.hub_y_m)) / across);
+                add_inside((query.kink_m() - plane_gap_m(query, plane, frame.hub_x_m, frame.hub_y_m)) / across);
             }
         }
     }
 
     void add_of_sphere() {
-        const OutlineEllipse& circle = part_.outline.ellipses.front();
-        add_across(frame_.u_of(circle.x, circle.y), frame_.v_of(circle.x, circle.y), circle.across_m);
+        const OutlineEllipse& circle = part.outline.ellipses.front();
+        add_across(frame.u_of(circle.x, circle.y), frame.v_of(circle.x, circle.y), circle.across_m);
     }
 
     /// Of one that lies along the chords.
     void add_of_cylinder() {
-        const OutlineSegment& one = part_.outline.segments[0];
-        const OutlineSegment& other = part_.outline.segments[1];
-        const double one_v = frame_.v_of(one.ax, one.ay);
-        const double other_v = frame_.v_of(other.ax, other.ay);
-        const double from = frame_.u_of(one.ax, one.ay);
-        const double to = frame_.u_of(one.bx, one.by);
+        const OutlineSegment& one = part.outline.segments[0];
+        const OutlineSegment& other = part.outline.segments[1];
+        const double one_v = frame.v_of(one.ax, one.ay);
+        const double other_v = frame.v_of(other.ax, other.ay);
+        const double from = frame.u_of(one.ax, one.ay);
+        const double to = frame.u_of(one.bx, one.by);
         const double inset = 0.01 * (to - from);  // at the very ends there may be nothing
         const double u = std::clamp(0.0, std::min(from + inset, to - inset), std::max(from + inset, to - inset));
         add_across(u, 0.5 * (one_v + other_v), 0.5 * std::abs(other_v - one_v));
     }
 
- private:
     /// Across a round part the gap is c - b sqrt(radius^2 - w^2), w from its middle; two of its values tell b and c.
     void add_across(double u, double middle_v, double radius_m) {
         const auto gap_m = [&](double w) {
-            return gap_at(query_, part_, frame_.x_of(u, middle_v + w), frame_.y_of(u, middle_v + w));
+            return gap_at(query, part, frame.x_of(u, middle_v + w), frame.y_of(u, middle_v + w));
         };
         const double in_middle = gap_m(0);
         const double beside = gap_m(0.6 * radius_m);  // where the root is 0.8 of the radius
-        if (!(in_middle > 0 && in_middle < query_.kink_m() && beside < infinity)) {
+        if (!(in_middle > 0 && in_middle < query.kink_m() && beside < infinity)) {
             return;
         }
         const double bend = (beside - in_middle) / (1 - 0.8);
-        const double root = 1 - (query_.kink_m() - in_middle) / bend;
+        const double root = 1 - (query.kink_m() - in_middle) / bend;
         if (root > 0 && root < 1) {
             const double w = radius_m * std::sqrt((1 - root) * (1 + root));
             add_inside(middle_v - w);
@@ -88,15 +88,10 @@ class Kinks {
     }
 
     void add_inside(double v) {
-        if (std::abs(v) < frame_.radius_m) {
-            breaks_.push_back(v);
+        if (std::abs(v) < frame.radius_m) {
+            breaks.push_back(v);
         }
     }
-
-    const DiscQuery& query_;
-    const ChordFrame& frame_;
-    const Footprint& part_;
-    std::pmr::vector<double>& breaks_;
 };
 
 }  // namespace
@@ -166,7 +161,7 @@ bool add_plane_stretches(const DiscQuery& query, const ChordFrame& frame, const 
 
 void add_kinks(const DiscQuery& query, const ChordFrame& frame, const Footprint& part,
                std::pmr::vector<double>& breaks) {
-    Kinks kinks(query, frame, part, breaks);
+    Kinks kinks{query, frame, part, breaks};
     if (part.has_plane_faces) {
         kinks.add_of_planes();
     } else if (part.outline.segments.empty()) {

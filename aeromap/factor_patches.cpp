@@ -90,11 +90,9 @@ bool FactorPatches::is_met(const Square& square, const Values& values) {
 }
 
 bool FactorPatches::is_quiet(const Square& square) const {
-    const Vector3 from = hub_m(square.x, square.z);
-    const Vector3 to = hub_m(square.x + square.side, square.z + square.side);
-    Scene::Bounds hubs{from, from};
-    hubs.include({to, to});
-    return downwash::is_quiet(grid_.effect, hubs);
+    return downwash::is_quiet(
+        grid_.effect,
+        Scene::Bounds::around(hub_m(square.x, square.z), hub_m(square.x + square.side, square.z + square.side)));
 }
 
 double FactorPatches::factor(double x_m, double z_m) {

@@ -21,7 +21,7 @@ GridAxis axis_over(double low_m, double high_m, double step_m, const char* name)
     }
     const double steps = std::max(1.0, std::ceil((high_m - low_m) / step_m - 1e-9));
     if (!(steps < static_cast<double>(max_grid_nodes))) {
-        throw_input_error("a grid of this step has too many nodes; choose it coarser");
+        throw_input_error("a grid of this step has too many nodes; choose a larger step");
     }
     return {low_m, high_m, static_cast<std::size_t>(steps) + 1};
 }

@@ -94,7 +94,7 @@ class RowsBuilder {
     }
 
     /// Moving the disc by d changes its clearance by at most d: one place decides a whole block of cells when its
-    /// clearance differs from the least one by more than the block's half diagonal. Otherwise the block is halved.
+    /// clearance differs from the minimum by more than the block's half diagonal. Otherwise the block is halved.
     void classify(std::size_t i0, std::size_t i1, std::size_t k0, std::size_t k1) {
         const double half_x = 0.5 * (x_at(i1) - x_at(i0));
         const double half_z = 0.5 * (z_at(k1) - z_at(k0));
@@ -147,11 +147,8 @@ class RowsBuilder {
 
     /// The box around the hubs in a cell.
     [[nodiscard]] Scene::Bounds hubs_in(const CellSquare& cell) const {
-        const Vector3 from = hub(cell.x_low_m, cell.z_low_m);
-        const Vector3 to = hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m);
-        Scene::Bounds hubs{from, from};
-        hubs.include({to, to});
-        return hubs;
+        return Scene::Bounds::around(hub(cell.x_low_m, cell.z_low_m),
+                                     hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m));
     }
 
     void add_cell(std::size_t i, std::size_t k) {

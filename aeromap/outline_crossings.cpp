@@ -14,22 +14,14 @@ using Pair = std::array<double, 2>;
 constexpr double c1 = 0.92387953251128675613;  // cosines of 22.5, 45 and 67.5 degrees
 constexpr double c2 = 0.70710678118654752440;
 constexpr double c3 = 0.38268343236508977173;
-constexpr std::array<Pair, 16> sixteen_directions{{{1, 0},
-                                                   {c1, c3},
-                                                   {c2, c2},
-                                                   {c3, c1},
-                                                   {0, 1},
-                                                   {-c3, c1},
-                                                   {-c2, c2},
-                                                   {-c1, c3},
-                                                   {-1, 0},
-                                                   {-c1, -c3},
-                                                   {-c2, -c2},
-                                                   {-c3, -c1},
-                                                   {0, -1},
-                                                   {c3, -c1},
-                                                   {c2, -c2},
-                                                   {c1, -c3}}};
+constexpr std::array cosines{1.0, c1, c2, c3, 0.0, -c3, -c2, -c1, -1.0, -c1, -c2, -c3, 0.0, c3, c2, c1};
+constexpr auto sixteen_directions = [] {
+    std::array<Pair, 16> directions{};
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        directions[i] = {cosines[i], cosines[(i + 12) % 16]};
+    }
+    return directions;
+}();
 
 Pair halfway(const Pair& a, const Pair& b) {
     const double u = a[0] + b[0];
@@ -64,20 +56,20 @@ struct LocalEllipse {
     double along, across;  ///< semi-axes
 };
 
-class Breaks {
- public:
-    Breaks(const ChordFrame& frame, std::pmr::vector<double>& breaks) : frame_(frame), breaks_(breaks) {}
+struct Breaks {
+    const ChordFrame& frame;
+    std::pmr::vector<double>& breaks;
 
     /// At its ends inside the disc, and where it crosses the rim.
     void add(const OutlineSegment& segment) {
-        const double au = frame_.u_of(segment.ax, segment.ay);
-        const double av = frame_.v_of(segment.ax, segment.ay);
-        const double du = frame_.u_of(segment.bx, segment.by) - au;
-        const double dv = frame_.v_of(segment.bx, segment.by) - av;
+        const double au = frame.u_of(segment.ax, segment.ay);
+        const double av = frame.v_of(segment.ax, segment.ay);
+        const double du = frame.u_of(segment.bx, segment.by) - au;
+        const double dv = frame.v_of(segment.bx, segment.by) - av;
         const double square = du * du + dv * dv;
         const double along = -(au * du + av * dv);
         const double across = au * dv - av * du;
-        const double root = frame_.radius_m * frame_.radius_m * square - across * across;
+        const double root = frame.radius_m * frame.radius_m * square - across * across;
         if (!(root > 0)) {
             return;
         }
@@ -102,17 +94,16 @@ class Breaks {
         }
         const double largest = std::max(e.along, e.across);
         const double distance = std::sqrt(e.cu * e.cu + e.cv * e.cv);
-        if (distance - largest < frame_.radius_m && distance + largest > frame_.radius_m) {
+        if (distance - largest < frame.radius_m && distance + largest > frame.radius_m) {
             add_rim_crossings(e);
         }
     }
 
- private:
     /// Walks once around the ellipse in sixteen steps and halves those that cross the rim.
     void add_rim_crossings(const LocalEllipse& ellipse) {
         const auto is_inside = [&](const Pair& d) {
             const Pair p = ellipse.point(d);
-            return p[0] * p[0] + p[1] * p[1] < frame_.radius_m * frame_.radius_m;
+            return p[0] * p[0] + p[1] * p[1] < frame.radius_m * frame.radius_m;
         };
         Pair last = sixteen_directions.back();
         bool was_inside = is_inside(last);
@@ -133,20 +124,17 @@ class Breaks {
     }
 
     void add_inside(double u, double v) {
-        if (u * u + v * v < frame_.radius_m * frame_.radius_m) {
-            breaks_.push_back(v);
+        if (u * u + v * v < frame.radius_m * frame.radius_m) {
+            breaks.push_back(v);
         }
     }
-    void add_on_rim(double v) { breaks_.push_back(std::clamp(v, -frame_.radius_m, frame_.radius_m)); }
-
-    const ChordFrame& frame_;
-    std::pmr::vector<double>& breaks_;
+    void add_on_rim(double v) { breaks.push_back(std::clamp(v, -frame.radius_m, frame.radius_m)); }
 };
 
 }  // namespace
 
 void add_breaks(const ChordFrame& frame, Side side, const ShadowOutline& outline, std::pmr::vector<double>& breaks) {
-    Breaks all(frame, breaks);
+    Breaks all{frame, breaks};
     for (const OutlineSegment& segment : outline.segments) {
         if (is_seen(segment, side)) {
             all.add(segment);

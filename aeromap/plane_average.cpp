@@ -1,4 +1,4 @@
-#include "downwash/aeromap/plane_average.hpp"
+#include "downwash/aeromap/disc_average.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,9 +22,7 @@ const std::array<GaussNode, 12>& across_disc() {
         std::array<GaussNode, 12> nodes{};
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const double parts = static_cast<double>(nodes.size() + 1);
-            double sine = 0;
-            double cosine = 0;
-            lane::sin_cos(pi * static_cast<double>(i + 1) / parts, sine, cosine);
+            const auto [sine, cosine] = lane::sin_cos(pi * static_cast<double>(i + 1) / parts);
             nodes[i] = {cosine, 2 * sine * sine / parts};
         }
         return nodes;
@@ -90,9 +88,7 @@ double plane_average(const DiscQuery& query, const PlaneCover& cover) {
     }
     // At a distance r sin t from the middle a chord is 2 r cos t long, and dv = r cos t dt.
     const auto weighted = [&](double t) {
-        double sine = 0;
-        double cosine = 0;
-        lane::sin_cos(t, sine, cosine);
+        const auto [sine, cosine] = lane::sin_cos(t);
         return query.factor(cover.gap_m + cover.gap_range_m * sine) * cosine * cosine;
     };
     const double split = lane::atan2(kink, std::sqrt((1 - kink) * (1 + kink)));
