@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -42,25 +41,25 @@ class Gltf {
 
     /// Numbers, `components` of them an element. @return the number of the accessor
     std::size_t add_floats(const std::vector<float>& numbers, std::size_t components, bool is_vertex) {
-        Json least = Json::array(), most = Json::array();
+        Json minima = Json::array(), maxima = Json::array();
         for (std::size_t i = 0; i < components; ++i) {
             float low = std::numeric_limits<float>::infinity(), high = -low;
             for (std::size_t k = i; k < numbers.size(); k += components) {
                 low = std::min(low, numbers[k]);
                 high = std::max(high, numbers[k]);
             }
-            least.push_back(low);
-            most.push_back(high);
+            minima.push_back(low);
+            maxima.push_back(high);
         }
         for (const float number : numbers) {
-            append_little_endian(bytes_, std::bit_cast<std::uint32_t>(number));
+            append_little_endian(bytes_, number);
         }
         constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
         return add_accessor({{"componentType", float_type},
                              {"count", numbers.size() / components},
                              {"type", types[components]},
-                             {"min", std::move(least)},
-                             {"max", std::move(most)}},
+                             {"min", std::move(minima)},
+                             {"max", std::move(maxima)}},
                             4 * numbers.size(), is_vertex ? vertex_buffer : 0);
     }
 

@@ -65,29 +65,6 @@ void check(const GeodeticOrigin& origin) {
     }
 }
 
-Json item(int command, int number, double hold_s, double acceptance_radius_m, double bearing_deg, const Geodetic& place,
-          double height_m) {
-    return {
-        {"AMSLAltAboveTerrain", nullptr},
-        {"Altitude", height_m},
-        {"AltitudeMode", relative_altitude_mode},
-        {"autoContinue", true},
-        {"command", command},
-        {"doJumpId", number},
-        {"frame", relative_altitude_frame},
-        {"params", {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg, height_m}},
-        {"type", "SimpleItem"}};
-}
-
-Json takeoff_item(int number, double bearing_deg, const Geodetic& place, double height_m) {
-    return item(takeoff_command, number, 0, 0, bearing_deg, place, height_m);
-}
-
-Json waypoint_item(int number, double hold_s, double bearing_deg, const Geodetic& place, double height_m) {
-    constexpr double acceptance_radius_m = 0.2;
-    return item(waypoint_command, number, hold_s, acceptance_radius_m, bearing_deg, place, height_m);
-}
-
 /// A corner of the plan, and for how long it is held.
 struct Corner {
     Configuration at;
@@ -126,13 +103,27 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
     Json items = Json::array();
     for (const Corner& corner : corners_of(run)) {
-        const bool is_first = items.empty();
         const Vector3 world_m = run.problem.plane.to_world(corner.at.x_m, 0, corner.at.z_m);
-        const int number = static_cast<int>(items.size()) + 1;
-        items.push_back(is_first ? takeoff_item(number, bearing_deg, earth.at(world_m), world_m[2])
-                                 : waypoint_item(number, corner.hold_s, bearing_deg, earth.at(world_m), world_m[2]));
-        if (is_first && corner.hold_s > 0) {
-            items.push_back(waypoint_item(number + 1, corner.hold_s, bearing_deg, earth.at(world_m), world_m[2]));
+        const Geodetic place = earth.at(world_m);
+        const auto add = [&](int command, double hold_s, double acceptance_radius_m) {
+            items.push_back(
+                {{"AMSLAltAboveTerrain", nullptr},
+                 {"Altitude", world_m[2]},
+                 {"AltitudeMode", relative_altitude_mode},
+                 {"autoContinue", true},
+                 {"command", command},
+                 {"doJumpId", items.size() + 1},
+                 {"frame", relative_altitude_frame},
+                 {"params",
+                  {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg, world_m[2]}},
+                 {"type", "SimpleItem"}});
+        };
+        const bool is_first = items.empty();
+        if (is_first) {
+            add(takeoff_command, 0, 0);
+        }
+        if (!is_first || corner.hold_s > 0) {
+            add(waypoint_command, corner.hold_s, 0.2);
         }
     }
     const GeodeticOrigin& home = *settings.origin;

@@ -14,42 +14,29 @@ constexpr double max_setpoints = 1e6;
 constexpr double max_rate_hz = 10000;
 
 /// The reference at a time between two knots, or held after the last.
-class Reference {
- public:
-    explicit Reference(const Plan& plan) : plan_(plan) {}
-
-    /// Times must not fall.
-    [[nodiscard]] ReferencePoint at(double t_s) {
-        const auto& knots = plan_.reference;
-        const auto begin_s = [&](std::size_t knot) { return static_cast<double>(knots[knot].tick) * plan_.tick_s; };
-        while (segment_ + 1 < knots.size() && t_s >= begin_s(segment_ + 1)) {
-            ++segment_;
-        }
-        if (segment_ + 1 == knots.size()) {
-            ReferencePoint held = knots.back().point;
-            std::fill(std::begin(held.velocity), std::end(held.velocity), 0);
-            std::fill(std::begin(held.acceleration), std::end(held.acceleration), 0);
-            return held;
-        }
-        const ReferenceKnot& from = knots[segment_];
-        const ReferenceKnot& to = knots[segment_ + 1];
-        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan_.tick_s);
-        ReferencePoint point;
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto at = controllers::quintic_at(segment.coefficients()[axis],
-                                                    (t_s - begin_s(segment_)) * segment.inverse_duration_1_s(),
-                                                    segment.inverse_duration_1_s());
-            point.position[axis] = at.position;
-            point.velocity[axis] = at.velocity;
-            point.acceleration[axis] = at.acceleration;
-        }
-        return point;
+ReferencePoint reference_at(const Plan& plan, double t_s) {
+    const auto begin_s = [&](const ReferenceKnot& knot) { return static_cast<double>(knot.tick) * plan.tick_s; };
+    const auto to = std::upper_bound(plan.reference.begin() + 1, plan.reference.end(), t_s,
+                                     [&](double t, const ReferenceKnot& knot) { return t < begin_s(knot); });
+    const ReferenceKnot& from = *(to - 1);
+    if (to == plan.reference.end()) {
+        ReferencePoint held = from.point;
+        std::fill(std::begin(held.velocity), std::end(held.velocity), 0);
+        std::fill(std::begin(held.acceleration), std::end(held.acceleration), 0);
+        return held;
     }
-
- private:
-    const Plan& plan_;
-    std::size_t segment_ = 0;
-};
+    const ReferenceSegment segment(from.point, to->point, to->tick - from.tick, plan.tick_s);
+    ReferencePoint point;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = controllers::quintic_at(segment.coefficients()[axis],
+                                                (t_s - begin_s(from)) * segment.inverse_duration_1_s(),
+                                                segment.inverse_duration_1_s());
+        point.position[axis] = at.position;
+        point.velocity[axis] = at.velocity;
+        point.acceleration[axis] = at.acceleration;
+    }
+    return point;
+}
 
 Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
     return {vector[0] * plane.cos_heading(), vector[0] * plane.sin_heading(), vector[1]};
@@ -73,11 +60,10 @@ std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, do
     }
     times_s.push_back(end_s);
 
-    Reference reference(plan);
     std::vector<Setpoint> points;
     points.reserve(times_s.size());
     for (const double t_s : times_s) {
-        const ReferencePoint at = reference.at(t_s);
+        const ReferencePoint at = reference_at(plan, t_s);
         points.push_back({t_s, plane.to_world(at.position[0], 0, at.position[1]), in_world(plane, at.velocity),
                           in_world(plane, at.acceleration), plane.heading_rad(), at.position[2], at.velocity[2],
                           at.acceleration[2]});

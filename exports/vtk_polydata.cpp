@@ -61,7 +61,7 @@ std::string names_array(const std::vector<Obstacle>& obstacles) {
 std::string vtk_flight(const RunRecord& run, const ExportSettings&) {
     const NumberTable& flight = run.flight;
     if (flight.rows() == 0) {
-        throw_input_error("nothing was flown in this run");
+        throw_input_error("this run contains no flight");
     }
     std::string points, lines;
     std::size_t count = 0;

@@ -65,12 +65,12 @@ std::size_t checked_nodes(const FactorGridParts& parts) {
 
 void check_field(const GridField& field, std::size_t nodes, std::vector<KeyError>& errors) {
     if (std::find(field_names.begin(), field_names.end(), field.name) == field_names.end()) {
-        errors.push_back({"fields", "'" + excerpt(field.name) + "' is none: expected " + joined_names(field_names)});
+        errors.push_back({"fields", "'" + excerpt(field.name) + "' is no field: expected " + joined_names(field_names)});
         return;
     }
     if (field.values.size() != nodes) {
         errors.push_back({field.name, "has " + std::to_string(field.values.size()) + " values: expected " +
-                                          std::to_string(nodes) + ", one a node"});
+                                          std::to_string(nodes) + ", one per node"});
         return;
     }
     const bool is_flag = field.name == "flyable";
@@ -90,7 +90,7 @@ void check_fields(const FactorGridParts& parts, std::size_t nodes, std::vector<K
         const auto count = std::count_if(parts.fields.begin(), parts.fields.end(),
                                          [name](const GridField& field) { return field.name == name; });
         if (count > 1 || (count == 0 && name == "factor")) {
-            errors.push_back({std::string(name), count == 0 ? "is missing" : "is there twice"});
+            errors.push_back({std::string(name), count == 0 ? "is missing" : "occurs twice"});
         }
     }
     for (const GridField& field : parts.fields) {

@@ -50,14 +50,9 @@ std::pair<std::string, std::string> provenance_entry(std::string_view line) {
 }
 
 FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, const GridReading& reading) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    std::string_view content = bytes;
-    if (content.starts_with(byte_order_mark)) {
-        content.remove_prefix(byte_order_mark.size());
-    }
-    const bool is_xml = content.substr(0, content.find_first_not_of(" \t\r\n") + 1).ends_with('<');
+    const bool is_xml = bytes.substr(0, bytes.find_first_not_of("\xef\xbb\xbf \t\r\n") + 1).ends_with('<');
     if (!is_xml) {
-        return parse_grid_csv(content, name, reading);
+        return parse_grid_csv(bytes, name, reading);
     }
 #ifdef DOWNWASH_HAS_VTK
     return parse_vti(bytes, name, reading);

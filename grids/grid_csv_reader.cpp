@@ -71,13 +71,11 @@ class CsvReader {
     void read_comment(std::string_view text) {
         auto [key, value] = provenance_entry(text);
         if (key == "frame_origin_m") {
-            const auto numbers = numbers_in(value, 3);
-            if (numbers.size() == 3) {
+            if (const auto numbers = numbers_in(value, 3); !numbers.empty()) {
                 csv_.frame_origin_m = {numbers[0], numbers[1], numbers[2]};
             }
         } else if (key == "frame_heading_rad") {
-            const auto numbers = numbers_in(value, 1);
-            if (numbers.size() == 1) {
+            if (const auto numbers = numbers_in(value, 1); !numbers.empty()) {
                 csv_.frame_heading_rad = numbers[0];
             }
         } else if (!value.empty() || key != "comment") {
@@ -111,7 +109,7 @@ class CsvReader {
             const auto* name = std::find(names_.begin(), names_.end(), cell);
             const auto role = static_cast<std::size_t>(name - names_.begin());
             if (role < names_.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
-                errors_.add(line_.number(), column, "column " + text_number(cell) + " is there twice");
+                errors_.add(line_.number(), column, "column " + text_number(cell) + " occurs twice");
             }
             roles_.push_back(role);
         });
@@ -122,7 +120,7 @@ class CsvReader {
             if (!has(needed)) {
                 errors_.add(line_.number(), 1,
                             "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line_.text()) +
-                                "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, apart by commas");
+                                "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, separated by commas");
             }
         }
         if (has(lateral) && has(y)) {
@@ -253,8 +251,8 @@ class NodeFinder {
             errors_.add(csv_.lines[row], 1,
                         std::string(column_names[column]) + " is " + to_text(value) + ": expected " +
                             to_text(axis.at(index), 9) + ", as the " + std::to_string(axis.count) +
-                            " coordinates from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) + " stand " +
-                            to_text(axis.step_m(), 9) + " apart if they stand equally");
+                            " coordinates from " + to_text(axis.low_m) + " to " + to_text(axis.high_m) + " are " +
+                            to_text(axis.step_m(), 9) + " apart if they are equally spaced");
         }
         return index;
     }
@@ -288,7 +286,7 @@ class NodeFinder {
         place += csv_.has(y) ? ", y_m " + to_text(parts.y.at(j)) : "";
         place += ", z_m " + to_text(parts.z.at(take(parts.z.count)));
         place += csv_.has(lateral) ? ", lateral_m " + to_text(parts.lateral_offsets_m[rest]) : "";
-        errors_.add(0, "no row stands at " + place + ", the first of " +
+        errors_.add(0, "there is no row at " + place + ", the first of " +
                            std::to_string(std::count(row_of.begin(), row_of.end(), no_row)) +
                            " holes: expected every combination of the coordinates");
         errors_.throw_any();

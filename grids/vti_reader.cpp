@@ -71,8 +71,8 @@ class VtiReader {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double low = extent_[2 * axis];
             const double high = extent_[2 * axis + 1];
-            const double least = axis == 1 ? low : low + 1;
-            if (low != std::floor(low) || high != std::floor(high) || high < least || std::abs(low) > 1e9 ||
+            const double min_high = axis == 1 ? low : low + 1;
+            if (low != std::floor(low) || high != std::floor(high) || high < min_high || std::abs(low) > 1e9 ||
                 std::abs(high) > 1e9) {
                 file_.fail(image_, std::string("WholeExtent runs from ") + to_text(low) + " to " + to_text(high) +
                                        " along " + "xyz"[axis] +

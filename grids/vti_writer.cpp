@@ -1,6 +1,6 @@
-#include <bit>
+#include <array>
 #include <cstdint>
-#include <cstring>
+#include <span>
 
 #include "downwash/base/base64.hpp"
 #include "downwash/base/byte_order.hpp"
@@ -18,12 +18,12 @@ std::string array_data(const double* values, std::size_t count) {
     bytes.reserve((count + 1) * sizeof(double));
     append_little_endian(bytes, std::uint64_t{count * sizeof(double)});
     for (std::size_t i = 0; i < count; ++i) {
-        append_little_endian(bytes, std::bit_cast<std::uint64_t>(values[i]));
+        append_little_endian(bytes, values[i]);
     }
     return base64_text(bytes);
 }
 
-std::string joined(std::initializer_list<double> numbers) {
+std::string joined(std::span<const double> numbers) {
     std::string text;
     for (const double number : numbers) {
         text += (text.empty() ? "" : " ") + to_text(number);
@@ -36,21 +36,9 @@ std::string extent_of(const FactorGrid& grid) {
            std::to_string(grid.z().count - 1);
 }
 
-std::string field_data(std::string_view name, std::initializer_list<double> numbers) {
+std::string field_data(std::string_view name, std::span<const double> numbers) {
     return "      <DataArray type=\"Float64\" Name=\"" + std::string(name) + "\" NumberOfTuples=\"" +
            std::to_string(numbers.size()) + "\" format=\"ascii\">" + joined(numbers) + "</DataArray>\n";
-}
-
-std::string lateral_offsets(const FactorGrid& grid) {
-    if (grid.lateral_offsets_m().empty()) {
-        return {};
-    }
-    std::string numbers;
-    for (const double offset_m : grid.lateral_offsets_m()) {
-        numbers += (numbers.empty() ? "" : " ") + to_text(offset_m);
-    }
-    return "      <DataArray type=\"Float64\" Name=\"lateral_offsets_m\" NumberOfTuples=\"" +
-           std::to_string(grid.lateral_offsets_m().size()) + "\" format=\"ascii\">" + numbers + "</DataArray>\n";
 }
 
 /// VTK writes the letters of texts as numbers, each text closed by a 0.
@@ -84,15 +72,15 @@ std::string vti_text(const FactorGrid& grid) {
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "  <ImageData WholeExtent=\"" +
-        extent_of(grid) + "\" Origin=\"" + joined({first_m[0], first_m[1], first_m[2]}) + "\" Spacing=\"" +
-        joined({grid.x().step_m(), y_step_m, grid.z().step_m()}) + "\" Direction=\"" +
-        joined({c, -s, 0, s, c, 0, 0, 0, 1}) + "\">\n    <FieldData>\n";
-    const Vector3& origin_m = frame.origin_m();
-    head += field_data("frame_origin_m", {origin_m[0], origin_m[1], origin_m[2]});
-    head += field_data("frame_heading_rad", {frame.heading_rad()});
-    head += field_data("frame_low_m", {grid.x().low_m, grid.y().low_m, grid.z().low_m});
-    head += field_data("frame_high_m", {grid.x().high_m, grid.y().high_m, grid.z().high_m});
-    head += lateral_offsets(grid) + provenance(grid) + "    </FieldData>\n";
+        extent_of(grid) + "\" Origin=\"" + joined(first_m) + "\" Spacing=\"" +
+        joined(Vector3{grid.x().step_m(), y_step_m, grid.z().step_m()}) + "\" Direction=\"" +
+        joined(std::array<double, 9>{c, -s, 0, s, c, 0, 0, 0, 1}) + "\">\n    <FieldData>\n";
+    head += field_data("frame_origin_m", frame.origin_m());
+    head += field_data("frame_heading_rad", std::array{frame.heading_rad()});
+    head += field_data("frame_low_m", Vector3{grid.x().low_m, grid.y().low_m, grid.z().low_m});
+    head += field_data("frame_high_m", Vector3{grid.x().high_m, grid.y().high_m, grid.z().high_m});
+    head += grid.lateral_offsets_m().empty() ? "" : field_data("lateral_offsets_m", grid.lateral_offsets_m());
+    head += provenance(grid) + "    </FieldData>\n";
     head += "    <Piece Extent=\"" + extent_of(grid) + "\">\n      <PointData Scalars=\"" +
             (grid.lateral_offsets_m().empty() ? "factor" : "factor_1") + "\">\n";
 

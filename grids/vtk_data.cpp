@@ -81,7 +81,7 @@ std::size_t word_at(std::string_view header, std::size_t index, const VtkEncodin
 void require_size(std::size_t size, std::size_t min, std::size_t max) {
     if (size < min || size > max) {
         const std::string expected = min == max ? std::to_string(max) : "at most " + std::to_string(max);
-        throw VtkDataError("announces " + std::to_string(size) + " bytes: expected " + expected +
+        throw VtkDataError("declares " + std::to_string(size) + " bytes: expected " + expected +
                            "; is the byte_order or header_type wrong?");
     }
 }
@@ -120,7 +120,7 @@ BlockSizes take_block_sizes(Source& source, const VtkEncoding& encoding, std::si
     const std::size_t count = word_at(head, 0, encoding);
     BlockSizes sizes{word_at(head, 1, encoding), word_at(head, 2, encoding), {}};
     if (count > source.size() / encoding.header_bytes || sizes.block > max_block || sizes.last > sizes.block) {
-        throw VtkDataError("announces " + std::to_string(count) + " blocks of " + std::to_string(sizes.block) +
+        throw VtkDataError("declares " + std::to_string(count) + " blocks of " + std::to_string(sizes.block) +
                            " bytes and a last one of " + std::to_string(sizes.last) +
                            "; is the byte_order or header_type wrong?");
     }
@@ -147,7 +147,7 @@ std::string inflated_bytes(Source& source, const VtkEncoding& encoding, std::siz
         size += sizes.of(block);
     }
     if (size / max_ratio > compressed_size) {
-        throw VtkDataError("announces " + std::to_string(size) + " bytes out of " + std::to_string(compressed_size) +
+        throw VtkDataError("declares " + std::to_string(size) + " bytes out of " + std::to_string(compressed_size) +
                            " compressed ones: more than zlib can");
     }
     const std::string compressed = source.take(compressed_size);
@@ -177,8 +177,8 @@ std::string vtk_bytes(std::string_view data, bool is_base64, const VtkEncoding& 
     std::string bytes =
         encoding.is_compressed ? inflated_bytes(source, encoding, min, max) : plain_bytes(source, encoding, min, max);
     if (!trimmed(source.rest()).empty()) {
-        throw VtkDataError("goes on for " + std::to_string(source.rest().size()) +
-                           " bytes behind its end; is the header_type wrong?");
+        throw VtkDataError("continues for " + std::to_string(source.rest().size()) +
+                           " bytes after its end; is the header_type wrong?");
     }
     return bytes;
 }

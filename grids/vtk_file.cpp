@@ -79,7 +79,7 @@ VtkFile::Arrays VtkFile::arrays_in(pugi::xml_node parent) const {
     Arrays arrays;
     for (const pugi::xml_node array : parent.children()) {
         if (!arrays.emplace(array.attribute("Name").value(), array).second) {
-            fail(array, title(array) + " is there twice");
+            fail(array, title(array) + " occurs twice");
         }
     }
     return arrays;

@@ -113,9 +113,9 @@ TEST_CASE("what is no grid is an error of its part") {
          "factor: value 2 of 4 is 100.1: expected a finite factor from 0 to 100"},
         {[](FactorGridParts& p) { p.fields[0].values[0] = -0.1; },
          "factor: value 1 of 4 is -0.1: expected a finite factor from 0 to 100"},
-        {[](FactorGridParts& p) { p.fields[0].values.pop_back(); }, "factor: has 3 values: expected 4, one a node"},
+        {[](FactorGridParts& p) { p.fields[0].values.pop_back(); }, "factor: has 3 values: expected 4, one per node"},
         {[](FactorGridParts& p) { p.fields[0].name = "ground"; }, "factor: is missing"},
-        {[](FactorGridParts& p) { p.fields.push_back(p.fields[0]); }, "factor: is there twice"},
+        {[](FactorGridParts& p) { p.fields.push_back(p.fields[0]); }, "factor: occurs twice"},
         {[](FactorGridParts& p) {
              p.fields.push_back({"flyable", {0, 1, 0.5, 1}});
          },
@@ -123,7 +123,7 @@ TEST_CASE("what is no grid is an error of its part") {
         {[](FactorGridParts& p) {
              p.fields.push_back({"speed", {0, 1, 0, 1}});
          },
-         "fields: 'speed' is none: expected factor, ground, ceiling or flyable"},
+         "fields: 'speed' is no field: expected factor, ground, ceiling or flyable"},
         {[](FactorGridParts& p) { p.lateral_offsets_m = {not_a_number}; },
          "lateral_offsets_m: expected finite distances, at most 1e6 m"},
         {[](FactorGridParts& p) { p.x.count = std::size_t{1} << 40U; }, "the grid has more than 2^27 nodes"},

@@ -65,16 +65,16 @@ TEST_CASE("a grid survives CSV to the bit, and its text to the byte") {
 TEST_CASE("every error of a CSV grid is told with its line") {
     const std::string head = "x_m,z_m,factor\n";
     const std::string columns = "expected x_m,z_m,factor or x_m,y_m,z_m,factor";
-    const std::string off_node = ", as the 5 coordinates from 0 to 0.3 stand 0.075 apart if they stand equally";
+    const std::string off_node = ", as the 5 coordinates from 0 to 0.3 are 0.075 apart if they are equally spaced";
     const std::vector<std::pair<std::string, std::string>> cases{
         {"", "g.csv: holds no line of column names: " + columns},
         {"# only this\n", "g.csv: holds no line of column names: " + columns},
         {head, "g.csv: holds no row"},
         {"x_m;z_m;factor\n0;0;1\n",
-         "g.csv:1:1: column x_m is missing in 'x_m;z_m;factor': " + columns + ", apart by commas\n" +
-             "g.csv:1:1: column z_m is missing in 'x_m;z_m;factor': " + columns + ", apart by commas\n" +
-             "g.csv:1:1: column factor is missing in 'x_m;z_m;factor': " + columns + ", apart by commas"},
-        {"x_m,z_m,factor,x_m\n", "g.csv:1:16: column 'x_m' is there twice"},
+         "g.csv:1:1: column x_m is missing in 'x_m;z_m;factor': " + columns + ", separated by commas\n" +
+             "g.csv:1:1: column z_m is missing in 'x_m;z_m;factor': " + columns + ", separated by commas\n" +
+             "g.csv:1:1: column factor is missing in 'x_m;z_m;factor': " + columns + ", separated by commas"},
+        {"x_m,z_m,factor,x_m\n", "g.csv:1:16: column 'x_m' occurs twice"},
         {"x_m,y_m,lateral_m,z_m,factor\n",
          "g.csv:1:1: expected lateral_m (layers beside the plane) or y_m (a volume), not both"},
         {head + "0,0,1\n1,0,nan\n0,one,1\n1,1e7,-1\n",
@@ -86,7 +86,7 @@ TEST_CASE("every error of a CSV grid is told with its line") {
         {head + "0,0,1,\n", "g.csv:2:1: has 4 cells: expected 3 as in the line of column names"},
         {head + "0,0,1\n1,0,1\n0,1,1\n1,1,1\n1,0,2\n", "g.csv:6:1: repeats the position of line 3"},
         {head + "0,0,1\n1,0,1\n0,1,1\n",
-         "g.csv: no row stands at x_m 1, z_m 1, the first of 1 holes: expected every combination of the coordinates"},
+         "g.csv: there is no row at x_m 1, z_m 1, the first of 1 holes: expected every combination of the coordinates"},
         {head + "0,0,1\n0,1,1\n", "g.csv: column x_m holds 0 only: expected two or more coordinates"},
         {"x_m,y_m,z_m,factor\n0,3,0,1\n1,3,0,1\n0,3,1,1\n1,3,1,1\n",
          "g.csv: column y_m holds 3 only: expected two or more coordinates, or no such column for a planar grid"},

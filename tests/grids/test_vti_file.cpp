@@ -140,7 +140,7 @@ TEST_CASE("what is no image of thrust factors is an error with its place") {
          "g.vti:2:2: the data is compressed by 'vtkLZ4DataCompressor': expected vtkZLibDataCompressor or none"},
         {with(ascii, "</Piece>", "</Piece><Piece/>"), "g.vti:12:12: a second <Piece>: expected one; merge them before"},
         {with(ascii, "</PointData>", "<DataArray Name=\"factor\"/></PointData>"),
-         "g.vti:9:6: array 'factor' is there twice"},
+         "g.vti:9:6: array 'factor' occurs twice"},
     };
     for (const auto& [text, message] : cases) {
         CHECK(error_of(text) == message);
