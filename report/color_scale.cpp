@@ -10,21 +10,16 @@ namespace downwash {
 namespace {
 
 /// Viridis of matplotlib (Smith, van der Walt, Firing 2015) in nine equal steps, from light to dark.
-constexpr std::array<Color, 10> viridis{{{253, 231, 37},
-                                         {181, 222, 43},
-                                         {110, 206, 88},
-                                         {53, 183, 121},
-                                         {31, 158, 137},
-                                         {38, 130, 142},
-                                         {49, 104, 142},
-                                         {62, 73, 137},
-                                         {72, 40, 120},
-                                         {68, 1, 84}}};
+constexpr std::array viridis{color_of(0xfde725), color_of(0xb5de2b), color_of(0x6ece58), color_of(0x35b779),
+                             color_of(0x1f9e89), color_of(0x26828e), color_of(0x31688e), color_of(0x3e4989),
+                             color_of(0x482878), color_of(0x440154)};
 
 /// The halves of RdBu of ColorBrewer (Brewer 2002), outwards from the middle.
-constexpr Color neutral{247, 247, 247};
-constexpr std::array<Color, 5> blues{{{209, 229, 240}, {146, 197, 222}, {67, 147, 195}, {33, 102, 172}, {5, 48, 97}}};
-constexpr std::array<Color, 5> reds{{{253, 219, 199}, {244, 165, 130}, {214, 96, 77}, {178, 24, 43}, {103, 0, 31}}};
+constexpr Color neutral = color_of(0xf7f7f7);
+constexpr std::array blues{color_of(0xd1e5f0), color_of(0x92c5de), color_of(0x4393c3), color_of(0x2166ac),
+                           color_of(0x053061)};
+constexpr std::array reds{color_of(0xfddbc7), color_of(0xf4a582), color_of(0xd6604d), color_of(0xb2182b),
+                          color_of(0x67001f)};
 
 /// The i-th of n colours spread evenly over a row of them.
 template <std::size_t size>

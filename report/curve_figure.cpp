@@ -17,14 +17,8 @@
 namespace downwash {
 namespace {
 
-constexpr std::array<Color, 8> colors{{{0, 114, 178},
-                                       {213, 94, 0},
-                                       {0, 158, 115},
-                                       {204, 121, 167},
-                                       {0, 0, 0},
-                                       {230, 159, 0},
-                                       {86, 180, 233},
-                                       {150, 150, 150}}};
+constexpr std::array colors{color_of(0x0072b2), color_of(0xd55e00), color_of(0x009e73), color_of(0xcc79a7),
+                            color_of(0x000000), color_of(0xe69f00), color_of(0x56b4e9), color_of(0x969696)};
 constexpr std::array<std::string_view, 4> dashes{"", " dashtype (24,8)", " dashtype (8,6)", " dashtype (24,8,6,8)"};
 constexpr char dotted[] = "linewidth 1.6 dashtype (2,5)";
 constexpr std::array<int, 6> point_types{7, 5, 9, 13, 6, 4};
@@ -55,9 +49,7 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
                                                           to_text((*range)->low), to_text((*range)->high))});
         }
     }
-    if (!errors.empty()) {
-        throw InputError(std::move(errors));
-    }
+    throw_if_any(std::move(errors));
 }
 
 /// The range of the y axis for the data, with a margin.
@@ -123,11 +115,11 @@ class Panel {
         script.set_axes(left_px, right_px, bottom_px + below_axes_px, axes_top_px);
         add_range(script, "x", figure_.x_range);
         add_range(script, "y", figure_.y_range.value_or(needed_range(figure_)));
-        script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label)));
+        script.add("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label));
         // As an axis label it would leave the picture if the numbers at the axis are long.
         constexpr double y_label_px = 16;
-        script.add(fmt::format("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
-                               script.screen_x(y_label_px), script.screen_y(bottom_px + below_axes_px + axes_px / 2)));
+        script.add("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
+                   script.screen_x(y_label_px), script.screen_y(bottom_px + below_axes_px + axes_px / 2));
         script.add(data_);
         std::string level;
         if (figure_.level) {
@@ -214,7 +206,7 @@ class Panel {
 std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings) {
     constexpr double left_px = 84, right_px = 24;
     if (figures.empty()) {
-        throw InputError({KeyError{"figures", "there is no figure to draw: expected at least one"}});
+        throw_input_error("there is no figure to draw: expected at least one", "figures");
     }
     const double width_px = settings.width_px - left_px - right_px;
     std::vector<Panel> panels;

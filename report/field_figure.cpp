@@ -39,7 +39,7 @@ bool is_undefined(float place) {
 void add_contours(GnuplotScript& script, const FieldFigure& figure, const FieldSamples& samples) {
     script.add("set contour base");
     script.add("unset surface");
-    script.add(fmt::format("set cntrparam levels incremental 1,1,{}", figure.scale.colors.size() - 1));
+    script.add("set cntrparam levels incremental 1,1,{}", figure.scale.colors.size() - 1);
     script.add("set table $contours");
     script.add("splot " + samples.source(true));
     script.add_values(samples.places);
@@ -54,8 +54,8 @@ void add_color_bar(GnuplotScript& script, const FieldFigure& figure, const Field
     for (std::size_t i = 0; i < classes; ++i) {
         palette += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, in_quotes(scale.colors[i]));
     }
-    script.add(fmt::format("set palette defined ({}) maxcolors {}", palette, classes));
-    script.add(fmt::format("set cbrange [0:{}]", classes));
+    script.add("set palette defined ({}) maxcolors {}", palette, classes);
+    script.add("set cbrange [0:{}]", classes);
 
     std::vector<std::string> texts;
     for (const double limit : scale.limits) {
@@ -81,9 +81,9 @@ void add_color_bar(GnuplotScript& script, const FieldFigure& figure, const Field
             add_tic(texts[i], static_cast<double>(i));
         }
     }
-    script.add(fmt::format("set cbtics ({}) scale 0.3 offset 0,0.4", tics));
-    script.add(fmt::format("set colorbox horizontal user origin {},{} size {},{} border", script.screen_x(layout.left),
-                           script.screen_y(layout.bar_bottom), script.screen_x(layout.width()), script.screen_y(14)));
+    script.add("set cbtics ({}) scale 0.3 offset 0,0.4", tics);
+    script.add("set colorbox horizontal user origin {},{} size {},{} border", script.screen_x(layout.left),
+               script.screen_y(layout.bar_bottom), script.screen_x(layout.width()), script.screen_y(14));
     script.add_line_of_text(scale.label, (layout.left + layout.right) / 2, 13, 1, "'#000000'");
 }
 
@@ -99,9 +99,9 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const Bounds& e
         const PlanePoint& to = piece[piece.size() / 2];
         if (is_shown(from) && is_shown(to)) {
             script.add(
-                fmt::format("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} front size screen 0.009,20 fixed filled "
-                            "linecolor rgb {} linewidth {}",
-                            from.x_m, from.z_m, to.x_m, to.z_m, in_quotes(lines.color), lines.width_px));
+                "set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} front size screen 0.009,20 fixed filled "
+                "linecolor rgb {} linewidth {}",
+                from.x_m, from.z_m, to.x_m, to.z_m, in_quotes(lines.color), lines.width_px);
         }
     }
 }
@@ -147,10 +147,10 @@ void add_boundary(GnuplotScript& script, const FieldFigure& figure, const FieldL
 void add_axes(GnuplotScript& script, const FieldFigure& figure, const FieldLayout& layout) {
     const Bounds& extent = figure.extent;
     script.set_axes(layout.left, layout.right, layout.bottom, layout.top);
-    script.add(fmt::format("set xrange [{}:{}]", extent.x_low_m, extent.x_high_m));
-    script.add(fmt::format("set yrange [{}:{}]", extent.z_low_m, extent.z_high_m));
-    script.add(fmt::format("set xlabel {} offset 0,0.3", in_quotes(figure.x_label)));
-    script.add(fmt::format("set ylabel {} offset 0.8,0", in_quotes(figure.z_label)));
+    script.add("set xrange [{}:{}]", extent.x_low_m, extent.x_high_m);
+    script.add("set yrange [{}:{}]", extent.z_low_m, extent.z_high_m);
+    script.add("set xlabel {} offset 0,0.3", in_quotes(figure.x_label));
+    script.add("set ylabel {} offset 0.8,0", in_quotes(figure.z_label));
 }
 
 }  // namespace

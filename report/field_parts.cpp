@@ -17,12 +17,13 @@ void require_drawable(const Bounds& extent) {
     const std::string given = fmt::format("x from {} to {} and z from {} to {} m", to_text(extent.x_low_m),
                                           to_text(extent.x_high_m), to_text(extent.z_low_m), to_text(extent.z_high_m));
     if (!(width_m > 0 && height_m > 0 && std::isfinite(width_m) && std::isfinite(height_m))) {
-        throw InputError({{"extent", given + " hold no area: expected finite numbers, the lower ones first"}});
+        throw_input_error(given + " hold no area: expected finite numbers, the lower ones first", "extent");
     }
     if (width_m > max_ratio * height_m || height_m > max_ratio * width_m) {
-        throw InputError({{"extent", fmt::format("{} cannot be drawn to scale: expected no side to be more than {} "
-                                                 "times as long as the other",
-                                                 given, max_ratio)}});
+        throw_input_error(
+            fmt::format("{} cannot be drawn to scale: expected no side to be more than {} times as long as the other",
+                        given, max_ratio),
+            "extent");
     }
 }
 

@@ -48,13 +48,14 @@ void forget_date(std::string& pdf) {
 GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
     : settings_(settings), height_px_(static_cast<int>(std::lround(height_px))) {
     if (settings.width_px < min_picture_width_px || settings.width_px > max_picture_width_px) {
-        throw InputError({{"width_px", fmt::format("{} is out of range: expected {} to {} pixels", settings.width_px,
-                                                   min_picture_width_px, max_picture_width_px)}});
+        throw_input_error(fmt::format("{} is out of range: expected {} to {} pixels", settings.width_px,
+                                      min_picture_width_px, max_picture_width_px),
+                          "width_px");
     }
     const double font_size = text_unit(settings.format) * font_px;
     add("set encoding utf8");
-    add(fmt::format("set terminal {} noenhanced font 'DejaVu Sans,{}' background '#ffffff'",
-                    terminal(settings, height_px_), font_size));
+    add("set terminal {} noenhanced font 'DejaVu Sans,{}' background '#ffffff'", terminal(settings, height_px_),
+        font_size);
     add("set border linewidth 1 linecolor rgb '#333333'");
     add("set tics nomirror out scale 0.5 textcolor rgb '#333333'");
 }
@@ -66,10 +67,10 @@ void GnuplotScript::add_values(std::span<const float> values) {
 }
 
 void GnuplotScript::set_axes(double left_px, double right_px, double bottom_px, double top_px) {
-    add(fmt::format("set lmargin at screen {}", screen_x(left_px)));
-    add(fmt::format("set rmargin at screen {}", screen_x(right_px)));
-    add(fmt::format("set bmargin at screen {}", screen_y(bottom_px)));
-    add(fmt::format("set tmargin at screen {}", screen_y(top_px)));
+    add("set lmargin at screen {}", screen_x(left_px));
+    add("set rmargin at screen {}", screen_x(right_px));
+    add("set bmargin at screen {}", screen_y(bottom_px));
+    add("set tmargin at screen {}", screen_y(top_px));
 }
 
 void GnuplotScript::add_line_of_text(std::string_view text, double middle_px, double bottom_px, double size,
@@ -78,8 +79,8 @@ void GnuplotScript::add_line_of_text(std::string_view text, double middle_px, do
     const double room_px = 2 * (std::min(middle_px, settings_.width_px - middle_px) - rim_px);
     const double needed_px = text_width_px(text, size * font_px);
     const double fitting = needed_px > room_px ? size * room_px / needed_px : size;
-    add(fmt::format("set label {} at screen {:.6f},{:.6f} center font ',{:.4g}' textcolor rgb {}", in_quotes(text),
-                    screen_x(middle_px), screen_y(bottom_px), text_unit(settings_.format) * fitting * font_px, color));
+    add("set label {} at screen {:.6f},{:.6f} center font ',{:.4g}' textcolor rgb {}", in_quotes(text),
+        screen_x(middle_px), screen_y(bottom_px), text_unit(settings_.format) * fitting * font_px, color);
 }
 
 void GnuplotScript::set_titles(std::string_view title, std::string_view subtitle, double middle_px, double top_px) {

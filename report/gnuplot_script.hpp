@@ -2,9 +2,12 @@
 
 // Private: not installed.
 
+#include <fmt/core.h>
+
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "downwash/report/picture.hpp"
 
@@ -24,6 +27,11 @@ class GnuplotScript {
         text_ += line;
         text_ += '\n';
     }
+    /// The same, with values in place of {}.
+    template <class... Values>
+    void add(fmt::format_string<Values...> line, Values&&... values) {
+        add(std::string_view(fmt::format(line, std::forward<Values>(values)...)));
+    }
 
     /// Adds the values for a `'-' binary format='%float'` of the last line.
     void add_values(std::span<const float> values);
@@ -31,6 +39,10 @@ class GnuplotScript {
     /// A distance in pixels from the left or from the bottom, as a fraction of the picture.
     [[nodiscard]] double screen_x(double px) const { return px / settings_.width_px; }
     [[nodiscard]] double screen_y(double px) const { return px / height_px_; }
+    /// A place in pixels from the lower left corner, as after `at`.
+    [[nodiscard]] std::string place(double x_px, double y_px) const {
+        return fmt::format("screen {:.6f},{:.6f}", screen_x(x_px), screen_y(y_px));
+    }
 
     /// Sets the position of the axes, in pixels from the lower left corner of the picture.
     void set_axes(double left_px, double right_px, double bottom_px, double top_px);

@@ -96,13 +96,17 @@ bool all_points(const PixelBox& box, Predicate holds) {
     return true;
 }
 
+bool has_point_in(const PixelBox& box, const Ring& ring) {
+    return !all_points(box, [&](const PixelPoint& p) { return !is_inside(ring, p); });
+}
+
 class Placement {
  public:
     Placement(const std::vector<NamedShape>& shapes, const PixelBox& area, double height_px,
               const std::function<int(const PixelPoint&)>& color_at)
         : area_(area), height_px_(height_px), color_at_(color_at) {
         for (const NamedShape& shape : shapes) {
-            Visible visible{shape.width_px, shape.is_filled, {}, {}};
+            Visible visible{shape.width_px, shape.is_filled, {}};
             double largest = 3;  // smaller parts are invisible
             for (const Ring& ring : shape.rings) {
                 Ring part = clipped(ring, area);
@@ -116,7 +120,7 @@ class Placement {
                     largest = size;
                     visible.main = part;
                 }
-                visible.rings.push_back(std::move(part));
+                pieces_.push_back({visible_.size(), shape.is_filled, std::move(part)});
             }
             visible_.push_back(std::move(visible));
         }
@@ -137,12 +141,17 @@ class Placement {
     }
 
  private:
-    /// The part of a shape within the area.
+    /// A shape that may be visible.
     struct Visible {
         double width_px;
         bool is_filled;
-        std::vector<Ring> rings;
-        Ring main;  ///< its largest part; empty when nothing can be seen
+        Ring main;  ///< its largest part within the area; empty when nothing can be seen
+    };
+    /// A part of a shape within the area.
+    struct Piece {
+        std::size_t shape;
+        bool is_filled;
+        Ring ring;
     };
 
     [[nodiscard]] bool is_free(const PixelBox& box) const {
@@ -167,15 +176,13 @@ class Placement {
     /// Whether the outline of a shape passes through a box.
     [[nodiscard]] bool crosses_lines(const PixelBox& box) const {
         constexpr double step_px = 3;
-        for (const Visible& shape : visible_) {
-            for (const Ring& ring : shape.rings) {
-                for (std::size_t i = 0; i < ring.size(); ++i) {
-                    const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-                    const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / step_px);
-                    for (double k = 0; k < steps; ++k) {
-                        if (box.holds(PixelPoint{a.x + k / steps * (b.x - a.x), a.y + k / steps * (b.y - a.y)})) {
-                            return true;
-                        }
+        for (const auto& [shape, is_filled, ring] : pieces_) {
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+                const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / step_px);
+                for (double k = 0; k < steps; ++k) {
+                    if (box.holds(PixelPoint{a.x + k / steps * (b.x - a.x), a.y + k / steps * (b.y - a.y)})) {
+                        return true;
                     }
                 }
             }
@@ -185,13 +192,10 @@ class Placement {
 
     /// Whether a box lies on no filled shape, its own included.
     [[nodiscard]] bool is_off_shapes(const PixelBox& box) const {
-        return std::none_of(visible_.begin(), visible_.end(), [&](const Visible& shape) {
-            return shape.is_filled && std::any_of(shape.rings.begin(), shape.rings.end(), [&](const Ring& ring) {
-                       return box_of(ring).meets(box) &&
-                              (!all_points(box, [&](const PixelPoint& p) { return !is_inside(ring, p); }) ||
-                               std::any_of(ring.begin(), ring.end(),
-                                           [&](const PixelPoint& p) { return box.holds(p); }));
-                   });
+        return std::none_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+            return piece.is_filled && box_of(piece.ring).meets(box) &&
+                   (has_point_in(box, piece.ring) || std::any_of(piece.ring.begin(), piece.ring.end(),
+                                                                 [&](const PixelPoint& p) { return box.holds(p); }));
         });
     }
 
@@ -224,15 +228,9 @@ class Placement {
     }
 
     [[nodiscard]] bool covers_other(const PixelBox& box, std::size_t own) const {
-        for (std::size_t i = 0; i < visible_.size(); ++i) {
-            for (const Ring& ring : visible_[i].rings) {
-                if (i != own && visible_[i].is_filled &&
-                    !all_points(box, [&](const PixelPoint& p) { return !is_inside(ring, p); })) {
-                    return true;
-                }
-            }
-        }
-        return false;
+        return std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+            return piece.shape != own && piece.is_filled && has_point_in(box, piece.ring);
+        });
     }
 
     /// Whether a line from a name to its shape crosses other filled shapes or names.
@@ -241,14 +239,11 @@ class Placement {
         for (int k = 0; k <= steps; ++k) {
             const double s = static_cast<double>(k) / steps;
             const PixelPoint p{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)};
-            const auto holds = [&p](const Ring& ring) { return is_inside(ring, p); };
-            for (std::size_t i = 0; i < visible_.size(); ++i) {
-                if (i != own && visible_[i].is_filled &&
-                    std::any_of(visible_[i].rings.begin(), visible_[i].rings.end(), holds)) {
-                    return true;
-                }
-            }
-            if (std::any_of(labels_.begin(), labels_.end(),
+            if (std::any_of(pieces_.begin(), pieces_.end(),
+                            [&](const Piece& piece) {
+                                return piece.shape != own && piece.is_filled && is_inside(piece.ring, p);
+                            }) ||
+                std::any_of(labels_.begin(), labels_.end(),
                             [&p](const PlacedLabel& label) { return label.box.holds(p); })) {
                 return true;
             }
@@ -316,6 +311,7 @@ class Placement {
     double height_px_;
     const std::function<int(const PixelPoint&)>& color_at_;
     std::vector<Visible> visible_;
+    std::vector<Piece> pieces_;
     std::vector<PlacedLabel> labels_;
 };
 

@@ -59,22 +59,18 @@ void Legend::place(GnuplotScript& script, double middle_px, double top_px, doubl
         const double left = first_px + lefts[i % columns.size()];
         const std::size_t row = i / columns.size();
         const double y = top_px - row_px * (static_cast<double>(row) + 0.5);
-        const auto screen = [&](double dx, double dy) {
-            return fmt::format("screen {:.6f},{:.6f}", script.screen_x(left + dx), script.screen_y(y + dy));
-        };
+        const auto screen = [&](double dx, double dy) { return script.place(left + dx, y + dy); };
         if (!sample.fill.empty()) {
-            script.add(fmt::format("set object rectangle from {} to {} front {}", screen(0, -6), screen(sample_px, 6),
-                                   sample.fill));
+            script.add("set object rectangle from {} to {} front {}", screen(0, -6), screen(sample_px, 6), sample.fill);
         }
         if (!sample.stroke.empty()) {
-            script.add(fmt::format("set arrow from {} to {} nohead front {}", screen(0, 0), screen(sample_px, 0),
-                                   sample.stroke));
+            script.add("set arrow from {} to {} nohead front {}", screen(0, 0), screen(sample_px, 0), sample.stroke);
         }
         if (!sample.point.empty()) {
-            script.add(fmt::format("set label '' at {} point {} front", screen(sample_px / 2, 0), sample.point));
+            script.add("set label '' at {} point {} front", screen(sample_px / 2, 0), sample.point);
         }
-        script.add(fmt::format("set label {} at {} left front textcolor rgb '#333333'", in_quotes(entries_[i].name),
-                               screen(sample_px + gap_px, 0)));
+        script.add("set label {} at {} left front textcolor rgb '#333333'", in_quotes(entries_[i].name),
+                   screen(sample_px + gap_px, 0));
     }
 }
 

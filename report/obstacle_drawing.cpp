@@ -155,24 +155,20 @@ void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const 
     };
     for (const PlacedLabel& label : place_labels(shapes, area, label_height_px, color_at)) {
         const PixelPoint middle = label.box.middle();
-        const auto screen = [&](double x, double y) {
-            return fmt::format("screen {:.6f},{:.6f}", script.screen_x(x), script.screen_y(y));
-        };
         if (label.leader) {
-            script.add(fmt::format("set arrow from {} to {} nohead front linecolor rgb {} linewidth 0.8",
-                                   screen(std::clamp(label.leader->x, label.box.left, label.box.right),
-                                          std::clamp(label.leader->y, label.box.bottom, label.box.top)),
-                                   screen(label.leader->x, label.leader->y), outline_color));
+            script.add("set arrow from {} to {} nohead front linecolor rgb {} linewidth 0.8",
+                       script.place(std::clamp(label.leader->x, label.box.left, label.box.right),
+                                    std::clamp(label.leader->y, label.box.bottom, label.box.top)),
+                       script.place(label.leader->x, label.leader->y), outline_color);
         }
         if (label.needs_ground) {
             script.add(
-                fmt::format("set object rectangle from {} to {} front fillcolor rgb '#ffffff' "
-                            "fillstyle solid 0.85 noborder",
-                            screen(label.box.left, label.box.bottom), screen(label.box.right, label.box.top)));
+                "set object rectangle from {} to {} front fillcolor rgb '#ffffff' "
+                "fillstyle solid 0.85 noborder",
+                script.place(label.box.left, label.box.bottom), script.place(label.box.right, label.box.top));
         }
-        script.add(fmt::format("set label {} at {} center front textcolor rgb {}",
-                               in_quotes(shown_name(shapes[label.shape].name)), screen(middle.x, middle.y),
-                               label.is_inside ? "'#ffffff'" : outline_color));
+        script.add("set label {} at {} center front textcolor rgb {}", in_quotes(shown_name(shapes[label.shape].name)),
+                   script.place(middle.x, middle.y), label.is_inside ? "'#ffffff'" : outline_color);
     }
 }
 

@@ -8,22 +8,23 @@
 namespace downwash {
 
 /// The transformation from an obstacle's own frame to coordinates of a vertical plane: along it, to its left, and up.
-class ObstacleFrame {
- public:
-    /// @param lateral_m of the plane that is drawn, to the left of the plane of motion
-    ObstacleFrame(const Obstacle& obstacle, const PlaneOfMotion& plane, double lateral_m)
-        : placement_(obstacle), plane_(plane), lateral_m_(lateral_m) {}
+struct ObstacleFrame {
+    /// @param lateral of the plane that is drawn, to the left of the plane of motion [m]
+    ObstacleFrame(const Obstacle& obstacle, const PlaneOfMotion& motion, double lateral)
+        : center_m(obstacle.center_world_m),
+          rotation(rotation_of(obstacle.rpy_rad)),
+          plane(motion),
+          lateral_m(lateral) {}
 
     /// A point given in the own frame, as (x, lateral, z) [m].
     [[nodiscard]] Vector3 operator()(const Vector3& own_m) const {
-        const Vector3 p = plane_.from_world(placement_.to_world(own_m));
-        return {p[0], p[1] - lateral_m_, p[2]};
+        return plane.from_world(center_m + rotation * own_m) - Vector3{0, lateral_m, 0};
     }
 
- private:
-    ObstaclePlacement placement_;
-    const PlaneOfMotion& plane_;
-    double lateral_m_;
+    Vector3 center_m;
+    Matrix3 rotation;
+    const PlaneOfMotion& plane;
+    double lateral_m;
 };
 
 }  // namespace downwash

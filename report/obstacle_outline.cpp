@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
-#include "downwash/report/mesh_section.hpp"
 #include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/planar_geometry.hpp"
 
@@ -18,12 +17,12 @@ namespace {
 constexpr std::size_t sides = 96;  // of a circle
 
 /// Sine and cosine of the corners of a circle.
-const std::array<std::pair<double, double>, sides>& unit_circle() {
+const std::array<lane::SinCos, sides>& unit_circle() {
     static const auto corners = [] {
         constexpr double whole_turn_rad = 6.283185307179586;
-        std::array<std::pair<double, double>, sides> made;
+        std::array<lane::SinCos, sides> made;
         for (std::size_t i = 0; i < sides; ++i) {
-            lane::sin_cos(whole_turn_rad * static_cast<double>(i) / sides, made[i].first, made[i].second);
+            made[i] = lane::sin_cos(whole_turn_rad * static_cast<double>(i) / sides);
         }
         return made;
     }();
@@ -78,13 +77,8 @@ Polyhedron box_at(const Vector3& center_m, const Vector3& size_m, const Obstacle
     return solid;
 }
 
-Vector3 cross(const Vector3& a, const Vector3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Vector3 scaled_to(const Vector3& a, double length) {
-    const double factor = length / std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    return {factor * a[0], factor * a[1], factor * a[2]};
+    return length / std::sqrt(dot(a, a)) * a;
 }
 
 Polyhedron prism_of(const Cylinder& cylinder, const ObstacleFrame& frame) {
@@ -96,11 +90,7 @@ Polyhedron prism_of(const Cylinder& cylinder, const ObstacleFrame& frame) {
     for (std::size_t i = 0; i < sides; ++i) {
         const auto [sine, cosine] = unit_circle()[i];
         for (const double end : {-1., 1.}) {
-            Vector3 corner{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                corner[k] = end * half[k] + cosine * u[k] + sine * v[k];
-            }
-            solid.corners_m.push_back(frame(corner));
+            solid.corners_m.push_back(frame(end * half + cosine * u + sine * v));
         }
         const std::size_t here = 2 * i, next = 2 * ((i + 1) % sides);
         solid.edges.insert(solid.edges.end(), {{here, here + 1}, {here, next}, {here + 1, next + 1}});
@@ -135,7 +125,7 @@ class OutlineOf {
         std::vector<Vector3> vertices_m;
         vertices_m.reserve(mesh.surface->vertices_m.size());
         for (const Vector3& own : mesh.surface->vertices_m) {
-            vertices_m.push_back(frame_({mesh.scale * own[0], mesh.scale * own[1], mesh.scale * own[2]}));
+            vertices_m.push_back(frame_(mesh.scale * own));
         }
         MeshSection cut = mesh_section(vertices_m, mesh.surface->triangles);
         outline_.is_cut = !cut.rings.empty() || !cut.lines.empty();

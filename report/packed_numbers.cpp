@@ -3,27 +3,12 @@
 #include <zlib.h>
 
 #include <bit>
+#include <cstdint>
 #include <new>
 
 #include "downwash/base/base64.hpp"
-#include "downwash/base/byte_order.hpp"
 
 namespace downwash {
-void PackedNumbers::add(std::span<const std::uint8_t> list) {
-    bytes_.insert(bytes_.end(), list.begin(), list.end());
-}
-
-void PackedNumbers::add(std::span<const float> list) {
-    for (const float number : list) {
-        append_little_endian(bytes_, std::bit_cast<std::uint32_t>(number));
-    }
-}
-
-void PackedNumbers::add(std::span<const std::int32_t> list) {
-    for (const std::int32_t number : list) {
-        append_little_endian(bytes_, static_cast<std::uint32_t>(number));
-    }
-}
 
 void PackedNumbers::add_smooth(std::span<const double> list) {
     for (std::size_t byte = 0; byte < sizeof(double); ++byte) {

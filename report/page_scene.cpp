@@ -35,8 +35,7 @@ Json rings_json(const std::vector<Ring>& rings) {
 }
 
 Vector3 direction(const ObstacleFrame& frame, const Vector3& own) {
-    const Vector3 tip = frame(own), origin = frame({0, 0, 0});
-    return {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
+    return frame(own) - frame({0, 0, 0});
 }
 
 /// The triangles of a solid without a closed form, in the coordinates of the plane: x, lateral, z.

@@ -10,25 +10,19 @@
 
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
+#else
+#define DOWNWASH_EMBEDDED_FILE(NAME) std::string_view()
 #endif
 
 namespace downwash {
 
-#ifdef DOWNWASH_PAGES
 std::string_view run_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_run_page);
 }
+
 std::string_view campaign_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_campaign_page);
 }
-#else
-std::string_view run_page_template() noexcept {
-    return {};
-}
-std::string_view campaign_page_template() noexcept {
-    return {};
-}
-#endif
 
 std::string page_data(const nlohmann::ordered_json& data) {
     constexpr int on_one_line = -1;

@@ -1,24 +1,17 @@
 #include "downwash/report/picture.hpp"
 
-#include <algorithm>
 #include <string>
+
+#include "downwash/base/text.hpp"
 
 namespace downwash {
 
 std::optional<PictureFormat> picture_format_of(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (extension == ".svg") {
-        return PictureFormat::svg;
-    }
-    if (extension == ".png") {
-        return PictureFormat::png;
-    }
-    if (extension == ".pdf") {
-        return PictureFormat::pdf;
-    }
-    return std::nullopt;
+    const std::string ending = file.extension().string();
+    return is_same_word(ending, ".svg")   ? std::optional(PictureFormat::svg)
+           : is_same_word(ending, ".png") ? std::optional(PictureFormat::png)
+           : is_same_word(ending, ".pdf") ? std::optional(PictureFormat::pdf)
+                                          : std::nullopt;
 }
 
 }  // namespace downwash

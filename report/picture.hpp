@@ -40,6 +40,12 @@ struct Color {
     bool operator==(const Color&) const = default;
 };
 
+/// The colour 0xRRGGBB.
+[[nodiscard]] constexpr Color color_of(std::uint32_t rgb) {
+    return {static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U & 0xFFU),
+            static_cast<std::uint8_t>(rgb & 0xFFU)};
+}
+
 /// A point of the plane of motion.
 struct PlanePoint {
     double x_m = 0, z_m = 0;

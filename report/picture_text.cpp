@@ -2,36 +2,10 @@
 
 #include <cstdint>
 
+#include "downwash/base/text.hpp"
+
 namespace downwash {
 namespace {
-
-/// Length in bytes of the well-formed UTF-8 character that the text begins with; 0 when it begins with none.
-/// (Unicode 15, table 3-7.)
-std::size_t character_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) -> unsigned {
-        return i < text.size() ? static_cast<std::uint8_t>(text[i]) : 0U;
-    };
-    const auto continues = [&](std::size_t i, unsigned low = 0x80, unsigned high = 0xbf) {
-        return byte(i) >= low && byte(i) <= high;
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) {
-        return 1;
-    }
-    if (first >= 0xc2 && first <= 0xdf) {
-        return continues(1) ? 2 : 0;
-    }
-    if (first >= 0xe0 && first <= 0xef) {
-        const bool is_valid = continues(1, first == 0xe0 ? 0xa0 : 0x80, first == 0xed ? 0x9f : 0xbf) && continues(2);
-        return is_valid ? 3 : 0;
-    }
-    if (first >= 0xf0 && first <= 0xf4) {
-        const bool is_valid =
-            continues(1, first == 0xf0 ? 0x90 : 0x80, first == 0xf4 ? 0x8f : 0xbf) && continues(2) && continues(3);
-        return is_valid ? 4 : 0;
-    }
-    return 0;
-}
 
 bool is_control(std::string_view character) {
     const auto first = static_cast<std::uint8_t>(character[0]);
@@ -47,7 +21,7 @@ std::string picture_text(std::string_view text, std::size_t max_characters) {
         if (count == max_characters) {
             return shown + "…";
         }
-        const std::size_t length = character_length(text);
+        const std::size_t length = utf8_length(text);
         const std::string_view character = text.substr(0, length);
         if (length == 0 || character == "\xef\xbf\xbe" || character == "\xef\xbf\xbf") {
             shown += '?';

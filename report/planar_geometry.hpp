@@ -2,9 +2,12 @@
 
 // Private: not installed.
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/vector3.hpp"
 #include "downwash/report/picture.hpp"
 
 namespace downwash {
@@ -21,5 +24,17 @@ namespace downwash {
 /// corners on straight lines. The result is outlines, counter-clockwise, and the holes in them, clockwise.
 /// @param rings counter-clockwise, none over another; corners within 1e-7 m of each other count as one
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Ring> joined_rings(const std::vector<Ring>& rings);
+
+/// The section of a surface with a plane.
+struct MeshSection {
+    std::vector<Ring> rings;  ///< closed
+    std::vector<Ring> lines;  ///< open
+};
+
+/// The section of triangles with the plane lateral = 0; corners are (x, lateral, z). Vertices with equal coordinates
+/// are one. Around solid parts of a closed surface whose corners run counter-clockwise seen from outside, rings run
+/// counter-clockwise; around holes, clockwise.
+[[nodiscard]] MeshSection mesh_section(const std::vector<Vector3>& vertices_m,
+                                       const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 }  // namespace downwash

@@ -18,26 +18,22 @@ namespace {
 
 using Pieces = std::vector<Ring>;
 
-constexpr Color flown_color{0xd5, 0x5e, 0x00}, planned_color{0x55, 0x55, 0x55}, end_effector_color{0x00, 0x72, 0xb2},
-    goal_color{0xcc, 0x79, 0xa7};
+constexpr Color flown_color = color_of(0xd55e00), planned_color = color_of(0x555555),
+                end_effector_color = color_of(0x0072b2), goal_color = color_of(0xcc79a7);
 
 void require_flight(const RunRecord& run) {
     if (run.flight.rows() < 2) {
-        throw InputError({KeyError{"", run.flight.rows() == 0 ? "nothing was flown in this run"
-                                                              : "the flight has one row only, too little to draw"}});
+        throw_input_error(run.flight.rows() == 0 ? "this run contains no flight"
+                                                 : "the flight has one row only, too little to draw");
     }
 }
 
 /// The columns of the flight by name; a RunRecord has all that are used here.
-class Flight {
- public:
-    explicit Flight(const RunRecord& run) : table_(run.flight) {}
-    [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const { return *table_.find(name); }
-    [[nodiscard]] std::size_t rows() const { return table_.rows(); }
-    [[nodiscard]] bool has(std::string_view name) const { return table_.find(name) != nullptr; }
+struct Flight {
+    const NumberTable& table;
 
- private:
-    const NumberTable& table_;
+    [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const { return *table.find(name); }
+    [[nodiscard]] std::size_t rows() const { return table.rows(); }
 };
 
 /// The lines of vehicle and arm at a place.
@@ -215,7 +211,7 @@ std::vector<Curve> rotor_curves(const Flight& flight, std::size_t rotors, const 
 
 FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
     require_flight(run);
-    const Flight flight(run);
+    const Flight flight{run.flight};
     FieldFigure figure;
     figure.title = run.problem.name;
     const RobotDrawing robot(run.problem.robot);
@@ -255,7 +251,7 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, cons
 
 std::vector<CurveFigure> time_figures(const RunRecord& run) {
     require_flight(run);
-    const Flight flight(run);
+    const Flight flight{run.flight};
     std::vector<double> error_m;
     for (std::size_t i = 0; i < flight.rows(); ++i) {
         error_m.push_back(std::hypot(flight["x_m"][i] - flight["ref_x_m"][i], flight["z_m"][i] - flight["ref_z_m"][i]));
