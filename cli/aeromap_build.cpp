@@ -29,23 +29,20 @@ struct BuildArguments {
     std::vector<double> pitch_deg;  ///< of the whole vehicle; empty: factors of rotors
     int threads = default_threads();
     bool is_quiet = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
-double step_of(const BuildArguments& arguments, const Problem& problem) {
-    const double step_m = arguments.step_m.value_or(problem.aero.grid_m);
+double step_of(const BuildArguments& given, const Problem& problem) {
+    const double step_m = given.step_m.value_or(problem.aero.grid_m);
     if (!(step_m > 0 && step_m <= 1000)) {
-        throw UsageError(fmt::format("--step {}: expected metres above 0 and at most 1000", step_m));
+        throw UsageError("--step {}: expected metres above 0 and at most 1000", step_m);
     }
     return step_m;
 }
 
 /// One layer for each lateral offset of a rotor, or that of the one rotor.
-std::vector<MapLayer> chosen_layers(const BuildArguments& arguments, const FlightModel& model) {
-    if (arguments.rotor) {
-        return {model.layer(rotor_option(arguments.rotor, model.tick().plant.rotor_count))};
+std::vector<MapLayer> chosen_layers(const BuildArguments& given, const FlightModel& model) {
+    if (given.rotor) {
+        return {model.layer(rotor_option(given.rotor, model.tick().plant.rotor_count))};
     }
     std::vector<MapLayer> layers;
     for (int rotor = 0; rotor < model.tick().plant.rotor_count; ++rotor) {
@@ -60,109 +57,98 @@ std::vector<MapLayer> chosen_layers(const BuildArguments& arguments, const Fligh
     return layers;
 }
 
-FactorGrid sampled(const BuildArguments& arguments, const Problem& problem, const FlightModel& model,
+FactorGrid sampled(const BuildArguments& given, const Problem& problem, const FlightModel& model,
                    const GridSampling& sampling) {
-    const MapLayer& first = model.layer(rotor_option(arguments.rotor, model.tick().plant.rotor_count));
+    const MapLayer& first = model.layer(rotor_option(given.rotor, model.tick().plant.rotor_count));
     Provenance provenance = provenance_of(*first.effect);
     provenance.insert(provenance.begin() + 1, {{"problem", problem.name}, {"problem_sha256", problem_sha256(problem)}});
     if (model.tick().plant.has_fountain) {
         provenance.emplace_back("fountain", "not contained: the grid holds the factors of rotors");
     }
-    if (arguments.lateral_m.empty()) {
-        return sample_planes(chosen_layers(arguments, model), sampling, provenance);
+    if (given.lateral_m.empty()) {
+        return sample_planes(chosen_layers(given, model), sampling, provenance);
     }
-    if (!(arguments.lateral_m[0] < arguments.lateral_m[1])) {
-        throw UsageError(fmt::format("--lateral {} {}: expected a lower and a higher number of metres",
-                                     arguments.lateral_m[0], arguments.lateral_m[1]));
+    if (!(given.lateral_m[0] < given.lateral_m[1])) {
+        throw UsageError("--lateral {} {}: expected a lower and a higher number of metres", given.lateral_m[0],
+                         given.lateral_m[1]);
     }
-    return sample_volume(*first.effect, arguments.lateral_m[0], arguments.lateral_m[1], sampling, provenance);
+    return sample_volume(*first.effect, given.lateral_m[0], given.lateral_m[1], sampling, provenance);
 }
 
 /// Checks the output before anything is computed. @throws UsageError
-void require_sound_output(const BuildArguments& arguments) {
-    if (arguments.pitch_deg.empty()) {
-        require_grid_writable(arguments.output);
+void require_sound_output(const BuildArguments& given) {
+    if (given.pitch_deg.empty()) {
+        require_grid_writable(given.output);
         return;
     }
-    for (const double pitch_deg : arguments.pitch_deg) {
+    for (const double pitch_deg : given.pitch_deg) {
         static_cast<void>(pitch_option(pitch_deg));
     }
-    if (std::filesystem::path(arguments.output).extension() != ".csv") {
-        throw UsageError("--output " + arguments.output +
+    if (std::filesystem::path(given.output).extension() != ".csv") {
+        throw UsageError("--output " + given.output +
                          ": the whole vehicle (--pitch-deg) is written as CSV, expected a name that ends in .csv");
     }
-    require_writable_result(arguments.output, "--output");
+    require_writable_result(given.output, "--output");
 }
 
-ExitCode build_vehicle(const BuildArguments& arguments, const Problem& problem, const FlightModel& model) {
-    ProgressDisplay display(arguments.is_quiet);
+ExitCode build_vehicle(const BuildArguments& given, const Problem& problem, const FlightModel& model) {
+    ProgressDisplay display(given.is_quiet);
     const std::string table =
-        vehicle_table(problem, model, arguments.pitch_deg, step_of(arguments, problem), arguments.threads,
+        vehicle_table(problem, model, given.pitch_deg, step_of(given, problem), given.threads,
                       [&display](double share) { display.show("evaluating the vehicle", share); });
-    write_result(arguments.output, table, "--output");
-    display.say(
-        fmt::format("{}: the whole vehicle at {} pitch angle(s)", arguments.output, arguments.pitch_deg.size()));
+    write_result(given.output, table, "--output");
+    display.say(fmt::format("{}: the whole vehicle at {} pitch angle(s)", given.output, given.pitch_deg.size()));
     return ExitCode::done;
 }
 
-ExitCode BuildArguments::run() const {
-    require_sound_output(*this);
-    const Problem read = read_problem(problem);
+ExitCode run(const BuildArguments& given) {
+    require_sound_output(given);
+    const Problem read = read_problem(given.problem);
     if (!read.aero.enabled) {
-        throw UsageError(problem + ": aero is none, so there is no map to build");
+        throw UsageError(given.problem + ": aero is none, so there is no map to build");
     }
     const auto model = make_flight_model(read);
-    if (!pitch_deg.empty()) {
-        return build_vehicle(*this, read, *model);
+    if (!given.pitch_deg.empty()) {
+        return build_vehicle(given, read, *model);
     }
-    ProgressDisplay display(is_quiet);
-    GridSampling sampling{read.plane, rotor_extent(read.robot.rotors, read.bounds), step_of(*this, read), threads,
+    ProgressDisplay display(given.is_quiet);
+    GridSampling sampling{read.plane, rotor_extent(read.robot.rotors, read.bounds), step_of(given, read), given.threads,
                           [&display](double share) { display.show("building the map", share); }};
-    const FactorGrid grid = sampled(*this, read, *model, sampling);
-    write_factor_grid(output, grid);
+    const FactorGrid grid = sampled(given, read, *model, sampling);
+    write_factor_grid(given.output, grid);
     if (model->tick().plant.has_fountain) {
         display.say("the grid holds the factors of rotors; it does not contain the fountain that pushes the body");
     }
-    display.say(fmt::format("{}: {} x {} x {} nodes, {} layer(s)", output, grid.x().count, grid.y().count,
+    display.say(fmt::format("{}: {} x {} x {} nodes, {} layer(s)", given.output, grid.x().count, grid.y().count,
                             grid.z().count, grid.layers()));
     return ExitCode::done;
-}
-
-void BuildArguments::add_to(CLI::App& command) {
-    add_problem(command, problem);
-    command.add_option("-o,--output", output, "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
-        ->type_name("FILE")
-        ->required();
-    command.add_option("--step", step_m, "maximum distance between nodes [m]; default aero.grid_m")->type_name("M");
-    CLI::Option* one_rotor =
-        command
-            .add_option("--rotor", rotor,
-                        "only the plane of this rotor, counted from 1; default: one layer for every lateral offset")
-            ->type_name("N");
-    CLI::Option* lateral =
-        command
-            .add_option("--lateral", lateral_m,
-                        "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
-            ->type_name("LOW HIGH")
-            ->expected(2);
-    command
-        .add_option(
-            "--pitch-deg", pitch_deg,
-            "the whole vehicle at these pitch angles instead of rotors, as .csv: force factor, pitch torque and "
-            "its factor over the place of the centre of mass; positive nose down")
-        ->type_name("P...")
-        ->excludes(one_rotor)
-        ->excludes(lateral);
-    add_threads(command, threads);
-    add_quiet(command, is_quiet);
 }
 
 }  // namespace
 
 void add_aeromap_build(CLI::App& aeromap, Action& action) {
-    add_command<BuildArguments>(aeromap, action, "build",
-                                "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a regular "
-                                "grid and write it as a file");
+    auto [command, given] = add_command(aeromap, action, "build",
+                                        "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a "
+                                        "regular grid and write it as a file",
+                                        run);
+    add_problem(command, given.problem);
+    add_value(command, "-o,--output FILE", given.output,
+              "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
+        ->required();
+    add_value(command, "--step M", given.step_m, "maximum distance between nodes [m]; default aero.grid_m");
+    CLI::Option* one_rotor =
+        add_value(command, "--rotor N", given.rotor,
+                  "only the plane of this rotor, counted from 1; default: one layer for every lateral offset");
+    CLI::Option* lateral = add_value(command, "--lateral LOW HIGH", given.lateral_m,
+                                     "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
+                               ->expected(2);
+    add_value(command, "--pitch-deg P...", given.pitch_deg,
+              "the whole vehicle at these pitch angles instead of rotors, as .csv: force factor, pitch torque and its "
+              "factor over the place of the centre of mass; positive nose down")
+        ->excludes(one_rotor)
+        ->excludes(lateral);
+    add_threads(command, given.threads);
+    add_quiet(command, given.is_quiet);
 }
 
 }  // namespace downwash::cli

@@ -14,8 +14,6 @@
 namespace downwash::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double max_factor = 2;
 constexpr char explanation[] =
     "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2] as in flight. A positive\n"
@@ -27,9 +25,6 @@ constexpr char explanation[] =
 struct CompareArguments {
     MeasuredData data;
     bool as_json = false, as_markdown = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 Json parameters_json(const ModelScore& score) {
@@ -137,34 +132,32 @@ void print_markdown(const DataSetComparison& set) {
     fmt::print("\n");
 }
 
-ExitCode CompareArguments::run() const {
-    if (as_json && as_markdown) {
+ExitCode run(const CompareArguments& given) {
+    if (given.as_json && given.as_markdown) {
         throw UsageError("--json and --markdown: expected at most one of them");
     }
-    const std::vector<DataSetComparison> comparisons = compare_effects(data.read(), data.neighbours(), max_factor);
-    if (as_json) {
+    const std::vector<DataSetComparison> comparisons =
+        compare_effects(given.data.read(), given.data.neighbours(), max_factor);
+    if (given.as_json) {
         print_json(comparison_json(comparisons));
         return ExitCode::done;
     }
     fmt::print("{}", explanation);
     for (const DataSetComparison& set : comparisons) {
-        as_markdown ? print_markdown(set) : print_text(set);
+        given.as_markdown ? print_markdown(set) : print_text(set);
     }
     return ExitCode::done;
-}
-
-void CompareArguments::add_to(CLI::App& command) {
-    data.add_options(command);
-    add_json(command, as_json);
-    command.add_flag("--markdown", as_markdown, "print tables in Markdown");
 }
 
 }  // namespace
 
 void add_aeromap_compare(CLI::App& aeromap, Action& action) {
-    add_command<CompareArguments>(
-        aeromap, action, "compare",
-        "Compare all models with measurements, each with the parameters of its source and refitted");
+    auto [command, given] =
+        add_command(aeromap, action, "compare",
+                    "Compare all models with measurements, each with the parameters of its source and refitted", run);
+    given.data.add_options(command);
+    add_json(command, given.as_json);
+    command.add_flag("--markdown", given.as_markdown, "print tables in Markdown");
 }
 
 }  // namespace downwash::cli

@@ -19,17 +19,12 @@
 namespace downwash::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct FitArguments {
     MeasuredData data;
     std::string model;
     std::vector<std::string> fixed;
     bool is_weighted = false, as_json = false;
     std::string plot;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vector<Measurement>& points) {
@@ -103,7 +98,7 @@ std::string yaml_of(const EffectModelInfo& model, const EffectFit& fit, const st
     return text + "}\n";
 }
 
-void print_fit(const FitArguments& arguments, const EffectModelInfo& model, const EffectFit& fit) {
+void print_fit(const FitArguments& given, const EffectModelInfo& model, const EffectFit& fit) {
     fmt::print("{}: {}\n", model.name, model.source);
     for (const FittedParameter& parameter : fit.parameters) {
         fmt::print("{:>16} = {}{}\n", parameter.name, to_text(parameter.value, 7), remark_on(parameter, fit));
@@ -130,7 +125,7 @@ void print_fit(const FitArguments& arguments, const EffectModelInfo& model, cons
         fmt::print("Not determined by these measurements: {}. Keep a known value with --fix, or add other distances.\n",
                    names);
     }
-    const std::string surface = arguments.data.surface.empty() ? std::string(model.surface) : arguments.data.surface;
+    const std::string surface = given.data.surface.empty() ? std::string(model.surface) : given.data.surface;
     if (surface == "ground" || surface == "ceiling") {
         fmt::print("\nFor a problem file:\n{}", yaml_of(model, fit, surface));
     }
@@ -193,59 +188,57 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
     return {std::move(curves), std::move(rest)};
 }
 
-ExitCode FitArguments::run() const {
-    const EffectModelInfo& known = model_named(model);
+ExitCode run(const FitArguments& given) {
+    const EffectModelInfo& known = model_named(given.model);
     PictureSettings settings;
-    if (!plot.empty()) {
-        settings.format = picture_format("--plot", plot);
+    if (!given.plot.empty()) {
+        settings.format = picture_format("--plot", given.plot);
     }
     FitOptions options;
-    options.neighbours = data.neighbours();
-    if (is_multirotor(known.model) && !data.rotor_spacing) {
-        throw UsageError(fmt::format(
-            "--model {} needs the other rotors: expected --rotor-spacing S, the distance of neighbouring axes of a "
-            "square quadrotor in radii",
-            known.name));
+    options.neighbours = given.data.neighbours();
+    if (is_multirotor(known.model) && !given.data.rotor_spacing) {
+        throw UsageError(
+            "--model {} needs the other rotors: expected --rotor-spacing S, the distance of neighbouring "
+            "axes of a square quadrotor in radii",
+            known.name);
     }
-    options.is_weighted = is_weighted;
-    for (const std::string& text : fixed) {
+    options.is_weighted = given.is_weighted;
+    for (const std::string& text : given.fixed) {
         options.fixed.push_back(named_number("--fix", text));
     }
-    const Measurements measurements = data.read();
-    if (data.surface.empty() && measurements.entries("surface").size() > 1) {
-        print_error(fmt::format(
-            "downwash: {} holds several surfaces, and all are fitted together; --surface selects one\n", data.file));
+    const Measurements measurements = given.data.read();
+    if (given.data.surface.empty() && measurements.entries("surface").size() > 1) {
+        print_error(
+            fmt::format("downwash: {} holds several surfaces, and all are fitted together; --surface selects one\n",
+                        given.data.file));
     }
     const EffectFit fit = fit_effect(known.model, measurements.points, options);
-    if (!plot.empty()) {
-        write_result(plot, draw(figures_of(known, fit, measurements.points, options.neighbours), settings), "--plot");
+    if (!given.plot.empty()) {
+        write_result(given.plot, draw(figures_of(known, fit, measurements.points, options.neighbours), settings),
+                     "--plot");
     }
-    if (as_json) {
+    if (given.as_json) {
         print_json(fit_json(known, fit, measurements.points));
     } else {
-        print_fit(*this, known, fit);
+        print_fit(given, known, fit);
     }
     return ExitCode::done;
-}
-
-void FitArguments::add_to(CLI::App& command) {
-    data.add_options(command);
-    CLI::Option* option = command.add_option("--model", model, "name of a model as in a problem file");
-    offer_models(*option->type_name("NAME")->required());
-    command.add_option("--fix", fixed, "keep a parameter at a value; may be repeated")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->take_all();
-    command.add_flag("--weighted", is_weighted, "weight each residual by 1 / sigma, a column of DATA");
-    command.add_option("--plot", plot, "draw measurements, curve and residuals to a .svg, .png or .pdf file")
-        ->type_name("FILE");
-    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_fit(CLI::App& aeromap, Action& action) {
-    add_command<FitArguments>(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares");
+    auto [command, given] =
+        add_command(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares", run);
+    given.data.add_options(command);
+    offer_models(*add_value(command, "--model NAME", given.model, "name of a model as in a problem file")->required());
+    add_value(command, "--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated")
+        ->expected(1)
+        ->take_all();
+    command.add_flag("--weighted", given.is_weighted, "weight each residual by 1 / sigma, a column of DATA");
+    add_value(command, "--plot FILE", given.plot,
+              "draw measurements, curve and residuals to a .svg, .png or .pdf file");
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

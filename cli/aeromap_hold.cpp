@@ -18,16 +18,11 @@
 namespace downwash::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct HoldArguments {
     std::string problem;
     double arm_deg = 0;
     std::vector<std::array<double, 2>> at;
     bool as_json = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 /// The answer for one point; everything but the place and the verdict may be missing.
@@ -104,23 +99,23 @@ void print_table(const std::vector<HoldAnswer>& answers) {
     }
 }
 
-ExitCode HoldArguments::run() const {
+ExitCode run(const HoldArguments& given) {
     constexpr double max_degrees = 3600;
-    if (!(std::abs(arm_deg) <= max_degrees)) {
-        throw UsageError(fmt::format("--arm-deg {}: expected an angle of at most {} degrees", arm_deg, max_degrees));
+    if (!(std::abs(given.arm_deg) <= max_degrees)) {
+        throw UsageError("--arm-deg {}: expected an angle of at most {} degrees", given.arm_deg, max_degrees);
     }
-    for (const auto& [x_m, z_m] : at) {
+    for (const auto& [x_m, z_m] : given.at) {
         require_coordinate(x_m, "--at");
         require_coordinate(z_m, "--at");
     }
-    const auto model = make_flight_model(read_problem(problem));
-    const double arm_rad = arm_deg / degrees_per_radian;
+    const auto model = make_flight_model(read_problem(given.problem));
+    const double arm_rad = given.arm_deg / degrees_per_radian;
     std::vector<HoldAnswer> answers;
-    for (const auto& [x_m, z_m] : at) {
+    for (const auto& [x_m, z_m] : given.at) {
         answers.push_back({x_m, z_m, analyse_hover(*model, x_m, z_m, arm_rad),
                            vehicle_effect(*model, PlanarPose{x_m, z_m, 0, arm_rad})});
     }
-    if (!as_json) {
+    if (!given.as_json) {
         print_table(answers);
         return ExitCode::done;
     }
@@ -128,24 +123,22 @@ ExitCode HoldArguments::run() const {
     for (const HoldAnswer& answer : answers) {
         points.push_back(json_of(answer, model->tick().plant.rotor_count));
     }
-    print_json({{"arm_deg", arm_deg}, {"points", std::move(points)}});
+    print_json({{"arm_deg", given.arm_deg}, {"points", std::move(points)}});
     return ExitCode::done;
-}
-
-void HoldArguments::add_to(CLI::App& command) {
-    add_problem(command, problem);
-    command.add_option("--arm-deg", arm_deg, "arm angle relative to the multirotor [deg]")->required()->type_name("A");
-    add_points(command, at, "centre of mass in plane coordinates [m], within the bounds or not; may be repeated")
-        ->required();
-    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_hold(CLI::App& aeromap, Action& action) {
-    add_command<HoldArguments>(
+    auto [command, given] = add_command(
         aeromap, action, "hold",
-        "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop");
+        "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop",
+        run);
+    add_problem(command, given.problem);
+    add_value(command, "--arm-deg A", given.arm_deg, "arm angle relative to the multirotor [deg]")->required();
+    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not; may be repeated")
+        ->required();
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

@@ -14,8 +14,6 @@
 namespace downwash::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json axis_json(const GridAxis& axis) {
     return {{"low_m", axis.low_m}, {"high_m", axis.high_m}, {"step_m", axis.step_m()}, {"nodes", axis.count}};
 }
@@ -108,22 +106,21 @@ void print_text(const std::string& file, const FactorGrid& grid) {
 struct InfoArguments {
     std::string file;
     bool as_json = false;
-
-    void add_to(CLI::App& command) {
-        command.add_option("FILE", file, ".vti or CSV file of factors")->required();
-        add_json(command, as_json);
-    }
-    [[nodiscard]] ExitCode run() const {
-        const FactorGrid grid = read_factor_grid(file);
-        as_json ? print_json(json_of(file, grid)) : print_text(file, grid);
-        return ExitCode::done;
-    }
 };
+
+ExitCode run(const InfoArguments& given) {
+    const FactorGrid grid = read_factor_grid(given.file);
+    given.as_json ? print_json(json_of(given.file, grid)) : print_text(given.file, grid);
+    return ExitCode::done;
+}
 
 }  // namespace
 
 void add_aeromap_info(CLI::App& aeromap, Action& action) {
-    add_command<InfoArguments>(aeromap, action, "info", "Show what a grid file holds and how it was made");
+    auto [command, given] =
+        add_command(aeromap, action, "info", "Show what a grid file holds and how it was made", run);
+    command.add_option("FILE", given.file, ".vti or CSV file of factors")->required();
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

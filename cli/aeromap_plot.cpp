@@ -43,66 +43,54 @@ std::string kinds_text() {
     return text;
 }
 
-bool shows_problem(const PlotRequest& request) {
-    return !request.problem.empty();
-}
-bool shows_vehicle(const PlotRequest& request) {
-    return shows_problem(request) && (request.what == "force" || request.what == "torque");
-}
-bool shows_hover(const PlotRequest& request) {
-    return shows_problem(request) && request.what == "hold";
-}
-bool shows_rotor(const PlotRequest& request) {
-    return shows_problem(request) && !shows_vehicle(request) && !shows_hover(request);
-}
-bool shows_models(const PlotRequest& request) {
-    return !request.models.empty();
-}
-bool shows_data(const PlotRequest& request) {
-    return !request.data.empty();
-}
-bool shows_multirotor(const PlotRequest& request) {
-    return std::any_of(request.models.begin(), request.models.end(),
-                       [](const std::string& name) { return is_multirotor(model_named(name).model); });
-}
-bool has_distances(const PlotRequest& request) {
-    return shows_models(request) || shows_data(request) || request.is_flow;
-}
+/// What a request asks to show.
+struct Shown {
+    explicit Shown(const PlotRequest& request)
+        : problem(!request.problem.empty()),
+          vehicle(problem && (request.what == "force" || request.what == "torque")),
+          hover(problem && request.what == "hold"),
+          rotor(problem && !vehicle && !hover),
+          models(!request.models.empty()),
+          data(!request.data.empty()),
+          distances(models || data || request.is_flow),
+          multirotor(std::any_of(request.models.begin(), request.models.end(),
+                                 [](const std::string& name) { return is_multirotor(model_named(name).model); })) {}
+
+    bool problem, vehicle, hover, rotor, models, data, distances, multirotor;
+};
 
 /// An option that only some pictures use.
 struct OptionUse {
     const char* option;
-    bool (*is_used)(const PlotRequest& request);
+    bool Shown::*is_used;
     const char* use;  ///< for people
 };
 
 constexpr std::array<OptionUse, 12> option_uses{{
-    {"--what", shows_problem, "PROBLEM"},
-    {"--rotor", shows_rotor, "PROBLEM and --what factor, ground or ceiling"},
-    {"--lateral", shows_rotor, "PROBLEM and --what factor, ground or ceiling"},
-    {"--arm-deg", shows_hover, "PROBLEM and --what hold"},
-    {"--pitch-deg", shows_vehicle, "PROBLEM and --what force or torque"},
-    {"--x", shows_problem, "PROBLEM"},
-    {"--z", shows_problem, "PROBLEM"},
-    {"--surface", shows_data, "--data"},
-    {"--source", shows_data, "--data"},
-    {"--max-factor", shows_models, "--model"},
-    {"--rotor-spacing", shows_multirotor, "--model multirotor-images or multirotor-body"},
-    {"--z-over-r", has_distances, "--model, --data or --flow"},
+    {"--what", &Shown::problem, "PROBLEM"},
+    {"--rotor", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
+    {"--lateral", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
+    {"--arm-deg", &Shown::hover, "PROBLEM and --what hold"},
+    {"--pitch-deg", &Shown::vehicle, "PROBLEM and --what force or torque"},
+    {"--x", &Shown::problem, "PROBLEM"},
+    {"--z", &Shown::problem, "PROBLEM"},
+    {"--surface", &Shown::data, "--data"},
+    {"--source", &Shown::data, "--data"},
+    {"--max-factor", &Shown::models, "--model"},
+    {"--rotor-spacing", &Shown::multirotor, "--model multirotor-images or multirotor-body"},
+    {"--z-over-r", &Shown::distances, "--model, --data or --flow"},
 }};
 
 /// A request with the command whose options gave it.
 struct PlotArguments : PlotRequest {
     const CLI::App* command = nullptr;
-
-    void add_to(CLI::App& plot);
-    [[nodiscard]] ExitCode run() const;
 };
 
 void reject_useless_options(const PlotArguments& request) {
+    const Shown shown(request);
     for (const OptionUse& use : option_uses) {
-        if (request.command->get_option(use.option)->count() > 0 && !use.is_used(request)) {
-            throw UsageError(fmt::format("{} changes nothing in this picture: it goes with {}", use.option, use.use));
+        if (request.command->get_option(use.option)->count() > 0 && !(shown.*use.is_used)) {
+            throw UsageError("{} changes nothing in this picture: it goes with {}", use.option, use.use);
         }
     }
 }
@@ -114,8 +102,8 @@ AxisRange shown_range(const char* option, const std::vector<double>& given, cons
         return usual;
     }
     if (!(given[0] < given[1] && std::abs(given[0]) <= max_m && std::abs(given[1]) <= max_m)) {
-        throw UsageError(fmt::format("{} {} {}: expected LOW below HIGH, in m, at most {} either way", option, given[0],
-                                     given[1], max_m));
+        throw UsageError("{} {} {}: expected LOW below HIGH, in m, at most {} either way", option, given[0], given[1],
+                         max_m);
     }
     return {given[0], given[1]};
 }
@@ -131,16 +119,16 @@ Bounds shown_extent(const PlotRequest& request, const Problem& problem) {
 }
 
 void require_sound_options(const PlotArguments& request) {
-    const bool has_models = shows_models(request) || shows_data(request);
-    if ((shows_problem(request) ? 1 : 0) + (has_models ? 1 : 0) + (request.is_flow ? 1 : 0) != 1) {
+    const bool has_models = !request.models.empty() || !request.data.empty();
+    if ((request.problem.empty() ? 0 : 1) + (has_models ? 1 : 0) + (request.is_flow ? 1 : 0) != 1) {
         throw UsageError(
             "aeromap plot needs one of PROBLEM, --model NAME... (with or without --data CSV), and --flow with "
             "--z-over-r H");
     }
-    static_cast<void>(entry_named(field_kinds, request.what, "there is no --what"));
+    static_cast<void>(entry_named(field_kinds, request.what, "--what"));
     reject_useless_options(request);
     if (!(std::abs(request.arm_deg) <= 1e5)) {
-        throw UsageError(fmt::format("--arm-deg {}: expected degrees, at most 1e5 either way", request.arm_deg));
+        throw UsageError("--arm-deg {}: expected degrees, at most 1e5 either way", request.arm_deg);
     }
     static_cast<void>(pitch_option(request.pitch_deg));
     if (request.lateral_m) {
@@ -152,70 +140,64 @@ std::string picture(const PlotRequest& request, const PictureSettings& settings)
     if (request.is_flow) {
         return draw(potential_flow_figure(request), settings);
     }
-    if (!shows_problem(request)) {
+    if (request.problem.empty()) {
         return draw(model_figure(request), settings);
     }
     const Problem problem = read_problem(request.problem);
-    const FieldKind& kind = entry_named(field_kinds, request.what, "there is no --what");
+    const FieldKind& kind = entry_named(field_kinds, request.what, "--what");
     return draw(kind.make(request, problem, shown_extent(request, problem)), settings);
 }
 
-ExitCode PlotArguments::run() const {
-    require_sound_options(*this);
-    const PictureSettings settings{picture_format("--output", output), width_px.value_or(PictureSettings{}.width_px)};
-    require_writable_result(output, "--output");
-    write_result(output, picture(*this, settings), "--output");
-    if (!is_quiet) {
-        print_error(fmt::format("wrote {}\n", output));
+ExitCode run(const PlotArguments& given) {
+    require_sound_options(given);
+    const PictureSettings settings{picture_format("--output", given.output),
+                                   given.width_px.value_or(PictureSettings{}.width_px)};
+    require_writable_result(given.output, "--output");
+    write_result(given.output, picture(given, settings), "--output");
+    if (!given.is_quiet) {
+        print_error(fmt::format("wrote {}\n", given.output));
     }
     return ExitCode::done;
-}
-
-void PlotArguments::add_to(CLI::App& plot) {
-    command = &plot;
-    plot.add_option("PROBLEM", problem, "problem file: draw a picture over its plane of motion");
-    CLI::Option* kind = plot.add_option("--what", what, "what to show of a problem: " + kinds_text());
-    offer_words(*kind->capture_default_str(), names_of(field_kinds));
-    CLI::Option* one_rotor =
-        plot.add_option("--rotor", rotor, "the rotor, counted from 1")->type_name("N")->capture_default_str();
-    plot.add_option("--lateral", lateral_m,
-                    "distance of its hub to the left of the plane of motion [m]; default: its own place")
-        ->type_name("Y")
-        ->excludes(one_rotor);
-    plot.add_option("--arm-deg", arm_deg, "angle of the arm with --what hold")->type_name("A")->capture_default_str();
-    plot.add_option("--pitch-deg", pitch_deg, "pitch of the vehicle with --what force or torque, positive nose down")
-        ->type_name("P")
-        ->capture_default_str();
-    plot.add_option("--x", x_m, "shown part of the plane [m]; default: the reach of the rotors")
-        ->expected(2)
-        ->type_name("LOW HIGH");
-    plot.add_option("--z", z_m, "the same for z")->expected(2)->type_name("LOW HIGH");
-    CLI::Option* model = plot.add_option("--model", models, "curves of K over z/R, by names as in a problem file");
-    offer_models(*model->type_name("NAME..."));
-    plot.add_option("--data", data, "measurements to show with them: CSV as for `aeromap fit`")->type_name("CSV");
-    CLI::Option* one_surface = plot.add_option("--surface", surface, "only measurements at this surface");
-    offer_words(*one_surface->type_name("S"), measured_surfaces);
-    plot.add_option("--source", source, "only measurements of this source")->type_name("NAME");
-    plot.add_option("--max-factor", max_factor, "cap of the models; default 2")->type_name("K");
-    plot.add_option("--rotor-spacing", rotor_spacing,
-                    "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5")
-        ->type_name("D");
-    plot.add_flag("--flow", is_flow, "the potential flow of a rotor and its image below the ground");
-    plot.add_option("--z-over-r", z_over_r,
-                    "shown range of curves (default 0 4), or the rotor's height with --flow [radii]")
-        ->expected(1, 2)
-        ->type_name("LOW HIGH");
-    plot.add_option("-o,--output", output, "the picture, .svg, .png or .pdf")->required()->type_name("FILE");
-    add_width(plot, width_px);
-    add_quiet(plot, is_quiet);
 }
 
 }  // namespace
 
 void add_aeromap_plot(CLI::App& aeromap, Action& action) {
-    add_command<PlotArguments>(aeromap, action, "plot",
-                               "Draw a problem's aero map, curves of models with measurements, or a rotor's potential "
-                               "flow");
+    auto [plot, given] =
+        add_command(aeromap, action, "plot",
+                    "Draw a problem's aero map, curves of models with measurements, or a rotor's potential flow", run);
+    given.command = &plot;
+    plot.add_option("PROBLEM", given.problem, "problem file: draw a picture over its plane of motion");
+    CLI::Option* kind = plot.add_option("--what", given.what, "what to show of a problem: " + kinds_text());
+    offer_words(*kind->capture_default_str(), names_of(field_kinds));
+    CLI::Option* one_rotor =
+        add_value(plot, "--rotor N", given.rotor, "the rotor, counted from 1")->capture_default_str();
+    add_value(plot, "--lateral Y", given.lateral_m,
+              "distance of its hub to the left of the plane of motion [m]; default: its own place")
+        ->excludes(one_rotor);
+    add_value(plot, "--arm-deg A", given.arm_deg, "angle of the arm with --what hold")->capture_default_str();
+    add_value(plot, "--pitch-deg P", given.pitch_deg,
+              "pitch of the vehicle with --what force or torque, positive nose down")
+        ->capture_default_str();
+    add_value(plot, "--x LOW HIGH", given.x_m, "shown part of the plane [m]; default: the reach of the rotors")
+        ->expected(2);
+    add_value(plot, "--z LOW HIGH", given.z_m, "the same for z")->expected(2);
+    CLI::Option* model =
+        plot.add_option("--model", given.models, "curves of K over z/R, by names as in a problem file");
+    offer_models(*model->type_name("NAME..."));
+    add_value(plot, "--data CSV", given.data, "measurements to show with them: CSV as for `aeromap fit`");
+    offer_words(*add_value(plot, "--surface S", given.surface, "only measurements at this surface"), measured_surfaces);
+    add_value(plot, "--source NAME", given.source, "only measurements of this source");
+    add_value(plot, "--max-factor K", given.max_factor, "cap of the models; default 2");
+    add_value(plot, "--rotor-spacing D", given.rotor_spacing,
+              "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5");
+    plot.add_flag("--flow", given.is_flow, "the potential flow of a rotor and its image below the ground");
+    add_value(plot, "--z-over-r LOW HIGH", given.z_over_r,
+              "shown range of curves (default 0 4), or the rotor's height with --flow [radii]")
+        ->expected(1, 2);
+    add_value(plot, "-o,--output FILE", given.output, "the picture, .svg, .png or .pdf")->required();
+    add_width(plot, given.width_px);
+    add_quiet(plot, given.is_quiet);
 }
 
 }  // namespace downwash::cli

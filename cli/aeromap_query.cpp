@@ -24,8 +24,6 @@
 namespace downwash::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct QueryArguments {
     std::string problem;
     std::vector<std::array<double, 3>> at;
@@ -34,9 +32,6 @@ struct QueryArguments {
     ModelChoice model;
     std::vector<double> z_over_r;
     bool no_cache = false, as_json = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 /// The effect of surfaces on a rotor at one point; the factors are empty where it is not flyable.
@@ -50,10 +45,10 @@ struct PointEffect {
 class Effects {
  public:
     /// @param cache folder of maps of earlier runs; empty: none
-    Effects(const QueryArguments& arguments, const Problem& problem, std::filesystem::path cache)
+    Effects(const QueryArguments& given, const Problem& problem, std::filesystem::path cache)
         : problem_(problem),
           model_(make_flight_model(problem)),
-          rotor_(rotor_option(arguments.rotor, model_->tick().plant.rotor_count)),
+          rotor_(rotor_option(given.rotor, model_->tick().plant.rotor_count)),
           cache_(std::move(cache)) {}
 
     PointEffect at(const std::array<double, 3>& point_m) {
@@ -166,8 +161,7 @@ std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::s
         }
         const auto point_m = point_in(line);
         if (!point_m) {
-            throw UsageError(
-                fmt::format("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(trimmed(line))));
+            throw UsageError("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(trimmed(line)));
         }
         require_place(*point_m, fmt::format("{}:{}:", name, number));
         points.push_back(*point_m);
@@ -175,30 +169,28 @@ std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::s
     return points;
 }
 
-std::vector<std::array<double, 3>> all_points(const QueryArguments& arguments) {
-    std::vector<std::array<double, 3>> points = arguments.at;
+std::vector<std::array<double, 3>> all_points(const QueryArguments& given) {
+    std::vector<std::array<double, 3>> points = given.at;
     for (const auto& point_m : points) {
         require_place(point_m, "--at");
     }
-    if (arguments.points.empty()) {
+    if (given.points.empty()) {
         return points;
     }
-    const auto reject = [&arguments](const char* why) {
-        throw UsageError("--points " + arguments.points + ": " + why);
-    };
+    const auto reject = [&given](const char* why) { throw UsageError("--points " + given.points + ": " + why); };
     std::vector<std::array<double, 3>> further;
-    if (arguments.points == "-") {
+    if (given.points == "-") {
         further = read_points(std::cin, "standard input");
     } else {
         std::error_code none;
-        if (std::filesystem::is_directory(arguments.points, none)) {
+        if (std::filesystem::is_directory(given.points, none)) {
             reject("is a directory, expected a file");
         }
-        std::ifstream file(arguments.points);  // or a pipe
+        std::ifstream file(given.points);  // or a pipe
         if (!file) {
             reject("cannot be read");
         }
-        further = read_points(file, arguments.points);
+        further = read_points(file, given.points);
     }
     if (further.empty()) {
         reject("holds no point, expected lines of three numbers, x_m y_m z_m");
@@ -207,27 +199,27 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& arguments) {
     return points;
 }
 
-void query_problem(const QueryArguments& arguments) {
-    const Problem problem = read_problem(arguments.problem);
-    Effects effects(arguments, problem, cache_folder(arguments.no_cache));
+void query_problem(const QueryArguments& given) {
+    const Problem problem = read_problem(given.problem);
+    Effects effects(given, problem, cache_folder(given.no_cache));
     std::vector<PointEffect> points;
-    for (const auto& point_m : all_points(arguments)) {
+    for (const auto& point_m : all_points(given)) {
         points.push_back(effects.at(point_m));
     }
-    print_points(points, arguments.as_json);
+    print_points(points, given.as_json);
 }
 
-void query_model(const QueryArguments& arguments) {
-    const EffectCurve curve = curve_option(arguments.model);
+void query_model(const QueryArguments& given) {
+    const EffectCurve curve = curve_option(given.model);
     const EffectModelInfo& model = info(curve.effect().model);
     auto points = Json::array();
-    for (const double z_over_r : arguments.z_over_r) {
+    for (const double z_over_r : given.z_over_r) {
         if (!(z_over_r >= 0 && std::isfinite(z_over_r))) {
-            throw UsageError(fmt::format("--z-over-r {}: expected a finite distance in radii, at least 0", z_over_r));
+            throw UsageError("--z-over-r {}: expected a finite distance in radii, at least 0", z_over_r);
         }
         points.push_back({{"z_over_r", z_over_r}, {"factor", curve(z_over_r)}});
     }
-    if (arguments.as_json) {
+    if (given.as_json) {
         print_json({{"model", model.name}, {"points", std::move(points)}});
         return;
     }
@@ -238,48 +230,42 @@ void query_model(const QueryArguments& arguments) {
     }
 }
 
-ExitCode QueryArguments::run() const {
-    const bool has_model = !model.name.empty();
-    const bool has_points = !at.empty() || !points.empty();
-    if (problem.empty() != has_model) {
+ExitCode run(const QueryArguments& given) {
+    const bool has_model = !given.model.name.empty();
+    const bool has_points = !given.at.empty() || !given.points.empty();
+    if (given.problem.empty() != has_model) {
         throw UsageError("aeromap query needs either PROBLEM with --at X Y Z, or --model NAME with --z-over-r V");
     }
-    if (has_model && (z_over_r.empty() || has_points || rotor)) {
+    if (has_model && (given.z_over_r.empty() || has_points || given.rotor)) {
         throw UsageError("--model needs --z-over-r V... and excludes --at, --points and --rotor");
     }
-    if (!has_model && (!has_points || !z_over_r.empty() || is_given(model))) {
+    if (!has_model && (!has_points || !given.z_over_r.empty() || is_given(given.model))) {
         throw UsageError("PROBLEM needs --at X Y Z or --points FILE and excludes the options of --model");
     }
-    has_model ? query_model(*this) : query_problem(*this);
+    has_model ? query_model(given) : query_problem(given);
     return ExitCode::done;
-}
-
-void QueryArguments::add_to(CLI::App& command) {
-    command.add_option("PROBLEM", problem, "problem file");
-    add_points(command, at,
-               "rotor hub in the world frame [m]; may be repeated. `factor` comes from the problem's map if the point "
-               "lies on one of its planes");
-    command.add_option("--points", points, "file with more points, one per line; - reads them from standard input")
-        ->type_name("FILE");
-    command
-        .add_option("--rotor", rotor,
-                    "the rotor whose neighbours the multirotor models consider, counted from 1; default 1")
-        ->type_name("N");
-    CLI::Option* option = command.add_option("--model", model.name, "name of a model as in a problem file");
-    offer_models(*option->type_name("NAME"));
-    command.add_option("--z-over-r", z_over_r, "distances in rotor radii")->type_name("V...");
-    add_model_options(command, model);
-    add_no_cache(command, no_cache);
-    add_json(command, as_json);
 }
 
 }  // namespace
 
 void add_aeromap_query(CLI::App& aeromap, Action& action) {
-    add_command<QueryArguments>(
+    auto [command, given] = add_command(
         aeromap, action, "query",
-        "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a "
-        "wide flat surface");
+        "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a wide flat surface",
+        run);
+    command.add_option("PROBLEM", given.problem, "problem file");
+    add_points(command, given.at,
+               "rotor hub in the world frame [m]; may be repeated. `factor` comes from the problem's map if the point "
+               "lies on one of its planes");
+    add_value(command, "--points FILE", given.points,
+              "file with more points, one per line; - reads them from standard input");
+    add_value(command, "--rotor N", given.rotor,
+              "the rotor whose neighbours the multirotor models consider, counted from 1; default 1");
+    offer_models(*add_value(command, "--model NAME", given.model.name, "name of a model as in a problem file"));
+    add_value(command, "--z-over-r V...", given.z_over_r, "distances in rotor radii");
+    add_model_options(command, given.model);
+    add_no_cache(command, given.no_cache);
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

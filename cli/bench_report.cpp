@@ -16,9 +16,6 @@ struct BenchReportArguments {
     std::string folder;
     bool as_json = false, as_html = false, as_latex = false, as_csv = false;
     std::optional<std::string> out;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 std::string text_of(const bench::CampaignReport& report, const BenchReportArguments& as) {
@@ -31,38 +28,37 @@ std::string text_of(const bench::CampaignReport& report, const BenchReportArgume
                          : bench::markdown_of(report);
 }
 
-ExitCode BenchReportArguments::run() const {
-    if (as_html) {
+ExitCode run(const BenchReportArguments& given) {
+    if (given.as_html) {
         require_pages();
     }
-    const bench::CampaignReport report = bench::report_of(bench::read_results(folder));
-    const std::string text = text_of(report, *this);
-    if (out) {
-        write_result(*out, text);
+    const bench::CampaignReport report = bench::report_of(bench::read_results(given.folder));
+    const std::string text = text_of(report, given);
+    if (given.out) {
+        write_result(*given.out, text);
     } else {
         fmt::print("{}", text);
     }
     return report.meets_its_targets() ? ExitCode::done : ExitCode::no_solution;
 }
 
-void BenchReportArguments::add_to(CLI::App& command) {
-    command.add_option("DIR", folder, "folder that `bench run` wrote to")->required();
-    CLI::Option* json = command.add_flag("--json", as_json, "JSON: every figure, and those of every seed");
-    CLI::Option* html = command.add_flag("--html", as_html, "one HTML page with pictures, as `bench run` writes it");
-    CLI::Option* latex = command.add_flag("--latex", as_latex, "a table for papers, for the LaTeX package booktabs");
-    CLI::Option* csv = command.add_flag("--csv", as_csv, "CSV: one row per problem and planner");
-    html->excludes(json);
-    latex->excludes(json)->excludes(html);
-    csv->excludes(json)->excludes(html)->excludes(latex);
-    command.add_option("-o,--out", out, "file to write to; default: standard output")->type_name("FILE");
-}
-
 }  // namespace
 
 void add_bench_report(CLI::App& bench, Action& action) {
-    add_command<BenchReportArguments>(
+    auto [command, given] = add_command(
         bench, action, "report",
-        "Report the results of a campaign as Markdown; exit code 1 if it misses a target that its file sets");
+        "Report the results of a campaign as Markdown; exit code 1 if it misses a target that its file sets", run);
+    command.add_option("DIR", given.folder, "folder that `bench run` wrote to")->required();
+    CLI::Option* json = command.add_flag("--json", given.as_json, "JSON: every figure, and those of every seed");
+    CLI::Option* html =
+        command.add_flag("--html", given.as_html, "one HTML page with pictures, as `bench run` writes it");
+    CLI::Option* latex =
+        command.add_flag("--latex", given.as_latex, "a table for papers, for the LaTeX package booktabs");
+    CLI::Option* csv = command.add_flag("--csv", given.as_csv, "CSV: one row per problem and planner");
+    html->excludes(json);
+    latex->excludes(json)->excludes(html);
+    csv->excludes(json)->excludes(html)->excludes(latex);
+    add_value(command, "-o,--out FILE", given.out, "file to write to; default: standard output");
 }
 
 }  // namespace downwash::cli

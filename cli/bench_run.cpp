@@ -20,23 +20,20 @@ struct BenchRunArguments {
     std::string campaign;
     std::optional<std::string> out;
     bool resumes = false, no_cache = false, is_quiet = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
-ExitCode BenchRunArguments::run() const {
+ExitCode run(const BenchRunArguments& given) {
     const Interruption interruption;
-    const ReadCampaign read = read_campaign(campaign);
+    const ReadCampaign read = read_campaign(given.campaign);
     bench::CampaignRunOptions options;
-    options.out = out.value_or("downwash-out/bench-" + read.campaign.name);
-    options.resumes = resumes;
-    options.map_cache = cache_folder(no_cache);
+    options.out = given.out.value_or("downwash-out/bench-" + read.campaign.name);
+    options.resumes = given.resumes;
+    options.map_cache = cache_folder(given.no_cache);
     options.stop = interruption.token();
     bench::CampaignProgress progress;
     {
-        ProgressDisplay display(is_quiet);
-        display.say(fmt::format("{}: running into {}", read.campaign.name, options.out.string()));
+        ProgressDisplay display(given.is_quiet);
+        display.say(fmt::format("{}: writing results to {}", read.campaign.name, options.out.string()));
         options.on_progress = [&](double share) { display.show(read.campaign.name, share); };
         options.on_map_progress = [&](const std::string& problem, double share) {
             display.show("aero map of " + problem, share);
@@ -55,21 +52,18 @@ ExitCode BenchRunArguments::run() const {
     return is_over ? ExitCode::done : interruption.code();
 }
 
-void BenchRunArguments::add_to(CLI::App& command) {
-    command.add_option("CAMPAIGN", campaign, "campaign file")->required();
-    command.add_option("--out", out, "folder for the results; default downwash-out/bench-NAME/")->type_name("DIR");
-    command.add_flag("--resume", resumes,
-                     "continue with the results that are there, if they were begun with the same settings");
-    add_no_cache(command, no_cache);
-    add_quiet(command, is_quiet);
-}
-
 }  // namespace
 
 void add_bench_run(CLI::App& bench, Action& action) {
-    add_command<BenchRunArguments>(
+    auto [command, given] = add_command(
         bench, action, "run",
-        "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db");
+        "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db", run);
+    command.add_option("CAMPAIGN", given.campaign, "campaign file")->required();
+    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
+    command.add_flag("--resume", given.resumes,
+                     "continue with the results that are there, if they were begun with the same settings");
+    add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
 }
 
 }  // namespace downwash::cli

@@ -19,6 +19,7 @@ void add_export(CLI::App& program, Action& action);
 void add_init(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);
 void add_manual(CLI::App& program, Action& action);
+void add_completion(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 void add_aeromap_query(CLI::App& aeromap, Action& action);

@@ -43,29 +43,24 @@ void add_no_cache(CLI::App& command, bool& no_cache) {
 }
 
 void add_threads(CLI::App& command, int& threads) {
-    command
-        .add_option("--threads", threads,
-                    fmt::format("number of threads, 1 to {}; the result does not depend on it; default: one per "
-                                "processor",
-                                max_threads))
-        ->type_name("N")
+    add_value(command, "--threads N", threads,
+              fmt::format("number of threads, 1 to {}; the result does not depend on it; default: one per processor",
+                          max_threads))
         ->check(CLI::Range(1, max_threads));
 }
 
 void add_width(CLI::App& command, std::optional<int>& width_px) {
-    command
-        .add_option("--width", width_px,
-                    fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
-                                max_picture_width_px, PictureSettings{}.width_px))
-        ->type_name("PX")
+    add_value(command, "--width PX", width_px,
+              fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
+                          max_picture_width_px, PictureSettings{}.width_px))
         ->check(CLI::Range(min_picture_width_px, max_picture_width_px));
 }
 
 void require_coordinate(double coordinate_m, const std::string& where) {
     constexpr double max_m = 1e6;
     if (!(std::abs(coordinate_m) <= max_m)) {
-        throw UsageError(fmt::format("{} {}: expected finite coordinates in m, at most {:g} either way", where,
-                                     coordinate_m, max_m));
+        throw UsageError("{} {}: expected finite coordinates in m, at most {:g} either way", where, coordinate_m,
+                         max_m);
     }
 }
 
@@ -87,7 +82,7 @@ std::filesystem::path cache_folder(bool no_cache) {
 int rotor_option(const std::optional<int>& number, int rotors) {
     const int rotor = number.value_or(1);
     if (rotor < 1 || rotor > rotors) {
-        throw UsageError(fmt::format("--rotor {}: expected a number from 1 to {}", rotor, rotors));
+        throw UsageError("--rotor {}: expected a number from 1 to {}", rotor, rotors);
     }
     return rotor - 1;
 }
@@ -95,8 +90,8 @@ int rotor_option(const std::optional<int>& number, int rotors) {
 double pitch_option(double pitch_deg) {
     constexpr double max_deg = 80;  // beyond it a multirotor is lost: unstable_pitch_rad
     if (!(std::abs(pitch_deg) <= max_deg)) {
-        throw UsageError(fmt::format("--pitch-deg {}: expected degrees, at most {} either way, positive nose down",
-                                     pitch_deg, max_deg));
+        throw UsageError("--pitch-deg {}: expected degrees, at most {} either way, positive nose down", pitch_deg,
+                         max_deg);
     }
     return pitch_deg / degrees_per_radian;
 }
@@ -104,8 +99,7 @@ double pitch_option(double pitch_deg) {
 PictureFormat picture_format(const std::string& option, const std::string& file) {
     const std::optional<PictureFormat> format = picture_format_of(file);
     if (!format) {
-        throw UsageError(
-            fmt::format("{} '{}': expected a name that ends in .svg, .png or .pdf", option, excerpt(file)));
+        throw UsageError("{} '{}': expected a name that ends in .svg, .png or .pdf", option, excerpt(file));
     }
     return *format;
 }

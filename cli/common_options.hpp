@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
@@ -13,14 +14,22 @@
 
 namespace downwash::cli {
 
-/// Adds a command. `Arguments` holds the values of its options; it adds them by `add_to(CLI::App&)` and does what the
-/// command is for by `ExitCode run() const`.
+/// Adds a command: if it is given, `run` is called with the values of its options.
+/// @return the command and those values, for its options to be added
 template <class Arguments>
-void add_command(CLI::App& parent, Action& action, const std::string& name, const std::string& description) {
-    const auto arguments = std::make_shared<Arguments>();
+std::pair<CLI::App&, Arguments&> add_command(CLI::App& parent, Action& action, const std::string& name,
+                                             const std::string& description, ExitCode (*run)(const Arguments&)) {
+    const auto given = std::make_shared<Arguments>();
     CLI::App* command = parent.add_subcommand(name, description);
-    arguments->add_to(*command);
-    command->callback([arguments, &action] { action = [arguments] { return arguments->run(); }; });
+    command->callback([=, &action] { action = [=] { return run(*given); }; });
+    return {*command, *given};
+}
+
+/// Adds an option with a value, spelled as in the help: "--step M" or "-o,--out FILE".
+template <class Value>
+CLI::Option* add_value(CLI::App& command, const std::string& spelling, Value& value, const std::string& description) {
+    const std::size_t blank = spelling.find(' ');
+    return command.add_option(spelling.substr(0, blank), value, description)->type_name(spelling.substr(blank + 1));
 }
 
 // Options that several commands have, each with the same name and meaning everywhere.

@@ -66,27 +66,17 @@ std::string case_of(const CLI::App& command, const CLI::Option& option, const st
     return fmt::format("{}) next='{}' ;;\n", fmt::join(patterns, " | "), next);
 }
 
-/// As cases of a shell script: what follows an option that takes a value, its words or else a file.
-std::string cases_of_options(const CLI::App& program) {
+/// As cases of a shell script: what follows an option that takes values; its words, or else a file.
+/// @param is_after_value whether a value was given and more may follow: then words of the command follow, too
+std::string cases_of_options(const CLI::App& program, bool is_after_value) {
     std::string cases;
-    for_each_command(program, [&cases](const CLI::App& command) {
-        for (const CLI::Option* option : options_of(command, false)) {
-            if (option->get_items_expected_max() > 0) {
-                cases += "        " + case_of(command, *option, offered_words(*option));
-            }
-        }
-    });
-    return cases;
-}
-
-/// The same: what follows a value of an option that takes several.
-std::string cases_of_more_values(const CLI::App& program) {
-    std::string cases;
-    for_each_command(program, [&cases](const CLI::App& command) {
+    for_each_command(program, [&](const CLI::App& command) {
         for (const CLI::Option* option : options_of(command, false)) {
             const std::string offered = offered_words(*option);
-            if (option->get_items_expected_max() > 1 && !offered.empty()) {
+            if (is_after_value && option->get_items_expected_max() > 1 && !offered.empty()) {
                 cases += "            " + case_of(command, *option, offered + " " + words_after(command));
+            } else if (!is_after_value && option->get_items_expected_max() > 0) {
+                cases += "        " + case_of(command, *option, offered);
             }
         }
     });
@@ -118,7 +108,7 @@ void offer_words(CLI::Option& option, std::span<const std::string_view> words) {
     option.check(CLI::Validator([](std::string& /*text*/) { return std::string(); }, "", joined(words)));
 }
 
-void require_one_of(CLI::Option& option, std::span<const std::string_view> words) {
+void require_one_of(CLI::Option& option, const std::vector<std::string_view>& words) {
     option.type_name(fmt::format("{}", fmt::join(words, "|")));
     option.check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())), joined(words));
 }
@@ -129,8 +119,8 @@ std::string completion_script(const CLI::App& program, const std::string& shell)
         script.replace(script.find(gap), gap.size(), text);
     };
     fill("@commands@", names_of_commands(program));
-    fill("@values@", cases_of_options(program));
-    fill("@more_values@", cases_of_more_values(program));
+    fill("@values@", cases_of_options(program, false));
+    fill("@more_values@", cases_of_options(program, true));
     fill("@words@", cases_of_commands(program));
     if (shell != "zsh") {
         return script;

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace downwash::cli {
 
@@ -11,7 +12,7 @@ namespace downwash::cli {
 void offer_words(CLI::Option& option, std::span<const std::string_view> words);
 
 /// Restricts an option to these words; they are offered and shown as its type.
-void require_one_of(CLI::Option& option, std::span<const std::string_view> words);
+void require_one_of(CLI::Option& option, const std::vector<std::string_view>& words);
 
 /// A script that completes the program's command line in a shell: "bash" or "zsh".
 [[nodiscard]] std::string completion_script(const CLI::App& program, const std::string& shell);

@@ -2,10 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <chrono>
 #include <optional>
-#include <string_view>
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
@@ -28,9 +26,6 @@ struct ExecuteArguments {
     std::string aero = "on";
     std::optional<std::string> out;
     bool no_cache = false, as_json = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
@@ -48,15 +43,15 @@ bool holds_plan(const fs::path& folder, const std::string& plan) {
     return fs::equivalent(folder / "solution.json", plan, error);
 }
 
-fs::path folder_for(const ExecuteArguments& arguments, const Problem& problem) {
-    if (!arguments.out) {
+fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
+    if (!given.out) {
         const fs::path folder = default_folder(problem);
-        return holds_plan(folder, arguments.plan) ? fs::path(folder.string() + "-executed") : folder;
+        return holds_plan(folder, given.plan) ? fs::path(folder.string() + "-executed") : folder;
     }
-    if (holds_plan(*arguments.out, arguments.plan)) {
-        throw UsageError("--out " + *arguments.out + " holds the plan itself, which would be replaced; choose another");
+    if (holds_plan(*given.out, given.plan)) {
+        throw UsageError("--out " + *given.out + " holds the plan itself, which would be replaced; choose another");
     }
-    return *arguments.out;
+    return *given.out;
 }
 
 void fly(const Problem& problem, bool aero, Solution& solution) {
@@ -68,44 +63,40 @@ void fly(const Problem& problem, bool aero, Solution& solution) {
     solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-ExitCode ExecuteArguments::run() const {
+ExitCode run(const ExecuteArguments& given) {
     const Interruption interruption;
-    Problem read = read_problem(problem);
-    Solution solution = read_solution(plan, read);
+    Problem read = read_problem(given.problem);
+    Solution solution = read_solution(given.plan, read);
     read = as_planned(std::move(read), solution);
-    const OutputFolder folder(folder_for(*this, read));
-    fly(read, aero == "on", solution);
-    const RunRecord record = write_results(folder, read, problem, solution);
-    write_page(folder, record, nullptr, cache_folder(no_cache));
-    fmt::print("{}", as_json ? record.solution_text
-                             : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
+    const OutputFolder folder(folder_for(given, read));
+    fly(read, given.aero == "on", solution);
+    const RunRecord record = write_results(folder, read, given.problem, solution);
+    write_page(folder, record, nullptr, cache_folder(given.no_cache));
+    fmt::print("{}", given.as_json ? record.solution_text
+                                   : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
         return interruption.code();
     }
     return solution.execution->outcome == Outcome::ok ? ExitCode::done : ExitCode::flight_failed;
 }
 
-void ExecuteArguments::add_to(CLI::App& command) {
-    add_problem(command, problem);
-    command.add_option("--plan", plan, "solution.json that holds the plan")->type_name("FILE")->required();
-    CLI::Option* option =
-        command.add_option("--aero", aero, "on: surface effects evaluated directly (default); off: free air");
-    require_one_of(*option, std::array<std::string_view, 2>{"on", "off"});
-    command
-        .add_option("--out", out,
-                    "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the "
-                    "plan itself is in that folder")
-        ->type_name("DIR");
-    add_no_cache(command, no_cache);
-    add_json(command, as_json, "print solution.json on standard output instead of a summary");
-}
-
 }  // namespace
 
 void add_execute(CLI::App& program, Action& action) {
-    add_command<ExecuteArguments>(
+    auto [command, given] = add_command(
         program, action, "execute",
-        "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied");
+        "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied",
+        run);
+    add_problem(command, given.problem);
+    add_value(command, "--plan FILE", given.plan, "solution.json that holds the plan")->required();
+    CLI::Option* option =
+        command.add_option("--aero", given.aero, "on: surface effects evaluated directly (default); off: free air");
+    require_one_of(*option, {"on", "off"});
+    add_value(command, "--out DIR", given.out,
+              "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
+              "itself is in that folder");
+    add_no_cache(command, given.no_cache);
+    add_json(command, given.as_json, "print solution.json on standard output instead of a summary");
 }
 
 }  // namespace downwash::cli

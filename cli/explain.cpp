@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +17,6 @@ namespace {
 struct ExplainArguments {
     std::string key;
     std::string kind = "problem";
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
 bool ends_with_key(std::string_view path, std::string_view key) {
@@ -73,9 +69,9 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     return text + (below.empty() ? "" : "  keys:\n" + below);
 }
 
-ExitCode ExplainArguments::run() const {
-    const std::vector<KeyReference>& all = key_reference(*file_kind_named(kind));
-    const std::string wanted = without_indices(key);
+ExitCode run(const ExplainArguments& given) {
+    const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
+    const std::string wanted = without_indices(given.key);
     std::string text;
     for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
         for (const KeyReference& known : all) {
@@ -93,20 +89,18 @@ ExitCode ExplainArguments::run() const {
         names.push_back(known.info.path);
         names.push_back(last_name(known.info.path));
     }
-    throw UsageError(fmt::format("a {} file has no key '{}'{}", kind, excerpt(key), did_you_mean(wanted, names)));
-}
-
-void ExplainArguments::add_to(CLI::App& command) {
-    command.add_option("KEY", key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")->required();
-    CLI::Option* option = command.add_option("--of", kind, "kind of file; default problem, with its robot");
-    require_one_of(*option, std::array<std::string_view, 3>{"problem", "robot", "campaign"});
+    throw UsageError("a {} file has no key '{}'{}", given.kind, excerpt(given.key), did_you_mean(wanted, names));
 }
 
 }  // namespace
 
 void add_explain(CLI::App& program, Action& action) {
-    add_command<ExplainArguments>(program, action, "explain",
-                                  "Explain a key of a file: its meaning, the expected value and the default");
+    auto [command, given] = add_command(
+        program, action, "explain", "Explain a key of a file: its meaning, the expected value and the default", run);
+    command.add_option("KEY", given.key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")
+        ->required();
+    CLI::Option* option = command.add_option("--of", given.kind, "kind of file; default problem, with its robot");
+    require_one_of(*option, {"problem", "robot", "campaign"});
 }
 
 }  // namespace downwash::cli

@@ -22,11 +22,6 @@ namespace fs = std::filesystem;
 
 struct InitArguments {
     std::string file = "my_problem.yaml";
-
-    void add_to(CLI::App& command) {
-        command.add_option("FILE", file, "name of the problem file; default my_problem.yaml");
-    }
-    [[nodiscard]] ExitCode run() const;
 };
 
 /// The text with every occurrence of a word replaced.
@@ -65,8 +60,8 @@ void write_new(const fs::path& file, std::string_view content) {
     write_result(file, content);
 }
 
-ExitCode InitArguments::run() const {
-    const fs::path problem(file);
+ExitCode run(const InitArguments& given) {
+    const fs::path problem(given.file);
     const fs::path robot = problem.parent_path() / "ars_lrm.yaml";
     write_new(problem, first_problem_for(problem));
     if (!fs::exists(robot)) {
@@ -79,9 +74,10 @@ ExitCode InitArguments::run() const {
 }  // namespace
 
 void add_init(CLI::App& program, Action& action) {
-    add_command<InitArguments>(
+    auto [command, given] = add_command(
         program, action, "init",
-        "Write a commented problem to start from, with its robot beside it; existing files are never replaced");
+        "Write a commented problem to start from, with its robot beside it; existing files are never replaced", run);
+    command.add_option("FILE", given.file, "name of the problem file; default my_problem.yaml");
 }
 
 }  // namespace downwash::cli

@@ -55,8 +55,8 @@ void reject_unknown_command(const CLI::App& command, std::span<char* const> word
         names.push_back(one->get_name());
     }
     const std::string parent = command.get_parent() != nullptr ? command.get_name() + " " : "";
-    throw UsageError(fmt::format("there is no command '{}{}': expected {}{}", parent, excerpt(word),
-                                 joined_names(names), did_you_mean(word, names)));
+    throw UsageError("there is no command '{}{}': expected {}{}", parent, excerpt(word), joined_names(names),
+                     did_you_mean(word, names));
 }
 
 void add_aeromap(CLI::App& program, Action& action) {
@@ -91,7 +91,7 @@ ExitCode run(int argc, char** argv) {
     program.failure_message(usage_error);
     Action action;
     for (const auto add : {add_init, add_check, add_explain, add_solve, add_execute, add_aeromap, add_bench, add_report,
-                           add_export, add_planners, add_manual}) {
+                           add_export, add_planners, add_manual, add_completion}) {
         add(program, action);
     }
     reject_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
@@ -131,8 +131,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         downwash::cli::print_errors(
             "out of memory: choose a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer obstacles "
-            "or a "
-            "shorter search");
+            "or a shorter search");
     } catch (const std::exception& error) {
         downwash::cli::print_errors(error.what());
     }

@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "downwash/base/text.hpp"
@@ -151,8 +149,7 @@ std::string markdown_page(const CLI::App& program) {
         "The program prints this page (`cmake --build build --target docs`). `{0} COMMAND --help` prints the help of "
         "one\n"
         "command, `{0} manual COMMAND | man -l -` shows it as a manual page, and `{0} completion bash` completes "
-        "command "
-        "lines.\n\n"
+        "command lines.\n\n"
         "| command | |\n| --- | --- |\n{1}\n{2}\n{3}",
         program.get_name(), contents, program.get_footer(), sections);
 }
@@ -164,7 +161,7 @@ const CLI::App& command_named(const CLI::App& program, const std::vector<std::st
         const auto found =
             std::find_if(below.begin(), below.end(), [&name](const CLI::App* one) { return one->get_name() == name; });
         if (found == below.end()) {
-            throw UsageError(fmt::format("there is no command '{} {}'", full_name(*command), excerpt(name)));
+            throw UsageError("there is no command '{} {}'", full_name(*command), excerpt(name));
         }
         command = *found;
     }
@@ -176,56 +173,54 @@ struct ManualArguments {
     std::vector<std::string> names;
     std::optional<std::string> all;
     bool is_markdown = false;
-
-    void add_to(CLI::App& command) {
-        program = command.get_parent();
-        CLI::Option* one = command.add_option("COMMAND", names, "the command, for example: aeromap plot");
-        CLI::Option* pages =
-            command
-                .add_option("--all", all, "write the pages of all commands to a folder instead: downwash-solve.1...")
-                ->type_name("DIR")
-                ->excludes(one);
-        command.add_flag("--markdown", is_markdown, "print all commands as one Markdown page instead")
-            ->excludes(one)
-            ->excludes(pages);
-    }
-    [[nodiscard]] ExitCode run() const {
-        if (all) {
-            const OutputFolder pages(*all);
-            for_each_command(*program, [&pages](const CLI::App& command) {
-                pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
-            });
-        } else {
-            fmt::print("{}", is_markdown ? markdown_page(*program) : man_page(command_named(*program, names)));
-        }
-        return ExitCode::done;
-    }
 };
+
+ExitCode print_manual(const ManualArguments& given) {
+    if (given.all) {
+        const OutputFolder pages(*given.all);
+        for_each_command(*given.program, [&pages](const CLI::App& command) {
+            pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
+        });
+    } else {
+        fmt::print("{}", given.is_markdown ? markdown_page(*given.program)
+                                           : man_page(command_named(*given.program, given.names)));
+    }
+    return ExitCode::done;
+}
 
 struct CompletionArguments {
     const CLI::App* program = nullptr;
     std::string shell;
-
-    void add_to(CLI::App& command) {
-        program = command.get_parent();
-        CLI::Option* option = command.add_option("SHELL", shell, "bash or zsh")->required();
-        require_one_of(*option, std::array<std::string_view, 2>{"bash", "zsh"});
-    }
-    [[nodiscard]] ExitCode run() const {
-        fmt::print("{}", completion_script(*program, shell));
-        return ExitCode::done;
-    }
 };
+
+ExitCode print_completion(const CompletionArguments& given) {
+    fmt::print("{}", completion_script(*given.program, given.shell));
+    return ExitCode::done;
+}
 
 }  // namespace
 
 void add_manual(CLI::App& program, Action& action) {
-    add_command<ManualArguments>(
+    auto [command, given] = add_command(
         program, action, "manual",
-        "Print the manual page of a command (downwash manual solve | man -l -) or, without one, of the program");
-    add_command<CompletionArguments>(
+        "Print the manual page of a command (downwash manual solve | man -l -) or, without one, of the program",
+        print_manual);
+    given.program = &program;
+    CLI::Option* one = command.add_option("COMMAND", given.names, "the command, for example: aeromap plot");
+    CLI::Option* pages = add_value(command, "--all DIR", given.all,
+                                   "write the pages of all commands to a folder instead: downwash-solve.1...")
+                             ->excludes(one);
+    command.add_flag("--markdown", given.is_markdown, "print all commands as one Markdown page instead")
+        ->excludes(one)
+        ->excludes(pages);
+}
+
+void add_completion(CLI::App& program, Action& action) {
+    auto [command, given] = add_command(
         program, action, "completion",
-        "Print a script that completes command lines in a shell: source <(downwash completion bash)");
+        "Print a script that completes command lines in a shell: source <(downwash completion bash)", print_completion);
+    given.program = &program;
+    require_one_of(*command.add_option("SHELL", given.shell, "bash or zsh")->required(), {"bash", "zsh"});
 }
 
 }  // namespace downwash::cli

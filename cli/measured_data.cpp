@@ -8,6 +8,7 @@
 
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 
@@ -30,31 +31,27 @@ void require_entry(const Measurements& measurements, const std::string& file, co
         return;
     }
     const std::vector<std::string_view> names(entries.begin(), entries.end());
-    throw UsageError(fmt::format("--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
-                                 names.empty()
-                                     ? fmt::format("there is no column {}", column)
-                                     : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names)));
+    throw UsageError("--{} '{}' leaves no measurement of {}: {}", column, excerpt(entry), file,
+                     names.empty() ? fmt::format("there is no column {}", column)
+                                   : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names));
 }
 
 void MeasuredData::add_options(CLI::App& command) {
     command
-        .add_option(
-            "DATA", file,
-            "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source "
-            "and sigma, then rows")
+        .add_option("DATA", file,
+                    "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally "
+                    "surface, source and sigma, then rows")
         ->required();
-    CLI::Option* at = command.add_option(
-        "--surface", surface,
-        "only rows with this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
-    offer_words(*at->type_name("S"), measured_surfaces);
-    command.add_option("--source", source, "only rows with this source")->type_name("NAME");
-    command.add_option("--from", from, "only measurements at this z/R and beyond")->type_name("Z");
-    command.add_option("--to", to, "only measurements up to this z/R")->type_name("Z");
-    command
-        .add_option("--rotor-spacing", rotor_spacing,
-                    "spacing of adjacent axes in radii, if the measured vehicle is a square quadrotor; multirotor "
-                    "models need it")
-        ->type_name("D");
+    CLI::Option* at =
+        add_value(command, "--surface S", surface,
+                  "only rows with this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
+    offer_words(*at, measured_surfaces);
+    add_value(command, "--source NAME", source, "only rows with this source");
+    add_value(command, "--from Z", from, "only measurements at this z/R and beyond");
+    add_value(command, "--to Z", to, "only measurements up to this z/R");
+    add_value(
+        command, "--rotor-spacing D", rotor_spacing,
+        "spacing of adjacent axes in radii, if the measured vehicle is a square quadrotor; multirotor models need it");
 }
 
 Measurements MeasuredData::read() const {
@@ -87,8 +84,7 @@ RotorNeighbours MeasuredData::neighbours() const {
         return {};
     }
     if (!(*rotor_spacing > 0 && *rotor_spacing <= max_spacing)) {
-        throw UsageError(
-            fmt::format("--rotor-spacing {}: expected radii, above 0 and at most {}", *rotor_spacing, max_spacing));
+        throw UsageError("--rotor-spacing {}: expected radii, above 0 and at most {}", *rotor_spacing, max_spacing);
     }
     return square_quadrotor(*rotor_spacing);
 }

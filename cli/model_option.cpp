@@ -9,6 +9,7 @@
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/effects/effect_table.hpp"
@@ -20,7 +21,7 @@ namespace {
 double checked(const char* option, const std::optional<double>& given, double otherwise, double low, double high) {
     const double value = given.value_or(otherwise);
     if (!(value >= low && value <= high)) {
-        throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, value, low, high));
+        throw UsageError("{} {}: expected a number from {} to {}", option, value, low, high);
     }
     return value;
 }
@@ -33,18 +34,16 @@ void set_parameter(SurfaceEffect& effect, const std::string& text) {
         const ModelParameter& parameter = model.parameters[i];
         names.push_back(parameter.name);
         if (parameter.name == name) {
-            if (!(value >= parameter.low && value <= parameter.high) || (parameter.is_open && value == parameter.low)) {
-                throw UsageError(fmt::format("--set {}: expected a number {} {} and at most {}", text,
-                                             parameter.is_open ? "above" : "of at least", parameter.low,
-                                             parameter.high));
+            if (!parameter.allows(value)) {
+                throw UsageError("--set {}: expected a number {}", text, parameter.range_text());
             }
             effect.parameters[i] = value;
             return;
         }
     }
-    throw UsageError(fmt::format(
+    throw UsageError(
         "--set {}: {} has {}", excerpt(text), model.name,
-        names.empty() ? "no parameters" : "the parameters " + joined_names(names) + did_you_mean(name, names)));
+        names.empty() ? "no parameters" : "the parameters " + joined_names(names) + did_you_mean(name, names));
 }
 
 SurfaceEffect effect_of(const ModelChoice& choice) {
@@ -77,19 +76,13 @@ void offer_models(CLI::Option& option) {
 }
 
 void add_model_options(CLI::App& command, ModelChoice& choice) {
-    command.add_option("--set", choice.set, "a parameter of the model, named as in a problem file; may be repeated")
-        ->type_name("NAME=VALUE");
-    command.add_option("--table", choice.table, "CSV file of the model `table`")->type_name("FILE");
-    command.add_option("--d-over-r", choice.d_over_r, "second distance of a table over two, in radii")->type_name("D");
-    command
-        .add_option("--rotor-spacing", choice.rotor_spacing,
-                    "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5")
-        ->type_name("D");
-    command.add_option("--max-factor", choice.max_factor, "cap of the model; default 2")->type_name("K");
-}
-
-bool is_multirotor(EffectModel model) {
-    return model == EffectModel::multirotor_images || model == EffectModel::multirotor_body;
+    add_value(command, "--set NAME=VALUE", choice.set,
+              "a parameter of the model, named as in a problem file; may be repeated");
+    add_value(command, "--table FILE", choice.table, "CSV file of the model `table`");
+    add_value(command, "--d-over-r D", choice.d_over_r, "second distance of a table over two, in radii");
+    add_value(command, "--rotor-spacing D", choice.rotor_spacing,
+              "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5");
+    add_value(command, "--max-factor K", choice.max_factor, "cap of the model; default 2");
 }
 
 bool is_given(const ModelChoice& choice) {
@@ -106,7 +99,7 @@ EffectCurve curve_option(const ModelChoice& choice) {
 }
 
 const EffectModelInfo& model_named(const std::string& name) {
-    return entry_named(effect_models(), name, "there is no --model");
+    return entry_named(effect_models(), name, "--model");
 }
 
 std::pair<std::string, double> named_number(const std::string& option, const std::string& text) {

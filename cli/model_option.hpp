@@ -23,9 +23,6 @@ struct ModelChoice {
 /// The default spacing of adjacent rotors for the multirotor models [radii].
 inline constexpr double usual_rotor_spacing = 2.5;
 
-/// Whether a model considers the vehicle's other rotors.
-[[nodiscard]] bool is_multirotor(EffectModel model);
-
 /// Makes shells offer the names of models.
 void offer_models(CLI::Option& option);
 

@@ -19,7 +19,7 @@ void with_usage_errors(const fs::path& file, std::string_view option, const Work
     try {
         work();
     } catch (const FileError& error) {
-        throw UsageError(fmt::format("{}{}{} {}", option, option.empty() ? "" : " ", file.string(), error.what()));
+        throw UsageError("{}{}{} {}", option, option.empty() ? "" : " ", file.string(), error.what());
     }
 }
 
@@ -30,12 +30,12 @@ void print_error(std::string_view text) noexcept {
     static_cast<void>(std::fflush(stderr));
 }
 
-void print_json(const nlohmann::ordered_json& document) {
-    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+void print_json(const Json& document) {
+    fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-nlohmann::ordered_json json_of(const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+Json json_of(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
 }
 
 void write_result(const fs::path& file, std::string_view content, std::string_view option) {
@@ -50,14 +50,14 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
     std::error_code error;
     fs::create_directories(path_, error);
     if (!fs::is_directory(path_)) {
-        throw UsageError(fmt::format("--out {} cannot be made a folder: {}", path_.string(),
-                                     error ? error.message() : "it is a file"));
+        throw UsageError("--out {} cannot be made a folder: {}", path_.string(),
+                         error ? error.message() : "it is a file");
     }
     const fs::path trial = path_ / "solution.json";
     try {
         require_writable(trial);
     } catch (const FileError& failure) {
-        throw UsageError(fmt::format("{} {}; choose another folder with --out", trial.string(), failure.what()));
+        throw UsageError("{} {}; choose another folder with --out", trial.string(), failure.what());
     }
 }
 

@@ -8,14 +8,16 @@
 
 namespace downwash::cli {
 
+using Json = nlohmann::ordered_json;
+
 /// Writes text to standard error. If that fails, nothing is said and the exit code still tells.
 void print_error(std::string_view text) noexcept;
 
 /// Prints a document as commands do with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
-void print_json(const nlohmann::ordered_json& document);
+void print_json(const Json& document);
 
 /// The number, or null without one.
-[[nodiscard]] nlohmann::ordered_json json_of(const std::optional<double>& value);
+[[nodiscard]] Json json_of(const std::optional<double>& value);
 
 /// Writes a file that an option names, whole or not at all. @throws UsageError when that fails
 /// @param option its name, for messages; empty: none

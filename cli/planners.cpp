@@ -10,8 +10,8 @@
 namespace downwash::cli {
 namespace {
 
-nlohmann::ordered_json variants_of(const AlgorithmInfo& algorithm) {
-    auto names = nlohmann::ordered_json::array();
+Json variants_of(const AlgorithmInfo& algorithm) {
+    auto names = Json::array();
     for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
         if (algorithm.plans_for(variant)) {
             names.push_back(name_of(variant));
@@ -24,17 +24,17 @@ nlohmann::ordered_json variants_of(const AlgorithmInfo& algorithm) {
 template <class Visit>
 void for_each_parameter(const AlgorithmInfo& algorithm, const Visit& visit) {
     for (const AlgorithmParameter& parameter : algorithm.line_parameters) {
-        visit(parameter, nlohmann::ordered_json{name_of(Variant::mp_arm)});
+        visit(parameter, Json{name_of(Variant::mp_arm)});
     }
     for (const AlgorithmParameter& parameter : algorithm.flight_parameters) {
-        visit(parameter, nlohmann::ordered_json{name_of(Variant::mp_arm_da), name_of(Variant::mp_arm_ada)});
+        visit(parameter, Json{name_of(Variant::mp_arm_da), name_of(Variant::mp_arm_ada)});
     }
 }
 
 void print_planners_as_json() {
-    auto list = nlohmann::ordered_json::array();
+    auto list = Json::array();
     for (const AlgorithmInfo& algorithm : algorithms()) {
-        auto parameters = nlohmann::ordered_json::array();
+        auto parameters = Json::array();
         for_each_parameter(algorithm, [&parameters](const AlgorithmParameter& parameter, const auto& variants) {
             parameters.push_back({{"name", parameter.name},
                                   {"value", parameter.value},
@@ -67,18 +67,18 @@ void print_table() {
 
 struct PlannersArguments {
     bool as_json = false;
-
-    void add_to(CLI::App& command) { add_json(command, as_json, "print them as JSON"); }
-    [[nodiscard]] ExitCode run() const {
-        as_json ? print_planners_as_json() : print_table();
-        return ExitCode::done;
-    }
 };
+
+ExitCode run(const PlannersArguments& given) {
+    given.as_json ? print_planners_as_json() : print_table();
+    return ExitCode::done;
+}
 
 }  // namespace
 
 void add_planners(CLI::App& program, Action& action) {
-    add_command<PlannersArguments>(program, action, "planners", "List the search algorithms");
+    auto [command, given] = add_command(program, action, "planners", "List the search algorithms", run);
+    add_json(command, given.as_json, "print them as JSON");
 }
 
 }  // namespace downwash::cli

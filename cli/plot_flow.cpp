@@ -20,9 +20,8 @@ std::vector<PlanePoint> points_around(double z) {
     constexpr double whole_turn_rad = 6.283185307179586;
     std::vector<PlanePoint> points;
     for (int i = 0; i < count; ++i) {
-        double sine = 0, cosine = 0;
         // Half a step off the axis, along which the flow would run into the ground and end.
-        lane::sin_cos(whole_turn_rad * (i + 0.5) / count, sine, cosine);
+        const auto [sine, cosine] = lane::sin_cos(whole_turn_rad * (i + 0.5) / count);
         points.push_back({radius * cosine, z + radius * sine});
     }
     return points;
@@ -33,8 +32,7 @@ std::vector<PlanePoint> points_around(double z) {
 FieldFigure potential_flow_figure(const PlotRequest& request) {
     constexpr double lowest = 0.1, highest = 10, beyond = 1.25, reach = 1;
     if (request.z_over_r.size() != 1 || !(request.z_over_r[0] >= lowest && request.z_over_r[0] <= highest)) {
-        throw UsageError(
-            fmt::format("--flow needs --z-over-r H, the height of the rotor in radii, from {} to {}", lowest, highest));
+        throw UsageError("--flow needs --z-over-r H, the height of the rotor in radii, from {} to {}", lowest, highest);
     }
     const double height = request.z_over_r[0];
     const PlanarVelocity velocity = [height](double x, double z) -> std::array<double, 2> {

@@ -24,8 +24,8 @@ AxisRange shown_range(const PlotRequest& request) {
     }
     const auto& given = request.z_over_r;
     if (given.size() != 2 || !(given[0] >= 0 && given[0] < given[1] && given[1] <= max_distance)) {
-        throw UsageError(fmt::format("--z-over-r {}{}: expected LOW HIGH in radii, 0 <= LOW < HIGH <= {}", given[0],
-                                     given.size() > 1 ? fmt::format(" {}", given[1]) : "", max_distance));
+        throw UsageError("--z-over-r {}{}: expected LOW HIGH in radii, 0 <= LOW < HIGH <= {}", given[0],
+                         given.size() > 1 ? fmt::format(" {}", given[1]) : "", max_distance);
     }
     return {given[0], given[1]};
 }
@@ -110,8 +110,7 @@ void add_measurements(CurveFigure& figure, const PlotRequest& request, const Axi
         }
     }
     if (figure.measurements.empty()) {
-        throw UsageError(
-            fmt::format("--data {} has no measurement for z/R from {} to {}", request.data, range.low, range.high));
+        throw UsageError("--data {} has no measurement for z/R from {} to {}", request.data, range.low, range.high);
     }
 }
 

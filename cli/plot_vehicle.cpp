@@ -33,13 +33,21 @@ FieldFigure vehicle_figure(const Problem& problem, const FlightModel& model, con
     return figure;
 }
 
-/// One of the effects on the vehicle at a pitch.
-std::function<double(double, double)> effect_at(const std::shared_ptr<const FlightModel>& model, double pitch_rad,
-                                                double VehicleEffect::*effect) {
-    return [=](double x_m, double z_m) {
+/// A figure of one of the effects on the vehicle at the pitch asked for, without a scale.
+FieldFigure effect_figure(const PlotRequest& request, const Problem& problem,
+                          const std::shared_ptr<const FlightModel>& model, const Bounds& extent, std::string title,
+                          double VehicleEffect::*effect) {
+    const double pitch_rad = pitch_option(request.pitch_deg);
+    const std::string attitude =
+        pitch_rad == 0 ? ", level"
+                       : fmt::format(", pitched {:.6g} degrees nose {}", std::abs(pitch_rad) * degrees_per_radian,
+                                     pitch_rad > 0 ? "down" : "up");
+    FieldFigure figure = vehicle_figure(problem, *model, extent, std::move(title), attitude);
+    figure.value = [=](double x_m, double z_m) {
         const PlanarPose pose{x_m, z_m, pitch_rad, 0};
         return is_flyable(*model, pose) ? vehicle_effect(*model, pose).*effect : undefined;
     };
+    return figure;
 }
 
 /// The maximum size of a field over its extent.
@@ -47,15 +55,6 @@ double max_size(const FieldFigure& figure) {
     constexpr int steps = 120;
     const AxisRange range = value_range(figure.value, figure.extent, steps, 0);
     return std::max(-range.low, range.high);
-}
-
-/// The attitude, to follow the vehicle's name.
-std::string attitude_text(double pitch_rad) {
-    if (pitch_rad == 0) {
-        return ", level";
-    }
-    return fmt::format(", pitched {:.6g} degrees nose {}", std::abs(pitch_rad) * degrees_per_radian,
-                       pitch_rad > 0 ? "down" : "up");
 }
 
 /// The bounds of the centre of mass, cut to the shown part of the plane.
@@ -101,23 +100,18 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 }  // namespace
 
 FieldFigure force_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
-    const double pitch_rad = pitch_option(request.pitch_deg);
-    const auto model = make_flight_model(problem);
-    FieldFigure figure = vehicle_figure(problem, *model, extent, "Thrust of the whole vehicle at constant command",
-                                        attitude_text(pitch_rad));
-    figure.value = effect_at(model, pitch_rad, &VehicleEffect::force_factor);
+    FieldFigure figure = effect_figure(request, problem, make_flight_model(problem), extent,
+                                       "Thrust of the whole vehicle at constant command", &VehicleEffect::force_factor);
     figure.scale = factor_scale("force factor", 1, max_size(figure));
     return figure;
 }
 
 FieldFigure torque_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
-    const double pitch_rad = pitch_option(request.pitch_deg);
     const auto model = make_flight_model(problem);
     FieldFigure figure =
-        vehicle_figure(problem, *model, extent, "Parasitic pitch torque at hover commands, positive nose down",
-                       attitude_text(pitch_rad) +
-                           fmt::format("; its factor is that over m g R = {:.4g} Nm", weight_times_radius_nm(*model)));
-    figure.value = effect_at(model, pitch_rad, &VehicleEffect::pitch_torque_nm);
+        effect_figure(request, problem, model, extent, "Parasitic pitch torque at hover commands, positive nose down",
+                      &VehicleEffect::pitch_torque_nm);
+    figure.subtitle += fmt::format("; its factor is that over m g R = {:.4g} Nm", weight_times_radius_nm(*model));
     figure.scale = signed_scale("pitch torque [Nm]", std::max(max_size(figure), 1e-3));
     return figure;
 }
@@ -127,7 +121,7 @@ FieldFigure hold_figure(const PlotRequest& request, const Problem& problem, cons
     const double arm_rad = request.arm_deg / degrees_per_radian;
     const auto model = make_flight_model(problem);
     FieldFigure figure = vehicle_figure(problem, *model, extent,
-                                        fmt::format("Can it hold here? Arm at {:.6g} degrees", request.arm_deg), "");
+                                        fmt::format("Can it hover here? Arm at {:.6g} degrees", request.arm_deg), "");
     const double width_m = std::max(extent.x_high_m - extent.x_low_m, extent.z_high_m - extent.z_low_m);
     const auto map = std::make_shared<const HoldMap>(
         make_hold_map(*model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m},

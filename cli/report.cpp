@@ -23,11 +23,9 @@ struct ReportArguments {
     bool no_cache = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
 
-void write_pictures(const ReportArguments& arguments, const ShownRun& run) {
+void write_pictures(const ReportArguments& given, const ShownRun& run) {
     const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
     const std::vector<CurveFigure> plots = time_figures(run.record);
     struct Wanted {
@@ -37,61 +35,56 @@ void write_pictures(const ReportArguments& arguments, const ShownRun& run) {
     };
     std::vector<std::pair<std::string, std::string>>
         pictures;  // names and contents: all are drawn before one is written
-    for (const Wanted& as : {Wanted{arguments.as_svg, PictureFormat::svg, ".svg"},
-                             {arguments.as_png, PictureFormat::png, ".png"},
-                             {arguments.as_pdf, PictureFormat::pdf, ".pdf"}}) {
+    for (const Wanted& as : {Wanted{given.as_svg, PictureFormat::svg, ".svg"},
+                             {given.as_png, PictureFormat::png, ".png"},
+                             {given.as_pdf, PictureFormat::pdf, ".pdf"}}) {
         if (as.is_wanted) {
-            const PictureSettings settings{as.format, arguments.width_px.value_or(PictureSettings{}.width_px)};
+            const PictureSettings settings{as.format, given.width_px.value_or(PictureSettings{}.width_px)};
             pictures.emplace_back(std::string("flight") + as.extension, draw(flight, settings));
             pictures.emplace_back(std::string("plots") + as.extension, draw(plots, settings));
         }
     }
-    const OutputFolder folder(arguments.out.value_or(arguments.folder));
+    const OutputFolder folder(given.out.value_or(given.folder));
     for (const auto& [name, content] : pictures) {
         folder.write(name, content);
         fmt::print("{}\n", (folder.path() / name).string());
     }
 }
 
-ExitCode ReportArguments::run() const {
-    if (width_px && !wants_pictures()) {
-        throw UsageError("--width: of which picture? Expected --svg, --png or --pdf with it");
+ExitCode run(const ReportArguments& given) {
+    if (given.width_px && !given.wants_pictures()) {
+        throw UsageError("--width goes with pictures only: expected --svg, --png or --pdf with it");
     }
-    if (!wants_pictures()) {
+    if (!given.wants_pictures()) {
         require_pages();
     }
-    const ShownRun shown = shown_run(read_run(folder), nullptr, cache_folder(no_cache));
-    if (wants_pictures()) {
-        write_pictures(*this, shown);
+    const ShownRun shown = shown_run(read_run(given.folder), nullptr, cache_folder(given.no_cache));
+    if (given.wants_pictures()) {
+        write_pictures(given, shown);
     } else {
-        const fs::path page = out ? fs::path(*out) : fs::path(folder) / "report.html";
+        const fs::path page = given.out ? fs::path(*given.out) : fs::path(given.folder) / "report.html";
         write_result(page, run_page(shown.record, *shown.model, shown.map.get()));
         fmt::print("{}\n", page.string());
     }
     return ExitCode::done;
 }
 
-void ReportArguments::add_to(CLI::App& command) {
-    command.add_option("DIR", folder, "folder that `solve` or `execute` wrote to")->required();
-    command
-        .add_option("-o,--out", out,
-                    "the page, default report.html in that folder; or the folder for the pictures, default the same")
-        ->type_name("FILE|DIR");
-    command.add_flag("--svg", as_svg, "pictures as SVG");
-    command.add_flag("--png", as_png, "pictures as PNG");
-    command.add_flag("--pdf", as_pdf, "pictures as PDF");
-    add_width(command, width_px);
-    add_no_cache(command, no_cache);
-}
-
 }  // namespace
 
 void add_report(CLI::App& program, Action& action) {
-    add_command<ReportArguments>(
+    auto [command, given] = add_command(
         program, action, "report",
         "Show a run as one self-contained HTML page with scene, playback, plots and search; with --svg, --png or "
-        "--pdf, "
-        "draw pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*");
+        "--pdf, draw pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*",
+        run);
+    command.add_option("DIR", given.folder, "folder that `solve` or `execute` wrote to")->required();
+    add_value(command, "-o,--out FILE|DIR", given.out,
+              "the page, default report.html in that folder; or the folder for the pictures, default the same");
+    command.add_flag("--svg", given.as_svg, "pictures as SVG");
+    command.add_flag("--png", given.as_png, "pictures as PNG");
+    command.add_flag("--pdf", given.as_pdf, "pictures as PDF");
+    add_width(command, given.width_px);
+    add_no_cache(command, given.no_cache);
 }
 
 }  // namespace downwash::cli

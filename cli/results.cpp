@@ -22,37 +22,19 @@ Execution no_flight(const Robot& robot) {
     return execution;
 }
 
-/// Lines of a table with two columns.
-class Table {
- public:
-    void add(std::string_view name, const std::string& value) {
-        if (!value.empty()) {
-            text_ += fmt::format("  {:<16}  {}\n", name, value);
-        }
-    }
-    [[nodiscard]] const std::string& text() const noexcept { return text_; }
-
- private:
-    std::string text_;
-};
+/// A line of a table with two columns.
+std::string row(std::string_view name, const std::string& value) {
+    return fmt::format("  {:<16}  {}\n", name, value);
+}
 
 /// With a space before it; a weighted sum has none.
 std::string_view unit_of(const CostFunction& cost) {
     const auto objective = cost.single();
-    if (!objective) {
-        return "";
-    }
-    switch (*objective) {
-        case Objective::energy:
-            return " J";
-        case Objective::time:
-            return " s";
-        case Objective::length:
-            return " m";
-        case Objective::clearance:
-            break;
-    }
-    return " s/m";
+    return !objective                        ? ""
+           : *objective == Objective::energy ? " J"
+           : *objective == Objective::time   ? " s"
+           : *objective == Objective::length ? " m"
+                                             : " s/m";
 }
 
 std::string rejections(const SearchRecord& record) {
@@ -70,22 +52,24 @@ std::string millimetres(double length_m) {
     return fmt::format("{:.3f} m", std::round(length_m * 1000) / 1000 + 0.0);
 }
 
-void add_flight(Table& table, const Solution& solution, const Execution& flight) {
+std::string flight_rows(const Solution& solution, const Execution& flight) {
+    std::string text;
     const std::string_view unit = unit_of(solution.objective);
-    table.add("flight", fmt::format("{}, {}", name_of(flight.outcome),
-                                    flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
-    table.add("cost",
-              fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
-    table.add("duration", fmt::format("{:.2f} s", flight.duration_s));
-    table.add("energy", fmt::format("{:.6g} J", flight.energy_j));
-    table.add("goal error", millimetres(flight.goal_error_m));
+    text += row("flight", fmt::format("{}, {}", name_of(flight.outcome),
+                                      flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
+    text += row("cost",
+                fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
+    text += row("duration", fmt::format("{:.2f} s", flight.duration_s));
+    text += row("energy", fmt::format("{:.6g} J", flight.energy_j));
+    text += row("goal error", millimetres(flight.goal_error_m));
     if (flight.goals.size() > 1) {
         const auto met =
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
-        table.add("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+        text += row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
     }
-    table.add("min. clearance",
-              std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
+    text += row("min. clearance",
+                std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
+    return text;
 }
 
 }  // namespace
@@ -141,38 +125,38 @@ std::string verdict_on_search(const Solution& solution) {
 }
 
 std::string summary_of(const std::string& verdict, const Solution& solution, const std::filesystem::path& folder) {
-    Table table;
-    table.add("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
-                                    solution.algorithm, text_of(solution.objective), solution.seed));
+    std::string text = verdict + "\n\n";
+    text += row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
+                                      solution.algorithm, text_of(solution.objective), solution.seed));
     if (solution.execution) {
-        add_flight(table, solution, *solution.execution);
+        text += flight_rows(solution, *solution.execution);
     }
     const SearchRecord& record = solution.planning;
-    table.add("first solution",
-              record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
-    table.add("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
-    table.add("rejected", rejections(record));
+    text += row("first solution",
+                record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
+    text += row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
+    text += row("rejected", rejections(record));
     if (record.nearest_approach_m) {
-        table.add("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
+        text += row("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
     }
     if (record.obstruction) {
         const Obstruction& o = *record.obstruction;
-        table.add("stopped by",
-                  fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
-                              o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
+        text += row("stopped by",
+                    fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
+                                o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
         if (o.cause == "direct_flight") {
-            table.add("", "The planner discarded every plan: executed with direct aerodynamics,");
-            table.add("", "the last one failed or came nearer to an obstacle than the margin.");
+            text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
+            text += row("", "the last one failed or came nearer to an obstacle than the margin.");
         } else if (o.goal_distance_m <= 0) {
-            table.add("", "The vehicle reached the goal region but could not hover there.");
-            table.add("", "Run `downwash aeromap hold` to check whether a hover is stable.");
+            text += row("", "The vehicle reached the goal region but could not hover there.");
+            text += row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }
     }
-    table.add("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
+    text += row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
     if (std::error_code ignored; std::filesystem::exists(folder / "report.html", ignored)) {
-        table.add("page", (folder / "report.html").string());
+        text += row("page", (folder / "report.html").string());
     }
-    return verdict + "\n\n" + table.text();
+    return text;
 }
 
 ExitCode exit_code_of(const Solution& solution) {

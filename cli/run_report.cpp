@@ -34,9 +34,8 @@ ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const s
 void require_pages() {
     if (!has_pages()) {
         throw UsageError(
-            "this build brings no pages: install the packages that viewer/README.md names (./dev setup does), and "
-            "build "
-            "again");
+            "this build contains no pages: install the packages that viewer/README.md names (./dev setup does), and "
+            "build again");
     }
 }
 

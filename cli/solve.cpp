@@ -2,30 +2,82 @@
 
 #include <fmt/core.h>
 
+#include <array>
+#include <map>
 #include <optional>
 #include <utility>
 
+#include "downwash/base/key_error.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
-#include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
 namespace {
 
+/// An option that overrides a planner setting of the problem file. The table of parameters describes and checks both.
+struct PlannerOption {
+    std::string_view name, key, placeholder, note;
+};
+
+constexpr std::array planner_options{
+    PlannerOption{"--variant", "planner.variant", "V", ""},
+    PlannerOption{"--algorithm", "planner.algorithm", "A", ""},
+    PlannerOption{"--objective", "planner.objective", "O", ""},
+    PlannerOption{"--seed", "planner.seed", "N", ""},
+    PlannerOption{"--time-limit", "planner.time_limit_s", "S", ""},
+    PlannerOption{"--max-iterations", "planner.max_iterations", "N",
+                  "; without --time-limit it lifts the file's time limit"},
+    PlannerOption{"--margin", "planner.safety_margin_m", "M", ""},
+};
+
 struct SolveArguments {
     std::string problem;
-    PlannerOptions planner;
+    std::map<std::string_view, std::string> planner;  ///< texts of planner_options that were given
     int threads = default_threads();
     std::optional<std::string> out;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false;
-
-    void add_to(CLI::App& command);
-    [[nodiscard]] ExitCode run() const;
 };
+
+void add_planner_options(CLI::App& command, SolveArguments& given) {
+    for (const PlannerOption& option : planner_options) {
+        ParameterInfo parameter = *problem_parameters().find(option.key);
+        parameter.can_be_group = false;  // an option is a word
+        CLI::Option* added = command.add_option_function<std::string>(
+            std::string(option.name), [&given, option](const std::string& text) { given.planner[option.name] = text; },
+            fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key));
+        offer_words(*added->type_name(std::string(option.placeholder)), parameter.names);
+    }
+}
+
+/// Overrides the settings of the file with the options that were given.
+/// @throws UsageError with every option whose value is invalid or out of range
+void override_settings(const SolveArguments& given, Problem& problem) {
+    if (given.planner.contains("--max-iterations") && !given.planner.contains("--time-limit")) {
+        problem.planner.time_limit_s.reset();
+    }
+    std::string messages;
+    for (const PlannerOption& option : planner_options) {
+        try {
+            if (const auto text = given.planner.find(option.name); text != given.planner.end()) {
+                set_parameter(problem, option.key, text->second);
+            }
+        } catch (const InputError& error) {
+            for (const KeyError& of : error.errors()) {
+                messages += fmt::format("{}{} {}", messages.empty() ? "" : "\n", option.name, of.message);
+            }
+        }
+    }
+    if (!messages.empty()) {
+        throw UsageError(messages);
+    }
+}
 
 std::string announcement(const Problem& problem) {
     const PlannerSettings& planner = problem.planner;
@@ -33,55 +85,54 @@ std::string announcement(const Problem& problem) {
                        planner.algorithm, text_of(planner.objective), planner.seed);
 }
 
-ExitCode SolveArguments::run() const {
+ExitCode run(const SolveArguments& given) {
     const Interruption interruption;
-    const Problem read = read_problem(problem, [this](Problem& settings) { planner.apply(settings); });
-    const OutputFolder folder(out ? std::filesystem::path(*out) : default_folder(read));
+    const Problem read =
+        read_problem(given.problem, [&given](Problem& settings) { override_settings(given, settings); });
+    const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
     SolveOptions options;
-    options.threads = threads;
-    options.stop_at_first_solution = stop_at_first;
+    options.threads = given.threads;
+    options.stop_at_first_solution = given.stop_at_first;
     options.keep_tree = true;
     options.stop = interruption.token();
-    options.map_cache = cache_folder(no_cache);
+    options.map_cache = cache_folder(given.no_cache);
     Solution solution;
     {
-        ProgressDisplay display(is_quiet);
+        ProgressDisplay display(given.is_quiet);
         display.say(announcement(read));
         options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(read, options);
     }
-    const RunRecord record = write_results(folder, read, problem, solution);
+    const RunRecord record = write_results(folder, read, given.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // whoever interrupted does not want to wait for a map
-        write_page(folder, record, solution.map, options.map_cache, is_quiet);
+        write_page(folder, record, solution.map, options.map_cache, given.is_quiet);
     } else {
         remove_page(folder);
     }
-    fmt::print("{}", as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
+    fmt::print("{}",
+               given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
     return solution.interrupted ? interruption.code() : exit_code_of(solution);
-}
-
-void SolveArguments::add_to(CLI::App& command) {
-    add_problem(command, problem);
-    planner.add_to(command);
-    add_threads(command, threads);
-    command.add_option("--out", out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/")
-        ->type_name("DIR");
-    command.add_flag("--stop-at-first", stop_at_first, "end with the first plan that is accepted");
-    add_no_cache(command, no_cache);
-    add_quiet(command, is_quiet);
-    add_json(command, as_json, "print solution.json on standard output instead of a summary");
 }
 
 }  // namespace
 
 void add_solve(CLI::App& program, Action& action) {
-    add_command<SolveArguments>(
-        program, action, "solve",
-        "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
-        "(MP-ARM-DA) or aerodynamics-aware (MP-ARM-ADA) variant; execute the plan with direct aerodynamics; write "
-        "solution.json, trajectory.csv, tree.csv, effective.yaml and report.html");
+    auto [command, given] =
+        add_command(program, action, "solve",
+                    "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
+                    "(MP-ARM-DA) or aerodynamics-aware (MP-ARM-ADA) variant; execute the plan with direct "
+                    "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
+                    run);
+    add_problem(command, given.problem);
+    add_planner_options(command, given);
+    add_threads(command, given.threads);
+    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
+    command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
+    add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
+    add_json(command, given.as_json, "print solution.json on standard output instead of a summary");
 }
 
 }  // namespace downwash::cli

@@ -8,8 +8,7 @@
 namespace downwash::cli {
 
 void reject_unknown(const std::string& what, std::string_view word, const std::vector<std::string_view>& known) {
-    throw UsageError(
-        fmt::format("{} '{}': expected {}{}", what, excerpt(word), joined_names(known), did_you_mean(word, known)));
+    throw UsageError("{} '{}': expected {}{}", what, excerpt(word), joined_names(known), did_you_mean(word, known));
 }
 
 }  // namespace downwash::cli

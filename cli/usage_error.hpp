@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace downwash::cli {
@@ -12,11 +15,15 @@ namespace downwash::cli {
 /// The command line asks for something that cannot be done: an option out of range, a folder that cannot be written.
 /// Ends the program with ExitCode::bad_input.
 struct UsageError : std::runtime_error {
-    using std::runtime_error::runtime_error;
+    explicit UsageError(const std::string& message) : std::runtime_error(message) {}
+    /// With values in place of {}.
+    template <class... Values>
+    explicit UsageError(fmt::format_string<Values...> message, Values&&... values)
+        : UsageError(fmt::format(message, std::forward<Values>(values)...)) {}
 };
 
 /// Says that there is no such name and which name was likely meant. @throws UsageError always
-/// @param what is missing: "there is no format"   @param known every name that there is
+/// @param what the name was given to: "--format"   @param known every name that there is
 [[noreturn]] void reject_unknown(const std::string& what, std::string_view word,
                                  const std::vector<std::string_view>& known);
 

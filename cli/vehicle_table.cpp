@@ -68,8 +68,8 @@ std::string vehicle_table(const Problem& problem, const FlightModel& model, cons
     const double rows = static_cast<double>(pitch_deg.size()) * (1 + (bounds.x_high_m - bounds.x_low_m) / step_m) *
                         (1 + (bounds.z_high_m - bounds.z_low_m) / step_m);
     if (rows > max_rows) {
-        throw UsageError(fmt::format("--step {}: makes about {:.3g} rows, expected at most {:.0e}; choose it coarser",
-                                     step_m, rows, max_rows));
+        throw UsageError("--step {}: about {:.3g} rows, expected at most {:.0e}; choose a larger step", step_m, rows,
+                         max_rows);
     }
     const GridAxis x = axis_over(bounds.x_low_m, bounds.x_high_m, step_m);
     const GridAxis z = axis_over(bounds.z_low_m, bounds.z_high_m, step_m);

@@ -89,7 +89,7 @@ TEST_CASE("A grid or a table of the vehicle that cannot be written is rejected b
     CHECK(work.files().empty());
     for (const auto& [options, reason] : {std::pair{"-o v.vti --pitch-deg 0", "expected a name that ends in .csv"},
                                           {"-o v.csv --pitch-deg 0 90", "--pitch-deg 90: expected degrees, at most 80"},
-                                          {"-o v.csv --pitch-deg 0 --step 0.0001", "choose it coarser"},
+                                          {"-o v.csv --pitch-deg 0 --step 0.0001", "choose a larger step"},
                                           {"-o no/such/v.csv --pitch-deg 0", "no/such/v.csv"},
                                           {"-o v.csv --pitch-deg 0 --rotor 1", "--rotor"}}) {
         check_rejected(work.run("aeromap build", problem_file("open_air"), options), reason);

@@ -121,7 +121,7 @@ TEST_CASE("A signal ends a campaign at once, with what is finished") {
     const Workspace work;
     write_campaign(work, "seeds: {count: 100}\ntime_limit_s: 600");
     const Program program(work, words("bench run campaign.yaml --out out"));
-    REQUIRE(program.has_said("running into out"));
+    REQUIRE(program.has_said("writing results to out"));
     program.send(signal);
     const Result result = program.wait();
     CHECK(result.code == code);

@@ -26,7 +26,7 @@ TEST_CASE("Pictures and the page of a run are made again from its files, the pag
     CHECK(work.run("report flown --png -o figures").out == "figures/flight.png\nfigures/plots.png\n");
     const Result again = work.run("report flown -o page.html");
     if (!has_pages) {
-        check_rejected(again, "this build brings no pages");
+        check_rejected(again, "this build contains no pages");
         return;
     }
     CHECK(again.code == 0);
@@ -173,7 +173,7 @@ TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
     for (const auto& [arguments, reason] :
          {std::pair{"report elsewhere --svg", "elsewhere: there is no such folder"},
           {"report flown --svg --width 10", "--width"},
-          {"report flown --width 800", "--width: of which picture?"},
+          {"report flown --width 800", "--width goes with pictures only"},
           {"export flown --format roz", "did you mean 'ros'?"},
           {"export flown --format qgc", "give --origin LATITUDE LONGITUDE ALTITUDE"},
           {"export flown --format csv --rate 0", "the rate is 0 Hz"},
