@@ -66,19 +66,19 @@ inline BasicReferencePoint<Pack> reference_at(const LaneGroup& group, Pack tick,
     const FlightLanes& lanes = group.lanes;
     const Pack inverse_duration = group.load(lanes.inverse_duration_1_s);
     const Pack s = tick * tick_s * inverse_duration;
-    BasicReferencePoint<Pack> reference;
-    for (int axis = 0; axis < 3; ++axis) {
+    const auto along = [&](int axis) {
         Pack coefficient[6];
         for (int power = 0; power < 6; ++power) {
             coefficient[power] = group.load(lanes.coefficient[axis][power]);
         }
-        const auto at = controllers::quintic_at(coefficient, s, inverse_duration);
-        reference.position[axis] = at.position;
-        reference.velocity[axis] = at.velocity;
-        reference.acceleration[axis] = at.acceleration;
-    }
+        return controllers::quintic_at(coefficient, s, inverse_duration);
+    };
+    const auto x = along(0), z = along(1), arm = along(2);
+    const BasicReferencePoint<Pack> reference{{x.position, z.position, arm.position},
+                                              {x.velocity, z.velocity, arm.velocity},
+                                              {x.acceleration, z.acceleration, arm.acceleration}};
     const PackMask is_end = tick >= group.load(lanes.ticks);
-    return select_each(is_end, group.load<BasicReferencePoint<Pack>>(lanes.end), reference);
+    return any(is_end) ? select_each(is_end, group.load<BasicReferencePoint<Pack>>(lanes.end), reference) : reference;
 }
 
 template <class Law, class Effect>
