@@ -152,8 +152,8 @@ TEST_CASE("Over level ground a volume that is wider keeps no more values, and wi
     CHECK(wide.polynomials() == narrow.polynomials());
     AeroSettings disabled;
     disabled.enabled = false;
-    for (const auto& effect : {effect_in({}, 0.2), effect_in(test::bridge(), 0.2, disabled)}) {
-        const VolumeMap map(effect, {}, {-2, 2, 8, 10}, -1, 1);
+    for (const auto& none : {effect_in({}, 0.2), effect_in(test::bridge(), 0.2, disabled)}) {
+        const VolumeMap map(none, {}, {-2, 2, 8, 10}, -1, 1);
         CHECK(map.polynomials() == 0);
         CHECK(map.factor({0.3, 0.2, 9.1}) == 1);
     }

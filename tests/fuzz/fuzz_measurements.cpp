@@ -6,7 +6,7 @@
 #include "downwash/effects/measurements.hpp"
 #include "downwash/fitting/effect_comparison.hpp"
 
-/// Whatever is read as measurements can be compared and fitted, or is refused.
+/// Whatever is read as measurements can be compared and fitted, or is an error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace downwash;
     try {
