@@ -2,20 +2,53 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "../support/test_files.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/problems/algorithms.hpp"
 
 namespace downwash::test {
+
+/// An expected text in which <objectives>, <models>, <algorithms> and <algorithms over flights> stand for all names
+/// that there are, joined.
+inline std::string with_all_names(std::string_view text) {
+    std::vector<std::string_view> objectives, models, planners, flight_planners;
+    for (const Objective objective : all_objectives) {
+        objectives.push_back(name_of(objective));
+    }
+    for (const EffectModelInfo& model : effect_models()) {
+        models.push_back(model.name);
+    }
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        planners.push_back(algorithm.name);
+        if (algorithm.plans_flights) {
+            flight_planners.push_back(algorithm.name);
+        }
+    }
+    std::string out(text);
+    for (const auto& [word, names] : {std::pair{std::string_view("<objectives>"), &objectives},
+                                      {"<models>", &models},
+                                      {"<algorithms>", &planners},
+                                      {"<algorithms over flights>", &flight_planners}}) {
+        for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at)) {
+            out.replace(at, word.size(), joined_names(*names));
+        }
+    }
+    return out;
+}
 
 /// One change to a sound file and every error that it must lead to, line by line from the line's number on.
 struct Edit {
     std::string_view from, to;
-    std::string_view errors;
+    std::string_view errors;  ///< see with_all_names
 
     /// The errors in a file.
     [[nodiscard]] std::string errors_in(const std::string& file) const {
         std::string text = file + ":";
-        for (const char c : errors) {
+        for (const char c : with_all_names(errors)) {
             text += c == '\n' ? "\n" + file + ":" : std::string(1, c);
         }
         return text;

@@ -130,9 +130,7 @@ const Edit edits[] = {
      "14:3: goal.configuration is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"hold_s: 5", "hold_s: 0.5", "15:11: goal.hold_s is 0.5: expected a number in s from 1 to 3600"},
     {"cheeseman-bennett", "cheesman-bennett",
-     "10:19: aero.ground.model is 'cheesman-bennett': expected one of none, cheeseman-bennett, multirotor-images, "
-     "multirotor-body, hayden, li, he, sanchez-cuevas, fairing-cfd, momentum-theory or table; did you mean "
-     "'cheeseman-bennett'?"},
+     "10:19: aero.ground.model is 'cheesman-bennett': expected one of <models>; did you mean 'cheeseman-bennett'?"},
     {"{model: cheeseman-bennett}", "{model: cheeseman-bennett, k1: 3}",
      "10:38: aero.ground.k1 has a meaning only with the model sanchez-cuevas: remove it"},
     {"{model: cheeseman-bennett}", "off", "10:11: aero.ground is 'off': expected a group of keys or none"},
@@ -141,13 +139,12 @@ const Edit edits[] = {
      "16:20: planner.variant is 'mp-arm-aad': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you mean "
      "'mp-arm-ada'?"},
     {"algorithm: rrt-star", "algorithm: rrt_star",
-     "16:43: planner.algorithm is 'rrt_star': expected one of rrt-star, rrt-connect, informed-rrt-star, bit-star, rrt, "
-     "sst, kpiece1 or est; did you mean 'rrt-star'?"},
+     "16:43: planner.algorithm is 'rrt_star': expected one of <algorithms>; did you mean 'rrt-star'?"},
     {"algorithm: rrt-star", "algorithm: bit-star",
-     "16:43: planner.algorithm is 'bit-star', which does not plan for mp-arm-ada: expected rrt-star, rrt, sst, kpiece1 "
-     "or est; did you mean 'rrt-star'?"},
+     "16:43: planner.algorithm is 'bit-star', which does not plan for mp-arm-ada: expected <algorithms over flights>; "
+     "did you mean 'rrt-star'?"},
     {"objective: energy", "objective: comfort",
-     "16:64: planner.objective is 'comfort': expected one of energy, time, length or clearance, or a group of keys"},
+     "16:64: planner.objective is 'comfort': expected one of <objectives>, or a group of keys"},
     {"objective: energy", "objective: {energy: 1, times: 2, length: -1}",
      "16:76: unknown key 'times' in planner.objective: did you mean 'time'?\n16:94: planner.objective.length is -1: "
      "expected a number from 0 to 1000000000"},
@@ -155,7 +152,7 @@ const Edit edits[] = {
      "16:64: planner.objective has no weight above 0: expected one at least"},
     {"objective: energy", "objective: {}", "16:64: planner.objective has no weight above 0: expected one at least"},
     {"objective: energy", "objective: [energy, time]",
-     "16:64: planner.objective is a list: expected one of energy, time, length or clearance, or a group of keys"},
+     "16:64: planner.objective is a list: expected one of <objectives>, or a group of keys"},
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n16:101: unknown "
      "key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
