@@ -60,6 +60,7 @@ struct ParameterInfo {
     std::vector<std::string_view> names;     ///< of a choice, or of choices
     std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
     std::string condition;                   ///< says in words when the parameter applies; empty: always
+    std::string_view former_name;            ///< last name of the path in earlier versions, still read
 };
 
 /// Last part of a key path: "x_m" of "start.x_m".
@@ -111,6 +112,8 @@ struct Parameter : ParameterInfo {
     Parameter at_most(double high) && { return range.high = high, std::move(*this); }
     /// Every file must contain the key.
     Parameter is_required() && { return required = true, std::move(*this); }
+    /// See ParameterInfo::former_name.
+    Parameter formerly(std::string_view name) && { return former_name = name, std::move(*this); }
     /// See ParameterInfo::exclusive.
     Parameter is_exclusive() && { return exclusive = true, std::move(*this); }
     /// See ParameterInfo::can_be_none.

@@ -103,7 +103,7 @@ ExitCode build_vehicle(const BuildArguments& given, const Problem& problem, cons
 
 ExitCode run(const BuildArguments& given) {
     require_sound_output(given);
-    const Problem read = read_problem(given.problem);
+    const Problem read = read_problem(given.problem, {}, print_outdated);
     if (!read.aero.enabled) {
         throw UsageError(given.problem + ": aero is none, so there is no map to build");
     }

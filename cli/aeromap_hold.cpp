@@ -108,7 +108,7 @@ ExitCode run(const HoldArguments& given) {
         require_coordinate(x_m, "--at");
         require_coordinate(z_m, "--at");
     }
-    const auto model = make_flight_model(read_problem(given.problem));
+    const auto model = make_flight_model(read_problem(given.problem, {}, print_outdated));
     const double arm_rad = given.arm_deg / degrees_per_radian;
     std::vector<HoldAnswer> answers;
     for (const auto& [x_m, z_m] : given.at) {

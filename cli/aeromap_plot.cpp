@@ -143,7 +143,7 @@ std::string picture(const PlotRequest& request, const PictureSettings& settings)
     if (request.problem.empty()) {
         return draw(model_figure(request), settings);
     }
-    const Problem problem = read_problem(request.problem);
+    const Problem problem = read_problem(request.problem, {}, print_outdated);
     const FieldKind& kind = entry_named(field_kinds, request.what, "--what");
     return draw(kind.make(request, problem, shown_extent(request, problem)), settings);
 }

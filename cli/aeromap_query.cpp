@@ -200,7 +200,7 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& given) {
 }
 
 void query_problem(const QueryArguments& given) {
-    const Problem problem = read_problem(given.problem);
+    const Problem problem = read_problem(given.problem, {}, print_outdated);
     Effects effects(given, problem, cache_folder(given.no_cache));
     std::vector<PointEffect> points;
     for (const auto& point_m : all_points(given)) {

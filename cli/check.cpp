@@ -22,7 +22,7 @@ struct CheckArguments {
 
 std::vector<LocatedError> errors_of(const std::string& path) {
     try {
-        static_cast<void>(read_problem(path));
+        static_cast<void>(read_problem(path, {}, print_outdated));
     } catch (const ProblemFileError& error) {
         return error.errors();
     }

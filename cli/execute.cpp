@@ -8,6 +8,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -65,7 +66,7 @@ void fly(const Problem& problem, bool aero, Solution& solution) {
 
 ExitCode run(const ExecuteArguments& given) {
     const Interruption interruption;
-    Problem read = read_problem(given.problem);
+    Problem read = read_problem(given.problem, {}, print_outdated);
     Solution solution = read_solution(given.plan, read);
     read = as_planned(std::move(read), solution);
     const OutputFolder folder(folder_for(given, read));

@@ -8,6 +8,8 @@
 #include "downwash/base/files.hpp"
 #include "downwash/cli/usage_error.hpp"
 
+#include "downwash/problems/problem_reader.hpp"
+
 namespace downwash::cli {
 namespace {
 
@@ -28,6 +30,10 @@ void with_usage_errors(const fs::path& file, std::string_view option, const Work
 void print_error(std::string_view text) noexcept {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fflush(stderr));
+}
+
+void print_outdated(const LocatedError& key) noexcept {
+    print_error(to_text(key) + "\n");
 }
 
 void print_json(const Json& document) {

@@ -6,12 +6,19 @@
 #include <string>
 #include <string_view>
 
+namespace downwash {
+struct LocatedError;
+}
+
 namespace downwash::cli {
 
 using Json = nlohmann::ordered_json;
 
 /// Writes text to standard error. If that fails, nothing is said and the exit code still tells.
 void print_error(std::string_view text) noexcept;
+
+/// Reports on standard error a key that a file calls by a former name.
+void print_outdated(const LocatedError& key) noexcept;
 
 /// Prints a document as commands do with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
 void print_json(const Json& document);

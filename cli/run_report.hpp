@@ -26,8 +26,8 @@ struct ShownRun {
 /// @throws UsageError unless this build contains pages
 void require_pages();
 
-/// Writes the page of a run beside its other files, if this build contains pages. The run stands without it: an error is
-/// reported on standard error, and no page of an earlier run stays. The parameters are those of shown_run().
+/// Writes the page of a run beside its other files, if this build contains pages. The run stands without it: an error
+/// is reported on standard error, and no page of an earlier run stays. The parameters are those of shown_run().
 void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
                 const std::filesystem::path& cache, bool is_quiet = false);
 

@@ -11,6 +11,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
@@ -87,8 +88,9 @@ std::string announcement(const Problem& problem) {
 
 ExitCode run(const SolveArguments& given) {
     const Interruption interruption;
-    const Problem read =
-        read_problem(given.problem, [&given](Problem& settings) { override_settings(given, settings); });
+    const Problem read = read_problem(
+        given.problem, [&given](Problem& settings) { override_settings(given, settings); },
+        given.is_quiet ? nullptr : print_outdated);
     const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
     SolveOptions options;

@@ -21,9 +21,9 @@ struct ModelInversion {
     double position_ki = 0;                     ///< [1/s3]
     double position_integral_limit_m_s2 = 2.0;  ///< greatest ki * integral, per axis
 
-    double attitude_k5 = 0;    ///< pitch angle to pitch rate [1/s]
-    double attitude_ku5 = 0;   ///< pitch rate to pitch acceleration [1/s]
-    double attitude_kiu5 = 0;  ///< integral of the pitch rate error [1/s2]
+    double attitude_kp = 0;       ///< pitch angle to pitch rate [1/s]
+    double attitude_rate_kp = 0;  ///< pitch rate to pitch acceleration [1/s]
+    double attitude_rate_ki = 0;  ///< integral of the pitch rate error [1/s2]
     double attitude_integral_limit_rad_s2 = 5.0;
     double pitch_rate_filter_s = 0.1;  ///< time constant of the filtered derivative of the pitch reference
     bool rate_feed_forward = false;    ///< adds d(u5_ref)/dt to the pitch acceleration
@@ -117,13 +117,14 @@ struct ModelInversion {
         step.frozen.pitch_reference_rad = pitch_reference;
         step.frozen.pitch_reference_rate =
             memory.pitch_reference_rate + blend * (raw_rate - memory.pitch_reference_rate);
-        const T rate_reference = step.frozen.pitch_reference_rate + T(attitude_k5) * (pitch_reference - q[2]);
+        const T rate_reference = step.frozen.pitch_reference_rate + T(attitude_kp) * (pitch_reference - q[2]);
         step.frozen.rate_reference = rate_reference;
 
         // D5^-1: the pitch torque for the pitch acceleration, with the accelerations that this thrust will really give.
         const T rate_error = rate_reference - u[2];
-        T v5 = T(attitude_ku5) * rate_error +
-               controllers::integral_action(attitude_kiu5, attitude_integral_limit_rad_s2, memory.pitch_rate_integral);
+        T v5 =
+            T(attitude_rate_kp) * rate_error +
+            controllers::integral_action(attitude_rate_ki, attitude_integral_limit_rad_s2, memory.pitch_rate_integral);
         if (rate_feed_forward) {
             v5 = v5 + (rate_reference - memory.rate_reference) / dt_s;
         }
@@ -144,7 +145,7 @@ struct ModelInversion {
             step.integrated.position_integral[i] =
                 lane::select(is_force_clipped, memory.position_integral[i], integral);
         }
-        step.integrated.pitch_rate_integral = controllers::integrate(attitude_kiu5, attitude_integral_limit_rad_s2,
+        step.integrated.pitch_rate_integral = controllers::integrate(attitude_rate_ki, attitude_integral_limit_rad_s2,
                                                                      memory.pitch_rate_integral, rate_error, dt_s);
         step.integrated.arm_integral =
             controllers::integrate(arm_ki, arm_integral_limit_rad_s2, memory.arm_integral, arm_error, dt_s);
@@ -164,9 +165,10 @@ struct ModelInversion {
         const double v7 = (command.joint_torque_nm - torque_at_rest_nm) / torque_per_v7;
         const dynamics::RotationalSystem<double> s = dynamics::rotational_system(nominal, equations, force);
         const double v5 = (s.g5 - s.s57 * v7) / s.s55;
-        const auto rate = controllers::settled_pid(v5, attitude_ku5, attitude_kiu5, attitude_integral_limit_rad_s2);
+        const auto rate =
+            controllers::settled_pid(v5, attitude_rate_kp, attitude_rate_ki, attitude_integral_limit_rad_s2);
         controllers::Rest<Memory> rest;
-        rest.pitch_reference_rad = controllers::error_for(rate.error, attitude_k5);
+        rest.pitch_reference_rad = controllers::error_for(rate.error, attitude_kp);
         double sine = 0;
         double cosine = 1;
         lane::sin_cos(rest.pitch_reference_rad, sine, cosine);
@@ -183,7 +185,7 @@ struct ModelInversion {
         rest.feeds_back = {
             {x.feeds_back, z.feeds_back}, rate.feeds_back, arm.feeds_back, true, true, rate_feed_forward};
         rest.height_gain_1_s2 = position_kp;
-        rest.pitch_gain_1_s2 = attitude_k5 * attitude_ku5;
+        rest.pitch_gain_1_s2 = attitude_kp * attitude_rate_kp;
         if (!(std::abs(rest.pitch_reference_rad) < max_tilt_rad)) {
             rest.limit = HoldLimit::tilt;
         } else if (!(thrust_n > min_vertical_force_ratio * equations.bias[1])) {
@@ -205,10 +207,14 @@ struct ModelInversion {
         rows.add(rows.gain("position.integral_limit_m_s2", "most that the integral may ask for, per axis",
                            &Law::position_integral_limit_m_s2));
         rows.group("attitude", "pitch of the multirotor to angular acceleration");
-        rows.add(rows.gain("attitude.k5", "pitch error to pitch rate [1/s]", &Law::attitude_k5).is_required());
-        rows.add(rows.gain("attitude.ku5", "pitch rate error to angular acceleration [1/s]", &Law::attitude_ku5)
+        rows.add(rows.gain("attitude.kp", "pitch error to pitch rate [1/s]", &Law::attitude_kp)
+                     .formerly("k5")
                      .is_required());
-        rows.add(rows.gain("attitude.kiu5", "integral of the pitch rate error [1/s2]", &Law::attitude_kiu5));
+        rows.add(rows.gain("attitude.rate_kp", "pitch rate error to angular acceleration [1/s]", &Law::attitude_rate_kp)
+                     .formerly("ku5")
+                     .is_required());
+        rows.add(rows.gain("attitude.rate_ki", "integral of the pitch rate error [1/s2]", &Law::attitude_rate_ki)
+                     .formerly("kiu5"));
         rows.add(rows.gain("attitude.integral_limit_rad_s2", "most that the integral may ask for",
                            &Law::attitude_integral_limit_rad_s2));
         rows.add(rows.gain("attitude.pitch_rate_filter_s", "time constant of the derivative of the pitch reference",

@@ -51,9 +51,15 @@ std::string to_text(const LocatedError& error) {
 ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
     : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
 
-Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust) {
+Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust,
+                     const std::function<void(const LocatedError&)>& on_outdated) {
     ProblemTreeReader reader(problem_parameters());
     read_checked(reader, file, adjust);
+    for (const LocatedError& key : reader.outdated_keys()) {
+        if (on_outdated) {
+            on_outdated(key);
+        }
+    }
     return reader.model();
 }
 

@@ -12,7 +12,7 @@
 
 namespace downwash {
 
-/// Something wrong in a problem or robot file.
+/// Something wrong, or outdated, in a problem or robot file.
 struct LocatedError {
     std::string file;     ///< as the caller or the problem file names it
     int line = 1;         ///< counted from 1
@@ -37,9 +37,11 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
 /// Reads a problem and the robot that it refers to, whose path is relative to the problem's file.
 /// The result is complete and sound: problem_errors() finds nothing in it.
 /// @param adjust changes values before the problem is checked as a whole, for example with set_parameter()
+/// @param on_outdated is told of every key that the file calls by a former name; the key is read all the same
 /// @throws ProblemFileError with every error that can be found in one reading (a hundred at most), and what adjust does
 [[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file,
-                                                   const std::function<void(Problem&)>& adjust = {});
+                                                   const std::function<void(Problem&)>& adjust = {},
+                                                   const std::function<void(const LocatedError&)>& on_outdated = {});
 
 /// The same, with the flight model in the scene that was made for the checks.
 [[nodiscard]] DOWNWASH_EXPORT PlannableProblem read_plannable_problem(const std::filesystem::path& file,

@@ -106,17 +106,32 @@ void TreeReader<Model>::find_entries(Group& group) {
             report(key.mark, "a key of " + shown(group.key) + " is no word: expected 'name: value'");
             continue;
         }
-        if (table_.find(joined(group.path, key.text)) == nullptr) {
-            report_unknown(group, key.text, key.mark);
+        const std::string name = current_name(group, key);
+        if (table_.find(joined(group.path, name)) == nullptr) {
+            report_unknown(group, name, key.mark);
             continue;
         }
-        const auto [first, is_new] = group.entries.emplace(key.text, i);
+        const auto [first, is_new] = group.entries.emplace(name, i);
         if (!is_new) {
             const int line = group.node.entries[first->second].first->mark.line;
-            report(joined(group.key, key.text), key.mark,
+            report(joined(group.key, name), key.mark,
                    "is written twice: expected once, as in line " + std::to_string(line));
         }
     }
+}
+
+/// The name of a key, which the file may call by the name that it had in earlier versions.
+template <class Model>
+std::string TreeReader<Model>::current_name(const Group& group, const YamlNode& key) {
+    for (const Parameter<Model>* child : table_.children(group.path)) {
+        if (!child->former_name.empty() && child->former_name == key.text) {
+            std::string name(last_name(child->path));
+            outdated_.push_back(
+                {{file_, key.mark}, shown(joined(group.key, key.text)) + " is now called " + name + ": rename it"});
+            return name;
+        }
+    }
+    return key.text;
 }
 
 template <class Model>
@@ -316,18 +331,22 @@ void TreeReader<Model>::add(const std::vector<KeyError>& errors) {
 
 template <class Model>
 std::vector<LocatedError> TreeReader<Model>::errors() const {
-    std::vector<Found> ordered = found_;
+    return located(found_);
+}
+
+template <class Model>
+std::vector<LocatedError> TreeReader<Model>::located(std::vector<Found> ordered) const {
     std::stable_sort(ordered.begin(), ordered.end(), [](const Found& a, const Found& b) {
         return std::tie(a.place.file, a.place.mark.line, a.place.mark.column) <
                std::tie(b.place.file, b.place.mark.line, b.place.mark.column);
     });
-    std::vector<LocatedError> located;
-    located.reserve(ordered.size());
+    std::vector<LocatedError> list;
+    list.reserve(ordered.size());
     for (const Found& found : ordered) {
-        located.push_back(
+        list.push_back(
             {files_[found.place.file].path.string(), found.place.mark.line, found.place.mark.column, found.message});
     }
-    return located;
+    return list;
 }
 
 template class TreeReader<Problem>;

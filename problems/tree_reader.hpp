@@ -35,6 +35,8 @@ class TreeReader {
     void add(const std::vector<KeyError>& errors);
     /// All errors, ordered by file and place; every call gives the same.
     [[nodiscard]] std::vector<LocatedError> errors() const;
+    /// Keys that were read under a former name, ordered like errors.
+    [[nodiscard]] std::vector<LocatedError> outdated_keys() const { return located(outdated_); }
 
  private:
     struct Place {
@@ -56,6 +58,7 @@ class TreeReader {
     bool has_supported_schema(const YamlNode& root, const std::string& path);
     void read_keys(Group group);
     void find_entries(Group& group);
+    [[nodiscard]] std::string current_name(const Group& group, const YamlNode& key);
     void report_unknown(Group& group, const std::string& name, const Mark& mark);
     void check_alternatives(const Group& group);
     void read_parameter(const Group& group, const Parameter<Model>& parameter);
@@ -86,7 +89,9 @@ class TreeReader {
         Place place;
         std::string message;
     };
+    [[nodiscard]] std::vector<LocatedError> located(std::vector<Found> found) const;
     std::vector<Found> found_;
+    std::vector<Found> outdated_;
 };
 
 }  // namespace downwash::problems

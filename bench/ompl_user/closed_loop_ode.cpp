@@ -69,10 +69,10 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     const double least_z = g.min_vertical_force_ratio * p.total_mass_kg * standard_gravity_m_s2;
     const double pitch_reference = limited(std::atan2(force.x(), std::max(force.y(), least_z)), g.max_tilt_rad);
     const double reference_rate = (pitch_reference - s[filtered_pitch_reference]) / g.pitch_rate_filter_s;
-    const double rate_error = reference_rate + g.attitude_k5 * (pitch_reference - q[2]) - u[2];
+    const double rate_error = reference_rate + g.attitude_kp * (pitch_reference - q[2]) - u[2];
     const double thrust = force.dot(Eigen::Vector2d(std::sin(q[2]), std::cos(q[2])));
-    wanted[2] = g.attitude_ku5 * rate_error +
-                limited(g.attitude_kiu5 * s[integral_pitch_rate], g.attitude_integral_limit_rad_s2);
+    wanted[2] = g.attitude_rate_kp * rate_error +
+                limited(g.attitude_rate_ki * s[integral_pitch_rate], g.attitude_integral_limit_rad_s2);
 
     // The torques for it, with the accelerations that this thrust will really give.
     const Eigen::Vector2d given = thrust * Eigen::Vector2d(std::sin(q[2]), std::cos(q[2])) - b.bias.head<2>() -

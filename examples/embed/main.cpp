@@ -19,7 +19,7 @@ int main() {
     robot.arm = {.length_m = 1.2, .mass_kg = 0.45, .center_of_mass_m = 0.72, .inertia_kg_m2 = 0.06, .radius_m = 0.03};
     robot.arm.max_torque_nm = 12;
     ModelInversion gains{
-        .position_kp = 2, .position_kd = 2.6, .position_ki = 0.4, .attitude_k5 = 8, .attitude_ku5 = 20};
+        .position_kp = 2, .position_kd = 2.6, .position_ki = 0.4, .attitude_kp = 8, .attitude_rate_kp = 20};
     gains.arm_kp = 30;
     gains.arm_kd = 11;
     robot.controller.law = gains;

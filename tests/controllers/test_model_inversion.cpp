@@ -22,7 +22,7 @@ Robot offset_robot() {
     Robot robot = test_robot();
     robot.arm.joint_x_m = 0.1;
     robot.arm.joint_z_m = -0.07;
-    gains_of(robot).attitude_kiu5 = 3;
+    gains_of(robot).attitude_rate_ki = 3;
     gains_of(robot).arm_ki = 5;
     return robot;
 }
@@ -131,8 +131,8 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
         const double raw_rate = (reference - c.memory.pitch_reference_rad) / tick_s;
         const double filtered = (g.pitch_rate_filter_s * c.memory.pitch_reference_rate + tick_s * raw_rate) /
                                 (g.pitch_rate_filter_s + tick_s);
-        const double rate_reference = filtered + g.attitude_k5 * (reference - c.q[2]);
-        double v5 = g.attitude_ku5 * (rate_reference - c.u[2]) + g.attitude_kiu5 * c.memory.pitch_rate_integral;
+        const double rate_reference = filtered + g.attitude_kp * (reference - c.q[2]);
+        double v5 = g.attitude_rate_kp * (rate_reference - c.u[2]) + g.attitude_rate_ki * c.memory.pitch_rate_integral;
         if (g.rate_feed_forward) {
             v5 += (rate_reference - c.memory.rate_reference) / tick_s;
         }
@@ -149,8 +149,8 @@ TEST_CASE("The demand produces the wanted pitch and arm accelerations exactly") 
 TEST_CASE("Once the vehicle has the pitch that is asked for, it accelerates exactly as wanted") {
     Random random(2);
     Robot robot = offset_robot();
-    gains_of(robot).attitude_ku5 = 0;  // the force is worked out for a pitch that does not accelerate
-    gains_of(robot).attitude_kiu5 = 0;
+    gains_of(robot).attitude_rate_kp = 0;  // the force is worked out for a pitch that does not accelerate
+    gains_of(robot).attitude_rate_ki = 0;
     const PlantModel model = plant_of(robot);
     double worst = 0;
     int reached = 0;
@@ -208,7 +208,7 @@ TEST_CASE("Integrators add error over time and stop where their limit can use no
     CHECK(memory.position_integral[0] == g.position_integral_limit_m_s2 / g.position_ki);
     CHECK(memory.position_integral[1] == -g.position_integral_limit_m_s2 / g.position_ki);
     CHECK(memory.arm_integral == g.arm_integral_limit_rad_s2 / g.arm_ki);
-    CHECK(std::abs(memory.pitch_rate_integral) <= g.attitude_integral_limit_rad_s2 / g.attitude_kiu5);
+    CHECK(std::abs(memory.pitch_rate_integral) <= g.attitude_integral_limit_rad_s2 / g.attitude_rate_ki);
 
     // Wound up to the limit, the integral leaves it with the first error of the other sign.
     const auto back = demanded(g, model, q, still, memory, at_rest({-0.4, 2, 0.5}));

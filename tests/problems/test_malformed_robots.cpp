@@ -68,9 +68,11 @@ const Edit edits[] = {
     {"max_tilt_deg: 35", "rate_hz: 5", "18:12: controller.rate_hz is 5: expected a number in Hz from 10 to 1000"},
     {"max_tilt_deg: 35", "rate_khz: 0.1",
      "18:3: unknown key 'rate_khz' in controller: its unit is wrong; expected rate_hz"},
-    {"attitude: {k5: 8, ", "attitude: {k5: 8, rate_feed_forward: yes, ",
+    {"attitude: {kp: 8, ", "attitude: {kp: 8, rate_feed_forward: yes, ",
      "16:40: controller.attitude.rate_feed_forward is 'yes': expected true or false"},
-    {"attitude: {k5: 8, ", "attitude: {", "16:3: controller.attitude.k5 is missing: expected a number from 0 to 10000"},
+    {"attitude: {kp: 8, ", "attitude: {kp: 8, k5: 8, ",
+     "16:21: controller.attitude.kp is written twice: expected once, as in line 16"},
+    {"attitude: {kp: 8, ", "attitude: {", "16:3: controller.attitude.kp is missing: expected a number from 0 to 10000"},
     {"position: {kp: 2, kd: 2.6}", "position: {Kp: 2, kd: 2.6}",
      "15:14: unknown key 'Kp' in controller.position: did you mean 'kp'?"},
 };

@@ -34,6 +34,22 @@ TEST_CASE("what a file leaves out has the default of its member") {
     CHECK_FALSE(problem.robot.arm.is_limited);
 }
 
+TEST_CASE("keys are read by their former names, which are reported") {
+    const TestFolder folder;
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", edited(good_robot, "{kp: 8, rate_kp: 20}", "{k5: 7, ku5: 19, kiu5: 1}"));
+    std::vector<LocatedError> outdated;
+    const Problem problem =
+        read_problem(folder / "problem.yaml", {}, [&](const LocatedError& key) { outdated.push_back(key); });
+    const ModelInversion& gains = test::gains_of(problem.robot);
+    CHECK(gains.attitude_kp == 7);
+    CHECK(gains.attitude_rate_kp == 19);
+    CHECK(gains.attitude_rate_ki == 1);
+    REQUIRE(outdated.size() == 3);
+    CHECK(to_text(outdated[1]) ==
+          (folder / "robot.yaml").string() + ":16:21: controller.attitude.ku5 is now called rate_kp: rename it");
+}
+
 TEST_CASE("errors of several kinds and files are reported in one run, in the order of the files") {
     const TestFolder folder;
     CHECK(folder.errors_of(edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"),

@@ -18,8 +18,8 @@ constexpr std::int64_t rising_ticks = 8;
 Robot slow_robot(double rate_hz = 10) {
     Robot robot = test::test_robot();
     robot.controller.rate_hz = rate_hz;
-    test::gains_of(robot).attitude_k5 = 3;
-    test::gains_of(robot).attitude_ku5 = 6;
+    test::gains_of(robot).attitude_kp = 3;
+    test::gains_of(robot).attitude_rate_kp = 6;
     test::gains_of(robot).arm_kp = 9;
     test::gains_of(robot).arm_kd = 6;
     return robot;

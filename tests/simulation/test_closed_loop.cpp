@@ -41,7 +41,7 @@ State resting_at(double x_m, double z_m, double arm_rad) {
 Robot robot_with_memory(double lag_s) {
     Robot robot = test_robot();
     robot.rotors.time_constant_s = lag_s;
-    gains_of(robot).attitude_kiu5 = 2;
+    gains_of(robot).attitude_rate_ki = 2;
     gains_of(robot).arm_ki = 4;
     gains_of(robot).rate_feed_forward = true;
     return robot;
@@ -115,7 +115,7 @@ std::vector<double> ideal_sideways(const ModelInversion& g, int ticks) {
         const double reference = v / gravity;
         filtered += h / (g.pitch_rate_filter_s + h) * ((reference - last) / h - filtered);
         last = reference;
-        const double v5 = g.attitude_ku5 * (filtered + g.attitude_k5 * (reference - pitch) - rate);
+        const double v5 = g.attitude_rate_kp * (filtered + g.attitude_kp * (reference - pitch) - rate);
         // Exact over a tick of constant angular acceleration.
         x += u * h + gravity * (pitch * h * h / 2 + rate * h * h * h / 6 + v5 * h * h * h * h / 24);
         u += gravity * (pitch * h + rate * h * h / 2 + v5 * h * h * h / 6);
@@ -258,7 +258,7 @@ TEST_CASE("Every number of the state matters to what follows") {
 
 TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the integrators") {
     Robot robot = test_robot();
-    gains_of(robot).attitude_kiu5 = 2;
+    gains_of(robot).attitude_rate_ki = 2;
     gains_of(robot).arm_ki = 4;
     const auto model = model_of(robot);
     const State state = resting_at(0, 2, 0);

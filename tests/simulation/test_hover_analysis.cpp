@@ -122,7 +122,7 @@ Problem problem_with_memory() {
     problem.aero.ground = EffectModel::multirotor_body;
     Robot& robot = problem.robot;
     robot.rotors.time_constant_s = 0.02;
-    gains_of(robot).attitude_kiu5 = 3;
+    gains_of(robot).attitude_rate_ki = 3;
     gains_of(robot).arm_ki = 15;
     gains_of(robot).rate_feed_forward = true;
     robot.arm.joint_x_m = 0.05;
@@ -327,8 +327,8 @@ TEST_CASE("where a vehicle cannot hover the analysis says why") {
 
     Problem soft = plain;  // half a ceiling turns the vehicle, and the attitude loop hardly answers
     soft.obstacles = {box("slab", {4, 4, 1}, {2, 0, 3.5})};
-    gains_of(soft.robot).attitude_k5 = 1;
-    gains_of(soft.robot).attitude_ku5 = 2;
+    gains_of(soft.robot).attitude_kp = 1;
+    gains_of(soft.robot).attitude_rate_kp = 2;
     CHECK(verdict_of(soft, 0, 3 - 0.15 - hub_height_m, quarter_turn).trim.limit == HoldLimit::tilt);
 
     Problem loose = soft;  // nothing leans the vehicle against that turn
@@ -352,7 +352,7 @@ TEST_CASE("gains beyond all measure end in a verdict") {
             ModelInversion& gains = gains_of(problem.robot);
             (which == 0   ? gains.position_kp
              : which == 1 ? gains.position_kd
-             : which == 2 ? gains.attitude_ku5
+             : which == 2 ? gains.attitude_rate_kp
                           : gains.arm_kp) = gain;
             const HoverAnalysis a = analyse_hover(*make_flight_model(problem), 0, 2.5, 1.2);
             INFO(gain << " as gain " << which);

@@ -47,7 +47,7 @@ rotors:
 arm: {length_m: 1.2, mass_kg: 0.45, center_of_mass_m: 0.7, inertia_kg_m2: 0.06, radius_m: 0.03, max_torque_nm: 12}
 controller:
   position: {kp: 2, kd: 2.6}
-  attitude: {k5: 8, ku5: 20}
+  attitude: {kp: 8, rate_kp: 20}
   arm: {kp: 30, kd: 11}
   max_tilt_deg: 35
 )";

@@ -47,8 +47,8 @@ inline Robot test_robot() {
     gains.position_kp = 2.0;
     gains.position_kd = 2.6;
     gains.position_ki = 0.4;
-    gains.attitude_k5 = 8;
-    gains.attitude_ku5 = 20;
+    gains.attitude_kp = 8;
+    gains.attitude_rate_kp = 20;
     gains.arm_kp = 30;
     gains.arm_kd = 11;
     robot.controller.law = gains;
