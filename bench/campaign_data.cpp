@@ -1,5 +1,6 @@
 #include "downwash/bench/campaign_data.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "downwash/base/text.hpp"
@@ -8,6 +9,12 @@ namespace downwash::bench {
 
 std::string Experiment::name() const {
     return problem + ", " + objective;
+}
+
+std::string_view Experiment::cost_unit() const {
+    const auto* const single = std::find_if(all_objectives.begin(), all_objectives.end(),
+                                            [&](Objective each) { return downwash::name_of(each) == objective; });
+    return single != all_objectives.end() ? unit_of(*single) : "";
 }
 
 std::string text_of(const ParameterValues& parameters) {

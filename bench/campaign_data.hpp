@@ -17,7 +17,8 @@ struct Experiment {
     std::string problem;
     std::string objective;  ///< "energy", or a sum for people: "energy + 50 time"
 
-    [[nodiscard]] std::string name() const;  ///< "bridge_inspection, energy"
+    [[nodiscard]] std::string name() const;            ///< "bridge_inspection, energy"
+    [[nodiscard]] std::string_view cost_unit() const;  ///< "J"; empty for a sum
     bool operator==(const Experiment&) const = default;
 };
 

@@ -75,6 +75,7 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
     const PlannerSetup& planner = plan.planners[cell.planner];
     return {{"problem", plan.experiments[cell.experiment].problem},
             {"objective", plan.experiments[cell.experiment].objective},
+            {"cost_unit", plan.experiments[cell.experiment].cost_unit()},
             {"planner", planner.name()},
             {"variant", downwash::name_of(planner.variant)},
             {"algorithm", planner.algorithm},

@@ -27,16 +27,6 @@ std::string row(std::string_view name, const std::string& value) {
     return fmt::format("  {:<16}  {}\n", name, value);
 }
 
-/// With a space before it; a weighted sum has none.
-std::string_view unit_of(const CostFunction& cost) {
-    const auto objective = cost.single();
-    return !objective                        ? ""
-           : *objective == Objective::energy ? " J"
-           : *objective == Objective::time   ? " s"
-           : *objective == Objective::length ? " m"
-                                             : " s/m";
-}
-
 std::string rejections(const SearchRecord& record) {
     std::string text;
     for (const auto& [cause, count] : record.rejected) {
@@ -54,7 +44,8 @@ std::string millimetres(double length_m) {
 
 std::string flight_rows(const Solution& solution, const Execution& flight) {
     std::string text;
-    const std::string_view unit = unit_of(solution.objective);
+    const std::string_view symbol = unit_of(solution.objective);
+    const std::string unit = symbol.empty() ? "" : " " + std::string(symbol);
     text += row("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                       flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
     text += row("cost",

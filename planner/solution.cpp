@@ -3,7 +3,7 @@
 namespace downwash {
 
 double cost_of(const Execution& execution, const CostFunction& objective) {
-    return objective({execution.energy_j, execution.duration_s, execution.length_m, execution.clearance_integral});
+    return objective({execution, execution.energy_j, execution.duration_s, execution.clearance_integral});
 }
 
 }  // namespace downwash

@@ -5,12 +5,36 @@
 namespace downwash {
 namespace {
 
-constexpr std::array<std::string_view, all_objectives.size()> names{"energy", "time", "length", "clearance"};
+struct Entry {
+    std::string_view name, unit;
+    double (*figure)(const CostFigures& figures);
+};
+
+/// In the order of Objective.
+constexpr std::array<Entry, all_objectives.size()> entries{{
+    {"energy", "J", [](const CostFigures& of) { return of.energy_j; }},
+    {"time", "s", [](const CostFigures& of) { return of.time_s; }},
+    {"length", "m", [](const CostFigures& of) { return of.length_m; }},
+    {"clearance", "s/m", [](const CostFigures& of) { return of.clearance_integral; }},
+}};
+
+const Entry& entry(Objective objective) {
+    return entries[static_cast<std::size_t>(objective)];
+}
 
 }  // namespace
 
 std::string_view name_of(Objective objective) {
-    return names[static_cast<std::size_t>(objective)];
+    return entry(objective).name;
+}
+
+std::string_view unit_of(Objective objective) {
+    return entry(objective).unit;
+}
+
+std::string_view unit_of(const CostFunction& cost) {
+    const std::optional<Objective> single = cost.single();
+    return single ? unit_of(*single) : "";
 }
 
 CostFunction CostFunction::of_nothing() noexcept {
@@ -29,11 +53,9 @@ std::optional<Objective> CostFunction::single() const noexcept {
 }
 
 double CostFunction::operator()(const CostFigures& figures) const noexcept {
-    const std::array<double, all_objectives.size()> values{figures.energy_j, figures.time_s, figures.length_m,
-                                                           figures.clearance_integral};
     double sum = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        sum += weights_[i] != 0 ? weights_[i] * values[i] : 0;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        sum += weights_[i] != 0 ? weights_[i] * entries[i].figure(figures) : 0;
     }
     return sum;
 }

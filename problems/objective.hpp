@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "downwash/base/export.hpp"
+#include "downwash/simulation/flight_sums.hpp"
 
 namespace downwash {
 
@@ -14,7 +15,7 @@ namespace downwash {
 enum class Objective {
     energy,     ///< rotor and arm power over time [J]
     time,       ///< duration [s]
-    length,     ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2) [m], w = half the arm's length
+    length,     ///< FlightSums::length_m [m]
     clearance,  ///< integral of dt / (clearance + 0.1 m) [s/m]
 };
 
@@ -24,11 +25,13 @@ inline constexpr std::array all_objectives{Objective::energy, Objective::time, O
 /// Name as in problem files: "energy".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Objective objective);
 
+/// "J"
+[[nodiscard]] DOWNWASH_EXPORT std::string_view unit_of(Objective objective);
+
 /// What a flight, or a part of one, takes in each objective.
-struct CostFigures {
+struct CostFigures : FlightSums {
     double energy_j = 0;
     double time_s = 0;
-    double length_m = 0;
     double clearance_integral = 0;  ///< [s/m]
 };
 
@@ -60,6 +63,9 @@ class DOWNWASH_EXPORT CostFunction {
 
     std::array<double, all_objectives.size()> weights_{};
 };
+
+/// That of the objective that counts alone; empty for a weighted sum.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view unit_of(const CostFunction& cost);
 
 /// For people: "energy", "energy + 50 time".
 [[nodiscard]] DOWNWASH_EXPORT std::string text_of(const CostFunction& cost);

@@ -152,11 +152,9 @@ void add_objective(Rows& rows) {
                        [](auto& p) -> auto& { return p.planner.objective; })
                        .or_group([](const Problem& p) { return !p.planner.objective.single(); },
                                  [](Problem& p) { p.planner.objective = CostFunction::of_nothing(); }));
-    constexpr std::array<std::string_view, all_objectives.size()> units{"J", "second", "metre", "s/m"};
-    for (std::size_t i = 0; i < units.size(); ++i) {
-        const Objective objective = all_objectives[i];
+    for (const Objective objective : all_objectives) {
         rows.push_back(number("planner.objective." + std::string(name_of(objective)),
-                              "weight of a " + std::string(units[i]),
+                              "weight of 1 " + std::string(unit_of(objective)),
                               [objective](auto& p) -> decltype(auto) { return p.planner.objective.weight(objective); })
                            .at_least(0)
                            .at_most(1e9));

@@ -88,6 +88,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
         {"version", version()},
         {"command", command_of(problem, solution)},
         {"solution", solution},
+        {"cost_unit", unit_of(problem.planner.objective)},
         {"effective_yaml", run.problem_text},
         {"description", problem.description},
         {"scene", scene_json(problem, model.effect(0).scene())},

@@ -33,7 +33,7 @@ double FreeAirCost::of_motion(const Configuration& from, const Configuration& to
     const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
     const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits_);
     const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
-    return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), duration_s * density});
+    return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
 }
 
 double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
@@ -41,7 +41,7 @@ double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configur
     const double duration_s =
         peak_over_mean_speed * std::max(travel_m(from, to) / limits_.max_speed_m_s, turn / limits_.max_arm_rate_rad_s);
     // Far from everything clearance costs next to nothing.
-    return objective_({hover_power_w_ * duration_s, duration_s, space_.distance_m(from, to), 0});
+    return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, 0});
 }
 
 double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
@@ -57,14 +57,14 @@ double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
         // A tip moves by at most d + 2 w darm where the length is sqrt(d^2 + (w darm)^2).
         const double length_m = has_tip ? off.distance_m / std::sqrt(5.0) : off.distance_m;
         const double all_s = duration_s + goal.hold_s;
-        least = std::min(least, objective_({hover_power_w_ * all_s, all_s, length_m, 0}));
+        least = std::min(least, objective_({{length_m}, hover_power_w_ * all_s, all_s, 0}));
     }
     return least;
 }
 
 double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
     const double density = counts_clearance_ ? clearance_density(at) : 0;
-    return objective_({hover_power_w_ * hold_s, hold_s, 0, hold_s * density});
+    return objective_({{}, hover_power_w_ * hold_s, hold_s, hold_s * density});
 }
 
 double FreeAirCost::clearance_density(const Configuration& at) const {

@@ -98,7 +98,7 @@ class Recorder {
     Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
                          const FlightState& next, const ReferencePoint& next_reference) {
         add_row(before, reference, given);
-        execution_.length_m += std::sqrt(simulation::squared_step_m2(plant_, before, next));
+        simulation::add_tick(execution_, plant_, before, next);
         const Rejection rejection = judge(next, next_reference, &before);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
         return rejection;

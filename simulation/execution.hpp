@@ -45,13 +45,12 @@ struct GoalVisit {
 };
 
 /// A plan flown from start to the end of the hold.
-struct Execution {
+struct Execution : FlightSums {
     bool aero = true;  ///< whether surfaces acted on the rotors
     Outcome outcome = Outcome::ok;
     double min_clearance_m = 0;  ///< infinity without obstacles
     double energy_j = 0;
     double duration_s = 0;
-    double length_m = 0;            ///< see SegmentFlight
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
     double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped

@@ -44,7 +44,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
             if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
                 return Rejection::interrupted;
             }
-            flight.length_m += std::sqrt(simulation::squared_step_m2(model.tick().plant, before, next));
+            simulation::add_tick(flight, model.tick().plant, before, next);
             const Rejection rejection = broken_rule(model, map, rules, limits, given, before, next, next_reference);
             if (rejection == Rejection::none && rules.measures_clearance) {
                 flight.clearance_integral +=

@@ -8,6 +8,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/reference_segment.hpp"
 #include "downwash/simulation/flight_model.hpp"
+#include "downwash/simulation/flight_sums.hpp"
 
 namespace downwash {
 
@@ -47,10 +48,9 @@ struct FlightRules {
 };
 
 /// The outcome of a flight along one segment.
-struct SegmentFlight {
+struct SegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< simulated, the rejected one included
-    double length_m = 0;            ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2), w = half the arm's length
     double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
 };
 

@@ -34,7 +34,7 @@ struct alignas(64) FlightLanes {
     double look_tick[lane_count];      ///< check from this tick of the segment on; infinite: never
     double max_speed_m_s[lane_count];  ///< in (x, z): check from this speed on; infinite: never
 
-    double length_m[lane_count];
+    LaneRows<FlightSums> sums;
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.

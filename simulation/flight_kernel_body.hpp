@@ -93,7 +93,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     auto state = group.load<State<Pack>>(lanes.state);
     auto reference = group.load<BasicReferencePoint<Pack>>(lanes.reference);
     Pack tick_count = group.load(lanes.tick);
-    Pack length_m = group.load(lanes.length_m);
+    auto sums = group.load<BasicFlightSums<Pack>>(lanes.sums);
     Pack rejection(0);
     Pack unclear(0);
     const auto anchor = group.load<Coordinates>(lanes.anchor);
@@ -108,7 +108,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
         const State<Pack> next = tick(*model.tick, law, state, motion, reference, effect, given);
         tick_count = tick_count + Pack(1);
         reference = reference_at(group, tick_count, Pack(model.tick->tick_s));
-        length_m = length_m + lane::sqrt(squared_step_m2(plant, state, next));
+        add_tick(sums, plant, state, next);
         for (int i = 0; i < 4; ++i) {
             before.q[i] = state.plant.q[i];
         }
@@ -130,7 +130,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     group.store(state, lanes.state);
     group.store(reference, lanes.reference);
     group.store(tick_count, lanes.tick);
-    group.store(length_m, lanes.length_m);
+    group.store(sums, lanes.sums);
     group.store(before, lanes.before);
     group.store(rejection, lanes.rejection);
     group.store(unclear, lanes.is_unclear);

@@ -69,7 +69,7 @@ class FlightLane {
     void look(bool is_interrupted) {
         FlightLeg& leg = job_->legs[leg_];
         leg.flight.ticks = static_cast<std::int64_t>(lanes_->tick[number_]);
-        leg.flight.length_m = lanes_->length_m[number_];
+        static_cast<FlightSums&>(leg.flight) = read<FlightSums>(lanes_->sums);
         const bool is_end = leg.flight.ticks >= leg.segment.ticks();
         const bool is_unclear = lanes_->is_unclear[number_] > 0;
         Rejection rejection = static_cast<Rejection>(static_cast<int>(lanes_->rejection[number_]));
@@ -126,7 +126,7 @@ class FlightLane {
         lanes_->inverse_duration_1_s[number_] = segment.inverse_duration_1_s();
         lanes_->tick[number_] = 0;
         lanes_->ticks[number_] = static_cast<double>(segment.ticks());
-        lanes_->length_m[number_] = 0;
+        write(FlightSums{}, lanes_->sums);
         lanes_->look_tick[number_] =
             is_judged_leg() ? static_cast<double>(segment.ticks() - job_->judged_ticks) : HUGE_VAL;
         lanes_->max_speed_m_s[number_] = HUGE_VAL;

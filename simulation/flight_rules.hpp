@@ -69,13 +69,4 @@ T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state, con
     return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
 }
 
-/// Squared path length of one step in the metric of the objective `length` [m2].
-template <class T>
-T squared_step_m2(const PlantModel& plant, const State<T>& from, const State<T>& to) {
-    const T dx = to.plant.q[0] - from.plant.q[0];
-    const T dz = to.plant.q[1] - from.plant.q[1];
-    const T da = T(0.5 * plant.arm_length_m) * (to.plant.q[3] - from.plant.q[3]);
-    return dx * dx + dz * dz + da * da;
-}
-
 }  // namespace downwash::simulation

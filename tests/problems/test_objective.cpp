@@ -30,7 +30,7 @@ Solution solved(const CostFunction& objective, Variant variant = Variant::mp_arm
 }  // namespace
 
 TEST_CASE("a cost is the sum of weight times figure, with one weight of 1 that objective") {
-    const CostFigures figures{1000, 20, 3, 7};
+    const CostFigures figures{{3}, 1000, 20, 7};
     CHECK(CostFunction()(figures) == 1000);
     CHECK(CostFunction(Objective::time)(figures) == 20);
     CHECK(CostFunction(Objective::length)(figures) == 3);

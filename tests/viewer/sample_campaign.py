@@ -41,7 +41,7 @@ def cell(problem, planner, seeds, chance, scale):
 
     ordered = sorted(first)
     return {
-        "problem": problem, "objective": "energy", **planner, "missing": 0, "solved": share(seeds, seeds),
+        "problem": problem, "objective": "energy", "cost_unit": "J", **planner, "missing": 0, "solved": share(seeds, seeds),
         "failed_flights": share(held.count(False), seeds), "held": share(held.count(True), seeds),
         "failures_by_cause": {"collision": held.count(False)} if False in held else {},
         "first_solution_s": spread(first), "verified_s": spread(first), "whole_run_s": spread([1] * seeds),

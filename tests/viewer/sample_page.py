@@ -170,7 +170,7 @@ def solved_report(duration_s=19.58, end=(1.62, 9.51, -0.295)):
     return {
         "schema": "downwash/report/v1", "version": "0.1.0",
         "command": "downwash solve problems/bridge_inspection.yaml --variant mp-arm-ada --seed 1 --max-iterations 1788",
-        "solution": solution, "effective_yaml": "schema: downwash/problem/v1\nname: bridge_inspection\n",
+        "solution": solution, "cost_unit": "J", "effective_yaml": "schema: downwash/problem/v1\nname: bridge_inspection\n",
         "description": "Inspect the joint between a bridge deck and a pier, past a maintenance walkway under the deck.",
         "scene": {"bounds": bounds, "obstacles": obstacles}, "robot": robot_json(),
         "start": {"x_m": -10, "z_m": 8.5, "arm_rad": math.pi / 2},
@@ -226,6 +226,7 @@ def open_air_report():
     report = solved_report()
     names, columns = invented_flight([(-4, 3, 1.57), (5, 6, 0)], [0, 8], 13, [])
     report["solution"]["objective"] = {"energy": 1, "time": 50}
+    report["cost_unit"] = ""
     report["scene"] = {"bounds": {"x_m": [-8, 8], "z_m": [0, 9]}, "obstacles": []}
     report.update(map=None, tree=None, description="", flight=flight_json(names, columns),
                   _columns=dict(zip(names, columns)),

@@ -2,7 +2,6 @@
 
 import {decode_flight, decode_map, decode_tree, Trouble} from "./decode.js";
 import {read_embedded} from "./embedded.js";
-import {unit_of} from "./words.js";
 
 export const schema = "downwash/report/v1";
 
@@ -102,7 +101,7 @@ export async function build_model(report) {
         /** The flight ended before its time: its last row is the offending one. */
         is_cut_short: data !== null && ["collision", "unstable", "left_flyable_area"].includes(outcome),
         hold_from_s: knots.length > 0 ? knots[knots.length - 1].t_s : null,
-        cost_unit: unit_of(solution.objective),
+        cost_unit: report.cost_unit,
         objective: objective_text(solution.objective),
         rotor_groups: group_rotors(robot.rotors.positions_m),
         commands: data ? rotor_lines(data, robot.rotors.positions_m.length, "cmd_n") : [],

@@ -36,6 +36,3 @@ export const variants = {
     "mp-arm-da": "motion planner for aerial robotic manipulators, dynamics-aware: flights in free air",
     "mp-arm-ada": "motion planner for aerial robotic manipulators, aerodynamics-aware: flights near surfaces",
 };
-
-/** The unit of the cost; weighted sums have none. */
-export const unit_of = (objective) => ({energy: "J", time: "s", length: "m", clearance: "s/m"}[objective] ?? "");

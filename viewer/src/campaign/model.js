@@ -1,7 +1,6 @@
 // What the page of a campaign works on: its figures by experiment and planner.
 
 import {read_embedded} from "../embedded.js";
-import {unit_of} from "../words.js";
 
 const lists = ["settings", "totals", "cells", "comparisons", "margins", "failures", "bars", "left_out"];
 
@@ -46,7 +45,7 @@ export function build_model(figures) {
         if (index % planners.length === 0) {
             experiments.push({
                 name: `${cell.problem}, ${cell.objective}`,
-                unit: unit_of(cell.objective),
+                unit: cell.cost_unit,
                 cells: [],
             });
         }
