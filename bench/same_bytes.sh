@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # Do two builds plan the same flights? Solves every shipped problem with three variants and seeds 1 to 5 by both, and compares
 # trajectory.csv byte by byte. A change that is to change no result passes with no difference.
-# Usage: bench/same_bytes.sh OTHER_BUILD/downwash [iterations, default 600] [seeds, default 5]
+# Usage: bench/same_bytes.sh OTHER_BUILD/downwash [iterations, default 600] [seeds, default 5] [folder of the problems]
+# An older build may know keys only by their former names: give it the problems of its own version, which both read.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
-other=${1:?usage: bench/same_bytes.sh OTHER_BUILD/downwash [iterations] [seeds]}
+other=${1:?usage: bench/same_bytes.sh OTHER_BUILD/downwash [iterations] [seeds] [problems]}
 iterations=${2:-600}
 seeds=${3:-5}
+problems=${4:-problems}
 here=build/downwash
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -27,7 +29,7 @@ hash() {
 
 different=0
 printf '| problem | variant | seed | %s | %s |\n| --- | --- | --- | --- | --- |\n' "$here" "$other"
-for problem in problems/*.yaml; do
+for problem in "$problems"/*.yaml; do
     for variant in mp-arm mp-arm-da mp-arm-ada; do
         for ((seed = 1; seed <= seeds; ++seed)); do
             new=$(hash "$here" "$problem" "$variant" "$seed")
