@@ -15,9 +15,9 @@ constexpr double min_step = 0.01;
 constexpr int max_failures = 60;
 
 /// Of its batches, after how many the other plan has to be nearly as cheap as the best, and after how many cheaper.
-constexpr int waves_to_come_near = 60;
+constexpr int batches_to_come_near = 60;
 constexpr double near_cost_ratio = 1.05;
-constexpr int waves_to_overtake = 180;
+constexpr int batches_to_overtake = 180;
 
 /// A plan so much dearer than the best is not worth working on.
 constexpr double max_cost_ratio = 1.5;
@@ -207,8 +207,8 @@ void PlanRefiner::improve() {
         if (track.plan.cost < tracks_.front().plan.cost) {
             std::swap(tracks_.front(), track);
             tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
-        } else if (track.batches >= waves_to_overtake ||
-                   (track.batches >= waves_to_come_near &&
+        } else if (track.batches >= batches_to_overtake ||
+                   (track.batches >= batches_to_come_near &&
                     track.plan.cost > near_cost_ratio * tracks_.front().plan.cost)) {
             tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(number));
         }

@@ -118,6 +118,10 @@ TEST_CASE("The numbers of a trajectory read back as the very same") {
     flown.q[0] = 1e-310;
     flown.q[1] = -0.0;
     flown.energy_j = 1e22 / 3;
+    flown.thrust_command_n = 1.0 / 3;
+    flown.pitch_torque_command_nm = 2.0 / 3;
+    flown.thrust_n = 4.0 / 3;
+    flown.pitch_torque_nm = 5.0 / 3;
     flown.rotor_factor[0] = 1.25;
     flown.rotor_factor[1] = 1.125;
     flown.clearance_m = std::numeric_limits<double>::infinity();
@@ -127,6 +131,10 @@ TEST_CASE("The numbers of a trajectory read back as the very same") {
     CHECK(number(row, "x_m") == 1e-310);
     CHECK(row.at("z_m") == "-0");
     CHECK(number(row, "energy_j") == 1e22 / 3);
+    CHECK(number(row, "thrust_cmd_n") == 1.0 / 3);
+    CHECK(number(row, "pitch_torque_cmd_nm") == 2.0 / 3);
+    CHECK(number(row, "thrust_n") == 4.0 / 3);
+    CHECK(number(row, "pitch_torque_nm") == 5.0 / 3);
     CHECK(row.at("aero_factor_min") == "1.125");
     CHECK(row.at("aero_factor_max") == "1.25");
     CHECK(row.at("clearance_m").empty());

@@ -39,7 +39,7 @@ TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners 
     REQUIRE(f.refiner.best() != nullptr);
     const double before = f.refiner.best()->cost;
     double last = before;
-    for (int wave = 0; wave < 150; ++wave) {
+    for (int batch = 0; batch < 150; ++batch) {
         f.refiner.improve();
         REQUIRE(f.refiner.best()->cost <= last);
         last = f.refiner.best()->cost;
@@ -57,7 +57,7 @@ TEST_CASE(
     "what the refiner says of a plan is what flying it from the start gives, and its reference keeps the limits") {
     Fixture f;
     f.refiner.take(f.stop_and_go());
-    for (int wave = 0; wave < 60; ++wave) {
+    for (int batch = 0; batch < 60; ++batch) {
         f.refiner.improve();
     }
     const planning::FlownPlan& flown = *f.refiner.best();
@@ -104,12 +104,12 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
         Fixture f(seed);
         f.refiner.take(f.stop_and_go());
         REQUIRE(f.refiner.best() != nullptr);
-        for (int wave = 0; wave < 60; ++wave) {
+        for (int batch = 0; batch < 60; ++batch) {
             f.refiner.improve();
             const planning::FlownPlan& plan = *f.refiner.best();
             REQUIRE(plan.points.size() == plan.ticks.size() + 1);
             for (std::size_t i = 0; i < plan.ticks.size(); ++i) {
-                INFO("seed " << seed << ", wave " << wave << ", segment " << i);
+                INFO("seed " << seed << ", batch " << batch << ", segment " << i);
                 const ReferenceSegment segment(plan.points[i], plan.points[i + 1], plan.ticks[i],
                                                f.model->tick().tick_s);
                 REQUIRE(keeps_limits(segment, f.flights.limits()));
