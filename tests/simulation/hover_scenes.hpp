@@ -60,9 +60,11 @@ inline void fly_one_by_one(const FlightModel& model, const AeroMap* map, const F
 }
 
 inline bool is_same(const FlightLeg& a, const FlightLeg& b) {
+    const FlightSums& sums = a.flight;
+    const FlightSums& other_sums = b.flight;
     return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
-           a.flight.length_m == b.flight.length_m && a.flight.clearance_integral == b.flight.clearance_integral &&
-           std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
+           std::memcmp(&sums, &other_sums, sizeof sums) == 0 &&
+           a.flight.clearance_integral == b.flight.clearance_integral && std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
 }
 
 }  // namespace downwash::test
