@@ -94,6 +94,14 @@ void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
         180, [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).tolerance_rad; }));
 }
 
+/// Every kind of goal, of which exactly one is given.
+/// @param goal names the Goal
+template <class GoalMember>
+void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
+    add_end_effector(rows, path + ".end_effector", goal);
+    add_configuration(rows, path + ".configuration", goal);
+}
+
 template <class GoalMember>
 Parameter<Problem> hold(const std::string& path, GoalMember goal) {
     return parameters::number<Problem>(
@@ -123,16 +131,14 @@ void add_goal_rows(Rows& rows) {
         return p.goal;
     };
     rows.push_back(goal_group());
-    add_end_effector(rows, "goal.end_effector", only);
-    add_configuration(rows, "goal.configuration", only);
+    add_kinds(rows, "goal", only);
     rows.push_back(parameters::list<Problem>(
                        "goal.any_of", "goals of which any will do", [](auto& p) -> auto& { return p.goal.any_of; })
                        .is_exclusive());
     const auto alternative = [](auto& p, std::size_t i) -> auto& {
         return p.goal.any_of[i];
     };
-    add_end_effector(rows, "goal.any_of[].end_effector", alternative);
-    add_configuration(rows, "goal.any_of[].configuration", alternative);
+    add_kinds(rows, "goal.any_of[]", alternative);
     rows.push_back(hold("goal.any_of[]", alternative));
     rows.push_back(
         hold("goal", only).only("without any_of", [](const Problem& p, std::size_t) { return p.goal.any_of.empty(); }));
@@ -140,8 +146,7 @@ void add_goal_rows(Rows& rows) {
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {
         return i < p.stops.size() ? p.stops[i] : p.goal;
     };
-    add_end_effector(rows, "goal[].end_effector", in_turn);
-    add_configuration(rows, "goal[].configuration", in_turn);
+    add_kinds(rows, "goal[]", in_turn);
     rows.push_back(hold("goal[]", in_turn));
 }
 

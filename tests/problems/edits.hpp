@@ -9,11 +9,24 @@
 #include "downwash/base/text.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/problems/algorithms.hpp"
+#include "downwash/problems/problem_parameters.hpp"
 
 namespace downwash::test {
 
+/// The names of what stands below a path of a problem file, or of those of which exactly one is expected.
+inline std::vector<std::string_view> names_below(std::string_view path, bool only_exclusive) {
+    std::vector<std::string_view> names;
+    for (const Parameter<Problem>* row : problem_parameters().children(path)) {
+        if (row->exclusive || !only_exclusive) {
+            names.push_back(last_name(row->path));
+        }
+    }
+    return names;
+}
+
 /// An expected text in which <objectives>, <models>, <algorithms> and <algorithms over flights> stand for all names
-/// that there are, joined.
+/// that there are, joined; <goals> for the kinds of a goal, any_of included, <stops> for those of an entry of a list of
+/// goals, and <keys of a stop> for its keys.
 inline std::string with_all_names(std::string_view text) {
     std::vector<std::string_view> objectives, models, planners, flight_planners;
     for (const Objective objective : all_objectives) {
@@ -28,13 +41,19 @@ inline std::string with_all_names(std::string_view text) {
             flight_planners.push_back(algorithm.name);
         }
     }
+    const std::pair<std::string_view, std::vector<std::string_view>> all[] = {
+        {"<objectives>", objectives},
+        {"<models>", models},
+        {"<algorithms>", planners},
+        {"<algorithms over flights>", flight_planners},
+        {"<goals>", names_below("goal", true)},
+        {"<stops>", names_below("goal[]", true)},
+        {"<keys of a stop>", names_below("goal[]", false)},
+    };
     std::string out(text);
-    for (const auto& [word, names] : {std::pair{std::string_view("<objectives>"), &objectives},
-                                      {"<models>", &models},
-                                      {"<algorithms>", &planners},
-                                      {"<algorithms over flights>", &flight_planners}}) {
+    for (const auto& [word, names] : all) {
         for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at)) {
-            out.replace(at, word.size(), joined_names(*names));
+            out.replace(at, word.size(), joined_names(names));
         }
     }
     return out;

@@ -94,15 +94,13 @@ const Edit edits[] = {
     {"robot: robot.yaml", "robot: 7", "3:8: robot '7' cannot be read: there is no such file"},
     {"robot: robot.yaml", "robot: [robot.yaml]",
      "3:8: robot is a list: expected a group of keys or the path of a file"},
-    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n", "",
-     "13:1: goal needs exactly one of end_effector, configuration or any_of"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n", "", "13:1: goal needs exactly one of <goals>"},
     {"  end_effector: {", "  configuration: {x_m: 1}\n  end_effector: {",
-     "15:3: goal has both configuration and end_effector: expected exactly one of end_effector, configuration or "
-     "any_of"},
+     "15:3: goal has both configuration and end_effector: expected exactly one of <goals>"},
     {tip_and_hold, "  any_of: []\n", "14:11: goal.any_of is empty: expected one element at least"},
     {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n",
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {hold_s: 2}]\n",
-     "14:48: goal.any_of[1] needs exactly one of end_effector or configuration\n15:3: goal.hold_s has a meaning only "
+     "14:48: goal.any_of[1] needs exactly one of <stops>\n15:3: goal.hold_s has a meaning only "
      "without any_of: remove it"},
     {tip_and_hold,
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30, tolerance_x_m: 0, hold_s: 2}}]\n",
@@ -115,8 +113,8 @@ const Edit edits[] = {
      "14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
     {goal, "goal: []\n", "13:7: goal is empty: expected one element at least"},
     {goal, "goal: [{end_effector: {x_m: 3, z_m: 9}}, {any_of: []}, {configuration: {x_m: 3}, hold_s: 0}]\n",
-     "13:42: goal[1] needs exactly one of end_effector or configuration\n13:43: unknown key 'any_of' in goal[1]: "
-     "expected end_effector, configuration or hold_s\n13:90: goal[2].hold_s is 0: expected a number in s from 1 to "
+     "13:42: goal[1] needs exactly one of <stops>\n13:43: unknown key 'any_of' in goal[1]: "
+     "expected <keys of a stop>\n13:90: goal[2].hold_s is 0: expected a number in s from 1 to "
      "3600"},
     {goal, "goal: [{end_effector: {x_m: 3, z_m: 9}}, {configuration: {x_m: 3}}]\n",
      "13:9: goal[0].end_effector is out of reach: from anywhere within the bounds the arm of 1.2 m misses it by 2.7 m; "
