@@ -57,6 +57,9 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     if (!info.condition.empty()) {
         text += "  applies:  " + info.condition + "\n";
     }
+    if (!info.former_name.empty()) {
+        text += "  formerly: " + std::string(info.former_name) + "\n";
+    }
     std::string below;
     for (const KeyReference& other : all) {
         const std::string_view parent = parent_path(other.info.path);

@@ -12,8 +12,10 @@ void print_table(FileKind kind) {
     fmt::print("| key | expected | default | meaning |\n| --- | --- | --- | --- |\n");
     for (const KeyReference& key : key_reference(kind)) {
         const std::string condition = key.info.condition.empty() ? "" : " (" + key.info.condition + ")";
-        fmt::print("| `{}` | {} | {} | {}{} |\n", key.info.path, expectation(key.info), key.default_text,
-                   key.info.description, condition);
+        const std::string former =
+            key.info.former_name.empty() ? "" : fmt::format("; formerly `{}`", key.info.former_name);
+        fmt::print("| `{}` | {} | {} | {}{}{} |\n", key.info.path, expectation(key.info), key.default_text,
+                   key.info.description, former, condition);
     }
 }
 
