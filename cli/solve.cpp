@@ -48,7 +48,8 @@ struct SolveArguments {
 
 void add_planner_options(CLI::App& command, SolveArguments& given) {
     for (const PlannerOption& option : planner_options) {
-        ParameterInfo parameter = *problem_parameters().find(option.key);
+        const ParameterInfo& known = *problem_parameters().find(option.key);
+        ParameterInfo parameter = known;
         parameter.can_be_group = false;  // an option is a word
         CLI::Option* added = command.add_option_function<std::string>(
             std::string(option.name), [&given, option](const std::string& text) { given.planner[option.name] = text; },
