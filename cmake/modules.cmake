@@ -29,7 +29,7 @@ target_compile_options(downwash_options INTERFACE
 # Compiles a target in half the time: what reads, writes and prints spends its time elsewhere. Same results, same bytes.
 function(downwash_optimise_little TARGET)
   # g++ 12 takes members of variants for uninitialised at this level
-  target_compile_options(${TARGET} PRIVATE "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
+  target_compile_options(${TARGET} PRIVATE "$<$<CONFIG:Release>:-O1;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>")
 endfunction()
 
 # downwash_module(NAME SOURCES ... USES modules... PRIVATE libraries... PRIVATE_HEADERS files... [INTERNAL | CONTAINS modules...]

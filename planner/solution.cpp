@@ -3,7 +3,8 @@
 namespace downwash {
 
 double cost_of(const Execution& execution, const CostFunction& objective) {
-    return objective({execution, execution.energy_j, execution.duration_s, execution.clearance_integral});
+    const FlightSums& sums = execution;
+    return objective({sums, execution.energy_j, execution.duration_s, execution.clearance_integral});
 }
 
 }  // namespace downwash

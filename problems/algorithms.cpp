@@ -124,6 +124,7 @@ const std::vector<KnownParameter>& known_parameters() {
             }
         }
         std::vector<KnownParameter> all;
+        all.reserve(by_name.size());
         for (auto& [name, parameter] : by_name) {
             all.push_back(std::move(parameter));
         }

@@ -186,8 +186,9 @@ std::int64_t PlannedFlights::judged_ticks() const {
 
 double PlannedFlights::cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
     const double time_s = static_cast<double>(leg.flight.ticks) * tick_s_;
-    return cost_before + task_.problem.planner.objective({leg.flight, leg.end.plant.energy_j - from.plant.energy_j,
-                                                          time_s, leg.flight.clearance_integral});
+    const FlightSums& sums = leg.flight;
+    return cost_before + task_.problem.planner.objective({sums, leg.end.plant.energy_j - from.plant.energy_j, time_s,
+                                                          leg.flight.clearance_integral});
 }
 
 ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {
