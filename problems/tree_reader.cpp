@@ -335,14 +335,14 @@ std::vector<LocatedError> TreeReader<Model>::errors() const {
 }
 
 template <class Model>
-std::vector<LocatedError> TreeReader<Model>::located(std::vector<Found> ordered) const {
-    std::stable_sort(ordered.begin(), ordered.end(), [](const Found& a, const Found& b) {
+std::vector<LocatedError> TreeReader<Model>::located(std::vector<Found> findings) const {
+    std::stable_sort(findings.begin(), findings.end(), [](const Found& a, const Found& b) {
         return std::tie(a.place.file, a.place.mark.line, a.place.mark.column) <
                std::tie(b.place.file, b.place.mark.line, b.place.mark.column);
     });
     std::vector<LocatedError> list;
-    list.reserve(ordered.size());
-    for (const Found& found : ordered) {
+    list.reserve(findings.size());
+    for (const Found& found : findings) {
         list.push_back(
             {files_[found.place.file].path.string(), found.place.mark.line, found.place.mark.column, found.message});
     }

@@ -89,7 +89,7 @@ class TreeReader {
         Place place;
         std::string message;
     };
-    [[nodiscard]] std::vector<LocatedError> located(std::vector<Found> found) const;
+    [[nodiscard]] std::vector<LocatedError> located(std::vector<Found> findings) const;
     std::vector<Found> found_;
     std::vector<Found> outdated_;
 };
