@@ -179,7 +179,7 @@ void compare_planners(const std::vector<Row>& rows, CampaignReport& report) {
                 report.comparisons.push_back(
                     comparison(e, {p, q}, "first solution [s]", first, second, first_solution_s));
                 if (!report.plan.stop_at_first_solution) {
-                    report.comparisons.push_back(comparison(e, {p, q}, "flown cost", first, second, flown_cost));
+                    report.comparisons.push_back(comparison(e, {p, q}, "executed cost", first, second, flown_cost));
                 }
             }
         }

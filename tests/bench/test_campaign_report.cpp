@@ -125,7 +125,7 @@ TEST_CASE("planners are compared on equal seeds") {
     CHECK(report.comparisons[0].pairing.first_smaller == 1);  // the seed that the second does not solve
     CHECK(report.comparisons[0].pairing.second_smaller == 3);
     CHECK(report.comparisons[0].pairing.median_difference == Approx(0.28));
-    CHECK(report.comparisons[1].measure == "flown cost");
+    CHECK(report.comparisons[1].measure == "executed cost");
     CHECK(report.comparisons[1].pairing.finite == 2);
     CHECK(report.comparisons[1].pairing.median_difference == Approx((10 + 33) / 2.0));
 }

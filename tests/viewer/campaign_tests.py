@@ -84,17 +84,17 @@ class Campaign(page_test.BrowserTest):
     def test_the_head_says_what_came_of_it(self):
         figures = sample_campaign.campaign()
         self.show(figures)
-        self.assertEqual(self.one(".verdict h2", "e.textContent"), "All 1 bars are kept")
+        self.assertEqual(self.one(".verdict h2", "e.textContent"), "Targets met: 1 of 1")
         figures["bars"].append({**figures["bars"][0], "kept": False, "found": "3/20"})
         self.show(figures)
-        self.assertEqual(self.one(".verdict h2", "e.textContent"), "1 of 2 bars is missed")
+        self.assertEqual(self.one(".verdict h2", "e.textContent"), "Targets missed: 1 of 2")
         self.assertIn("found 3/20", self.one(".verdict", "e.textContent"))
         figures["runs_done"] = 7
         self.show(figures)
         self.assertEqual(self.one(".verdict h2", "e.textContent"), "Not finished: 7 of 120 runs")
         figures.update(runs_done=120, bars=[])
         self.show(figures)
-        self.assertIn("sets no bars", self.one(".verdict h2", "e.textContent"))
+        self.assertIn("sets no targets", self.one(".verdict h2", "e.textContent"))
 
     def test_an_empty_campaign_stands_too(self):
         figures = sample_campaign.campaign()

@@ -57,7 +57,7 @@ def cell(problem, planner, seeds, chance, scale):
 def comparison(experiment, first, second):
     both = [(a, b) for a, b in zip(first["seeds"]["flown_cost"], second["seeds"]["flown_cost"]) if a and b]
     differences = [a - b for a, b in both]
-    return {"experiment": experiment, "first": first["planner"], "second": second["planner"], "measure": "flown cost",
+    return {"experiment": experiment, "first": first["planner"], "second": second["planner"], "measure": "executed cost",
             "first_smaller": sum(d < 0 for d in differences), "second_smaller": sum(d > 0 for d in differences),
             "equal": 0, "sign_test_p": 0.5, "pairs": len(both), "median_difference": quantile(differences, 0.5),
             "signed_rank_p": 0.5}

@@ -61,7 +61,7 @@ export function make_costs(model) {
     return make_figure(
         "costs", "Cost over time",
         "Of the best plan so far: median and quartiles over all attempted seeds, those without a plan counting as " +
-            "infinite. Of the aware planner it is the cost of the plan's flight with direct aerodynamics, of the others " +
-            "their own figure, which does not know the same physics: compare them by what is flown, below.",
+            "infinite. For MP-ARM-ADA it is the executed cost, for the others the planned cost. These differ in physics: " +
+            "compare the variants by executed cost, below.",
         panels);
 }

@@ -97,10 +97,10 @@ export const make_first_solutions = (model) => make_boxes(model, {
 
 export const make_flown_costs = (model) => make_boxes(model, {
     id: "flown-costs",
-    title: "Flown cost",
+    title: "Executed cost",
     note: `Cost of the reported plan's flight with direct aerodynamics, where it held. ${how_to_read}`,
     measure: "flown_cost",
-    axis_of: ({unit}) => ({name: `flown cost${unit ? ` [${unit}]` : ""}`}),
+    axis_of: ({unit}) => ({name: `executed cost${unit ? ` [${unit}]` : ""}`}),
 });
 
 /** Differences first - second of the pairs in which both have a value. */
@@ -167,7 +167,7 @@ function make_pairs_of(model, measure, name, unit_for) {
 }
 
 export function make_pairs(model) {
-    const costs = make_pairs_of(model, "flown_cost", "flown cost", ({unit}) => unit);
+    const costs = make_pairs_of(model, "flown_cost", "executed cost", ({unit}) => unit);
     const times = make_pairs_of(model, "first_solution_s", "first solution [s]", () => "s");
     if (costs.length + times.length === 0) {
         return null;
@@ -175,10 +175,10 @@ export function make_pairs(model) {
     return make_figure(
         "pairs", "Differences on equal seeds",
         "Dots: seeds on which both have a value; tick: their median. Left of zero the first planner is the cheaper or " +
-            "the faster one. The counts say on how many seeds the first, and the second, has the smaller value, none " +
-            "losing to any; p of the two-sided sign test over them.",
+            "the faster one. The counts say on how many seeds the first, and the second, has the smaller value; no plan " +
+            "loses to any plan. p is that of the two-sided sign test over them.",
         [
-            costs.length > 0 ? h3("Flown cost") : null, ...costs, times.length > 0 ? h3("First solution") : null,
+            costs.length > 0 ? h3("Executed cost") : null, ...costs, times.length > 0 ? h3("First solution") : null,
             ...times
         ]);
 }

@@ -86,7 +86,7 @@ export function make_cost_shares(model) {
         return {
             label: `Share of seeds whose flight held and cost no more. ${told.join("; ")}.`,
             x: {
-                name: `flown cost${experiment.unit ? ` [${experiment.unit}]` : ""}`,
+                name: `executed cost${experiment.unit ? ` [${experiment.unit}]` : ""}`,
                 domain: around(Math.min(...all), Math.max(...all))
             },
             y: share_axis,
@@ -94,7 +94,7 @@ export function make_cost_shares(model) {
         };
     }));
     return make_figure(
-        "cost-shares", "Distribution of flown costs",
+        "cost-shares", "Distribution of executed costs",
         "Empirical distribution over all attempted seeds: a line that ends below 100 % has seeds without a flight " +
             "that held.",
         panels);

@@ -76,7 +76,7 @@ function costs_table(model) {
         "none";
     return table(
         "Costs, median and quartiles",
-        ["problem", "planner", ...moments.map(({time_s}) => `after ${seconds(time_s)}`), "flown", "least flown"], 2,
+        ["problem", "planner", ...moments.map(({time_s}) => `after ${seconds(time_s)}`), "executed", "minimum executed"], 2,
         cells_of(model).map(
             ({cell, place}) =>
                 [...place, ...cell.cost_over_time.map((at) => text(at.cost)), text(cell.flown_cost),
@@ -117,9 +117,9 @@ function margins_tables({figures}) {
 
 function bars_table({figures}) {
     return table(
-        "Bars", ["problem", "planner", "bar", "found", ""], 4,
+        "Targets", ["problem", "planner", "target", "found", ""], 4,
         figures.bars.map(
-            ({experiment, planner, bar, found, kept}) => [experiment, planner, bar, found, kept ? "kept" : "missed"]));
+            ({experiment, planner, bar, found, kept}) => [experiment, planner, bar, found, kept ? "met" : "missed"]));
 }
 
 function failures_list({figures}) {
@@ -140,12 +140,12 @@ export function make_tables(model) {
         "section", {class: "tables", id: "tables", "aria-labelledby": "tables-title"},
         h("h2", {id: "tables-title"}, "Tables"),
         h("p", {class: "muted note"},
-          "Shares are of all attempted seeds, with 95 % Wilson intervals. A failed flight: the reported plan, flown with " +
-              "direct aerodynamics and held at the goal, collided, left the flyable area, became unstable or missed the " +
-              "goal. Discarded: plans of the aware planner that failed so, or came nearer than the " +
-              "margin, and were not reported. Verified: to the first plan that may be reported, which the aware planner " +
-              "has flown with direct aerodynamics by then."),
-        flights_table(model), figures.bars.length > 0 ? folded(`The ${figures.bars.length} bars`, bars_table(model)) : null,
+          "Shares are of all attempted seeds, with 95 % Wilson intervals. A flight has failed if the reported plan, executed " +
+              "with direct aerodynamics up to the end of the hover at the goal, collided, left the flyable area, became " +
+              "unstable or missed the goal. Discarded are plans of MP-ARM-ADA that failed so, or came nearer than the " +
+              "margin, and were not reported. Verified is the time to the first plan that may be reported; MP-ARM-ADA " +
+              "has executed it with direct aerodynamics by then."),
+        flights_table(model), figures.bars.length > 0 ? folded(`Targets (${figures.bars.length})`, bars_table(model)) : null,
         folded("Time to the first solution", times_table(model)), folded("Costs", costs_table(model)),
         figures.comparisons.length > 0 ? folded("Paired comparisons", pairs_table(model)) : null,
         figures.margins.length > 0 ? folded("Margins", margins_tables(model).flat()) : null,

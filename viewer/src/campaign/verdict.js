@@ -17,14 +17,14 @@ export function verdict_of(model) {
             kind: "none",
             mark: "…",
             title: `Not finished: ${number(runs_done, ",d")} of ${number(runs_planned, ",d")} runs`,
-            lines: [held, "All figures are of the runs so far; bars cannot be judged yet."]
+            lines: [held, "All figures are of the runs so far; targets cannot be judged yet."]
         };
     }
     if (bars.length === 0) {
-        return {kind: "none", mark: "–", title: "Finished; the campaign sets no bars", lines: [held]};
+        return {kind: "none", mark: "–", title: "Finished; the campaign sets no targets", lines: [held]};
     }
     if (missed.length === 0) {
-        return {kind: "good", mark: "✓", title: `All ${bars.length} bars are kept`, lines: [held]};
+        return {kind: "good", mark: "✓", title: `Targets met: ${bars.length} of ${bars.length}`, lines: [held]};
     }
     const told = missed.slice(0, 5).map(
         ({experiment, planner, bar, found}) => `${experiment}, ${planner}: ${bar}; found ${found}.`);
@@ -34,7 +34,7 @@ export function verdict_of(model) {
     return {
         kind: "bad",
         mark: "✕",
-        title: `${missed.length} of ${bars.length} bars ${missed.length === 1 ? "is" : "are"} missed`,
+        title: `Targets missed: ${missed.length} of ${bars.length}`,
         lines: [held, ...told]
     };
 }
