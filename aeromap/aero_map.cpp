@@ -78,7 +78,8 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     const double columns = cells_over(extent_.x_low_m, extent_.x_high_m, cells_per_m_);
     const double rows = cells_over(extent_.z_low_m, extent_.z_high_m, cells_per_m_);
     if (!(columns * rows * static_cast<double>(layers_.size()) <= max_map_cells)) {
-        throw_input_error("gives a map of more than 2^24 cells over these bounds; choose a larger value", "aero.grid_m");
+        throw_input_error("gives a map of more than 2^24 cells over these bounds; choose a larger value",
+                          "aero.grid_m");
     }
     columns_ = static_cast<std::uint32_t>(columns);
     rows_ = static_cast<std::uint32_t>(rows);

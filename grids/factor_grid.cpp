@@ -65,7 +65,8 @@ std::size_t checked_nodes(const FactorGridParts& parts) {
 
 void check_field(const GridField& field, std::size_t nodes, std::vector<KeyError>& errors) {
     if (std::find(field_names.begin(), field_names.end(), field.name) == field_names.end()) {
-        errors.push_back({"fields", "'" + excerpt(field.name) + "' is no field: expected " + joined_names(field_names)});
+        errors.push_back(
+            {"fields", "'" + excerpt(field.name) + "' is no field: expected " + joined_names(field_names)});
         return;
     }
     if (field.values.size() != nodes) {

@@ -89,9 +89,10 @@ TEST_CASE("errors of a foreign file stand where the problem names it, with their
           "problem.yaml:8:43: environment.obstacles[1].mesh.file 'bad.stl' byte 80: says 12 triangles, expected 84 + "
           "50 times as many bytes, 684, found 600");
     folder.write("bad.bt", cube_bt + "x");
-    CHECK(errors_with(folder, "octomap: {file: bad.bt}") ==
-          "problem.yaml:8:36: environment.obstacles[1].octomap.file 'bad.bt' byte 61: the file continues after its last "
-          "node: expected its end");
+    CHECK(
+        errors_with(folder, "octomap: {file: bad.bt}") ==
+        "problem.yaml:8:36: environment.obstacles[1].octomap.file 'bad.bt' byte 61: the file continues after its last "
+        "node: expected its end");
     CHECK(errors_with(folder, "mesh: {file: ''}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file '' cannot be read: it is a directory, expected a "
           "file");
