@@ -42,6 +42,8 @@ const Edit edits[] = {
     {"arm_deg: 90", "arm_deg: 4000", "12:35: start.arm_deg is 4000: expected a number in deg from -3600 to 3600"},
     {size, "size_m: [30, 20]",
      "7:36: environment.obstacles[0].box.size_m has 2 elements: expected [x, y, z] in m above 0 and at most 100000"},
+    {size, "size_m: [30, 20, 1, 1]",
+     "7:36: environment.obstacles[0].box.size_m has 4 elements: expected [x, y, z] in m above 0 and at most 100000"},
     {size, "size_m: [30, 20, one]",
      "7:45: environment.obstacles[0].box.size_m is 'one': expected [x, y, z] in m above 0 and at most 100000"},
     {size, "size_m: 30",
