@@ -56,11 +56,10 @@ def refresh_copy():
 def configure():
     """With ccache, what a fault has changed is not compiled anew when it is taken back."""
     options = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    if "DOWNWASH_WERROR" in os.environ:
-        options.append("-DDOWNWASH_WERROR=" + os.environ["DOWNWASH_WERROR"])
     os.environ["CCACHE_BASEDIR"] = str(COPY)
     done = run(["cmake", "-G", "Ninja", "-S", COPY, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release",
-                "-DDOWNWASH_BUILD_TESTS=ON", "-DDOWNWASH_BUILD_BENCH=OFF", *options])
+                "-DDOWNWASH_BUILD_TESTS=ON", "-DDOWNWASH_BUILD_BENCH=OFF",
+                "-DDOWNWASH_WERROR=OFF", *options])  # a fault may leave a variable unused
     if done.returncode != 0:
         raise Error(f"configuring failed:\n{done.stdout}{done.stderr}")
 
