@@ -24,7 +24,7 @@ struct BenchRunArguments {
 
 ExitCode run(const BenchRunArguments& given) {
     const Interruption interruption;
-    const ReadCampaign read = read_campaign(given.campaign);
+    const ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated);
     bench::CampaignRunOptions options;
     options.out = given.out.value_or("downwash-out/bench-" + read.campaign.name);
     options.resumes = given.resumes;

@@ -102,11 +102,12 @@ std::vector<KeyError> campaign_errors(const Campaign& c) {
 /// Reads the problems; two of one name could not be told apart in results.
 /// @param located collects errors that have their place in a problem's file
 std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
-                                    std::vector<LocatedError>& located) {
+                                    std::vector<LocatedError>& located,
+                                    const std::function<void(const LocatedError&)>& on_outdated) {
     std::vector<KeyError> errors;
     for (const std::string& path : campaign.problems) {
         try {
-            Problem problem = read_problem(path);
+            Problem problem = read_problem(path, {}, on_outdated);
             if (std::any_of(problems.begin(), problems.end(),
                             [&](const Problem& other) { return other.name == problem.name; })) {
                 errors.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
@@ -122,14 +123,15 @@ std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Proble
 
 }  // namespace
 
-ReadCampaign read_campaign(const std::filesystem::path& file) {
+ReadCampaign read_campaign(const std::filesystem::path& file,
+                           const std::function<void(const LocatedError&)>& on_outdated) {
     problems::TreeReader<Campaign> reader(campaign_parameters());
     reader.read(file);
     ReadCampaign read{reader.model(), {}};
     std::vector<LocatedError> in_problems;
     if (reader.errors().empty()) {
         reader.add(campaign_errors(read.campaign));
-        reader.add(read_problems(read.campaign, read.problems, in_problems));
+        reader.add(read_problems(read.campaign, read.problems, in_problems, on_outdated));
     }
     std::vector<LocatedError> errors = reader.errors();
     errors.insert(errors.end(), in_problems.begin(), in_problems.end());

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/problems/campaign.hpp"
-#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_reader.hpp"
 
 namespace downwash {
 
@@ -17,7 +18,9 @@ struct ReadCampaign {
 
 /// Reads a campaign file and its problems, whose paths are relative to it. The result is sound: problems have names of
 /// their own, and what is expected is run.
+/// @param on_outdated see read_problem()
 /// @throws ProblemFileError with every error that can be found in one reading, those of the problems included
-[[nodiscard]] DOWNWASH_EXPORT ReadCampaign read_campaign(const std::filesystem::path& file);
+[[nodiscard]] DOWNWASH_EXPORT ReadCampaign
+read_campaign(const std::filesystem::path& file, const std::function<void(const LocatedError&)>& on_outdated = {});
 
 }  // namespace downwash

@@ -115,6 +115,16 @@ TEST_CASE("what cannot be run in a campaign is an error with its place and a rem
           "problem.yaml:16:72: unknown key 'sead' in planner: did you mean 'seed'?");
 }
 
+TEST_CASE("former names of keys in a campaign's problems are reported") {
+    const CampaignFolder folder;
+    folder.folder.write("robot.yaml", edited(good_robot, "{kp: 8, ", "{k5: 8, "));
+    folder.folder.write("campaign.yaml", good_campaign);
+    std::string reported;
+    static_cast<void>(
+        read_campaign(folder.folder / "campaign.yaml", [&](const LocatedError& key) { reported += key.message; }));
+    CHECK(reported == "controller.attitude.k5 is now called kp: rename it");
+}
+
 TEST_CASE("every parameter of a campaign is described and has a sound default unless it must be given") {
     for (const Parameter<Campaign>& row : campaign_parameters().rows()) {
         CAPTURE(row.path);
