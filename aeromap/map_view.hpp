@@ -43,14 +43,6 @@ struct MapPatch {
 /// A patch without any place in it.
 inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, CellFlyability::mixed};
 
-/// Whether a share of a patch, (place - corner) * steps, lies in it. Exact: the share of a place in the patch is, and
-/// that of any other place falls outside [0, 1) however it is rounded.
-[[nodiscard]] inline bool is_in_patch(double s, double t) noexcept {
-    // One branch instead of four.
-    return static_cast<bool>(static_cast<int>(s >= 0) & static_cast<int>(s < 1) & static_cast<int>(t >= 0) &
-                             static_cast<int>(t < 1));
-}
-
 /// The patch around a place given in cells from the layer's lower corner.
 /// @pre view.contains(u, w)
 [[nodiscard, gnu::always_inline]] inline MapPatch patch_at(const MapView& view, double u, double w) noexcept {

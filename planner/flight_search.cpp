@@ -165,7 +165,7 @@ void FlightSearch::run_tree() {
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_observer(
-        [&] { clock_.report(planner.iterations(), planner.tree().size(), planner.statistics().rejections); });
+        [&] { clock_.report(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections); });
     planner.setup();
     planner.solve(ompl::base::PlannerTerminationCondition([this] { return clock_.is_over(); }));
 
@@ -176,11 +176,11 @@ void FlightSearch::run_tree() {
             planner, [](const ompl::base::State* state) { return configuration_of(point_of(state).reference); });
     }
     if (solution_.status != Status::solved) {
-        const FlightNode& nearest = planner.nearest_to_goal();
+        const FlightNode& nearest = planner.growth().nearest_to_goal();
         const bool has_moved = nearest.parent != nullptr;
         report_failure(statistics, has_moved ? Status::approximate : Status::none,
-                       has_moved ? std::optional(planner.tree().plan_to(nearest)) : std::nullopt,
-                       has_moved ? nearest.cost : 0, planner.nearest_distance_m());
+                       has_moved ? std::optional(planner.growth().tree().plan_to(nearest)) : std::nullopt,
+                       has_moved ? nearest.cost : 0, planner.growth().nearest_distance_m());
     }
 }
 

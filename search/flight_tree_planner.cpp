@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <unordered_set>
 #include <utility>
 
 #include "downwash/base/parallel.hpp"
@@ -19,38 +17,6 @@
 
 namespace downwash::planning {
 namespace {
-
-/// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
-/// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
-/// et al. 2019).
-std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
-    std::vector<FlightNode*> all = nodes;
-    std::unordered_set<const FlightNode*> known(nodes.begin(), nodes.end());
-    for (FlightNode* node : nodes) {
-        for (FlightNode* n = node->parent; n != nullptr && known.insert(n).second; n = n->parent) {
-            all.push_back(n);
-        }
-    }
-    return all;
-}
-
-/// From the straight lines between the points of a way, in the plane of motion.
-double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way) {
-    double nearest_m = HUGE_VAL;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-        const double* a = way[i - 1].position;
-        const double* b = way[i].position;
-        const double dx = b[0] - a[0];
-        const double dz = b[1] - a[1];
-        const double length2 = dx * dx + dz * dz;
-        const double along =
-            length2 > 0 ? std::clamp(((place.x_m - a[0]) * dx + (place.z_m - a[1]) * dz) / length2, 0.0, 1.0) : 0;
-        const double off_x = place.x_m - a[0] - along * dx;
-        const double off_z = place.z_m - a[1] - along * dz;
-        nearest_m = std::min(nearest_m, std::sqrt(off_x * off_x + off_z * off_z));
-    }
-    return nearest_m;
-}
 
 /// Lets flights ask a termination condition as long as solve() goes on.
 class ConditionScope {
@@ -78,8 +44,7 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
           task, [this] { return terminated_ != nullptr && (*terminated_)(); }, threads_),
       refined_flights_(
           task, [this] { return terminated_ != nullptr && (*terminated_)(); }, threads_),
-      random_(task.problem.planner.seed),
-      refiner_random_(random_.branch()) {
+      refiner_random_(task.problem.planner.seed) {
     specs_.recognizedGoal = ompl::base::GOAL_SAMPLEABLE_REGION;
     specs_.approximateSolutions = true;
     specs_.optimizingPaths = true;
@@ -112,29 +77,20 @@ void FlightTreePlanner::clear() {
     Planner::clear();
     flights_.forget_statistics();
     refined_flights_.forget_statistics();
-    random_ = Random(task_.problem.planner.seed);
-    refiner_random_ = random_.branch();
     refiner_.reset();
-    tree_.reset();
+    growth_.reset();
     iterations_ = 0;
     best_.reset();
     handed_over_.clear();
-    best_hold_cost_ = handed_over_cost_ = HUGE_VAL;
+    handed_over_cost_ = HUGE_VAL;
     tree_left_ = refiner_left_ = 0;
-    nearest_to_goal_ = nullptr;
-    nearest_distance_m_ = HUGE_VAL;
 }
 
 void FlightTreePlanner::begin(const FlightPoint& start) {
-    tree_.emplace(start, flights_);
+    Random random(task_.problem.planner.seed);
+    refiner_random_ = random.branch();
+    growth_.emplace(start, space_, parameters_, flights_, random);
     refiner_.emplace(start, refined_flights_, refiner_random_);
-    nearest_to_goal_ = &tree_->root();
-    nearest_distance_m_ = space_.goal_distance_m(tree_->root().configuration);
-    if (space_.is_near_goal(tree_->root().configuration)) {
-        const std::vector<FlightNode*> root{&tree_->root()};
-        tree_->add_holds(root);
-        note_best_hold();
-    }
 }
 
 FlightStatistics FlightTreePlanner::statistics() const {
@@ -151,7 +107,7 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
         return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
     const ConditionScope scope(terminated_, terminated);
-    if (!tree_) {
+    if (!growth_) {
         const ompl::base::State* start = pis_.nextStart();
         if (start == nullptr) {
             OMPL_ERROR("%s: there is no valid start", getName().c_str());
@@ -161,7 +117,7 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
     }
     const auto is_done = [this] { return best_ && stops_at_first_plan_; };
     while (!terminated && !is_used_up() && !is_done()) {
-        if (has_plan()) {
+        if (growth_->has_plan()) {
             go_on_side_by_side(terminated);
         } else {
             grow();
@@ -194,11 +150,11 @@ ompl::base::PathPtr FlightTreePlanner::make_path(const std::vector<FlightPoint>&
 /// Adds what there is to the problem definition.
 ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
     const bool is_exact = best_.has_value();
-    if (!is_exact && nearest_to_goal_->parent == nullptr) {
+    const FlightNode& nearest = growth_->nearest_to_goal();
+    if (!is_exact && nearest.parent == nullptr) {
         return ompl::base::PlannerStatus::TIMEOUT;
     }
-    ompl::base::PlannerSolution solution(
-        make_path(is_exact ? best_->moments : FlightTree::moments_to(*nearest_to_goal_)));
+    ompl::base::PlannerSolution solution(make_path(is_exact ? best_->moments : FlightTree::moments_to(nearest)));
     solution.setPlannerName(getName());
     if (is_exact) {
         const auto objective =
@@ -206,7 +162,7 @@ ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
         const ompl::base::Cost cost(best_->cost);
         solution.setOptimized(objective, cost, objective->isSatisfied(cost));
     } else {
-        solution.setApproximate(nearest_distance_m_);
+        solution.setApproximate(growth_->nearest_distance_m());
     }
     pdef_->addSolutionPath(solution);
     return is_exact ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::APPROXIMATE_SOLUTION;
@@ -266,165 +222,13 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
     }
 }
 
-std::optional<Configuration> FlightTreePlanner::target() {
-    if (best_ && random_.chance(parameters_.local_bias)) {
-        return target_beside_best();
-    }
-    return random_.chance(has_plan() ? parameters_.goal_bias : parameters_.first_goal_bias)
-               ? space_.sample_goal(random_)
-               : space_.sample(random_);
-}
-
-std::optional<Configuration> FlightTreePlanner::target_beside_best() {
-    const std::size_t knots = best_->moments.size() - 1;
-    const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(knots)));
-    const Configuration knot = configuration_of(best_->moments[i].reference);
-    const double radius_m = parameters_.local_radius_m * random_.uniform(0, 1) * random_.uniform(0, 1);
-    return i + 1 == knots ? space_.sample_goal_near(knot, radius_m, random_)
-                          : space_.sample_near(knot, radius_m, random_);
-}
-
-std::size_t FlightTreePlanner::neighbour_count() const {
-    // k-nearest RRT* (Karaman and Frazzoli 2011): k > e (1 + 1/d) log n in d dimensions.
-    constexpr double dimension = 3;
-    const auto n = static_cast<double>(tree_->size());
-    return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
-}
-
 void FlightTreePlanner::grow() {
     const std::uint64_t ticks_before = flights_.statistics().ticks;
-    const std::uint64_t wanted =
-        static_cast<std::uint64_t>(has_plan() ? parameters_.batch_size : parameters_.first_batch_size);
-    const std::uint64_t samples = max_iterations_ ? std::min(wanted, *max_iterations_ - iterations_) : wanted;
-    std::vector<Growth> batch;
-    for (std::uint64_t i = 0; i < samples; ++i) {
-        ++iterations_;
-        if (auto growth = sampled()) {
-            batch.push_back(std::move(*growth));
-        }
-    }
-    choose_parents(batch);
-    const std::vector<FlightNode*> added = add(batch);
-    std::vector<FlightNode*> arrived;
-    for (FlightNode* node : added) {
-        if (node == nullptr) {
-            continue;
-        }
-        const double distance_m = space_.goal_distance_m(node->configuration);
-        if (distance_m < nearest_distance_m_) {
-            nearest_distance_m_ = distance_m;
-            nearest_to_goal_ = node;
-        }
-        if (space_.is_near_goal(node->configuration)) {
-            arrived.push_back(node);
-        }
-    }
-    tree_->add_holds(arrived);
-    note_best_hold();
-    if (has_plan()) {
-        rewire_through(batch, added);
-        note_best_hold();
-    }
+    const std::uint64_t samples =
+        growth_->grow(max_iterations_ ? std::optional(*max_iterations_ - iterations_) : std::nullopt);
+    iterations_ += samples;
     tree_left_ -= static_cast<double>(flights_.statistics().ticks - ticks_before) +
                   parameters_.sample_work * static_cast<double>(samples);
-}
-
-std::optional<FlightTreePlanner::Growth> FlightTreePlanner::sampled() {
-    const std::optional<Configuration> aim = target();
-    if (!aim) {
-        return std::nullopt;
-    }
-    const Configuration& nearest = tree_->nearest(*aim, 1).front()->configuration;
-    Growth growth;
-    // Goals are aimed at from any distance: what stands in between is found before anything is flown.
-    growth.to =
-        space_.is_near_goal(*aim) ? *aim : space_.steered(nearest, *aim, parameters_.range_share * space_.extent_m());
-    if (const Rejection rejection = space_.rejection_at(growth.to); rejection != Rejection::none) {
-        flights_.count_rejection(rejection);
-        return std::nullopt;
-    }
-    growth.neighbours = tree_->nearest(growth.to, neighbour_count());
-    const double min_cost_to_goal = parameters_.optimism * tree_->min_cost_to_goal(growth.to);
-    for (FlightNode* node : with_ancestors(growth.neighbours)) {
-        const double estimate = node->cost + parameters_.optimism * tree_->estimated_cost(*node, growth.to);
-        if (estimate + min_cost_to_goal < parameters_.max_detour * best_hold_cost_ &&
-            space_.distance_m(node->configuration, growth.to) > 1e-6) {
-            growth.parents.push_back({node, estimate});
-        }
-    }
-    std::stable_sort(growth.parents.begin(), growth.parents.end(),
-                     [](const Growth::Parent& a, const Growth::Parent& b) { return a.estimate < b.estimate; });
-    return growth;
-}
-
-void FlightTreePlanner::choose_parents(std::vector<Growth>& batch) {
-    for (;;) {
-        std::vector<FlightTree::Edge> edges;
-        std::vector<Growth*> growths;
-        for (Growth& growth : batch) {
-            if (growth.next_parent == growth.parents.size()) {
-                continue;
-            }
-            const Growth::Parent& parent = growth.parents[growth.next_parent];
-            // Until there is a plan any way on will do.
-            if (growth.best && (parent.estimate >= growth.best->cost || !has_plan())) {
-                growth.next_parent = growth.parents.size();
-                continue;
-            }
-            edges.push_back({parent.node, space_.seen_from(parent.node->configuration, growth.to)});
-            growths.push_back(&growth);
-        }
-        if (edges.empty()) {
-            return;
-        }
-        const auto flights = tree_->flown(edges);
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            Growth& growth = *growths[i];
-            if (flights[i] && (!growth.best || flights[i]->cost < growth.best->cost)) {
-                growth.best = flights[i];
-                growth.best_parent = growth.parents[growth.next_parent].node;
-            }
-            ++growth.next_parent;
-        }
-    }
-}
-
-/// One node per sample, nullptr for those that became none.
-std::vector<FlightNode*> FlightTreePlanner::add(const std::vector<Growth>& batch) {
-    std::vector<FlightNode*> added;
-    for (const Growth& growth : batch) {
-        const bool is_worthwhile =
-            growth.best && growth.best->cost + parameters_.optimism * tree_->min_cost_to_goal(growth.to) <
-                               parameters_.max_detour * best_hold_cost_;
-        added.push_back(is_worthwhile ? &tree_->add(*growth.best_parent, *growth.best) : nullptr);
-    }
-    return added;
-}
-
-void FlightTreePlanner::rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added) {
-    std::vector<FlightTree::Rewiring> rewirings;
-    const FlightNode* hold = best_hold();
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-        FlightNode* const node = added[i];
-        if (node == nullptr) {
-            continue;
-        }
-        std::vector<FlightNode*> neighbours = batch[i].neighbours;
-        // A better corner pays only when the next corner of the best plan, far away as a rule, is reached from it.
-        for (FlightNode* n = hold != nullptr ? hold->parent : nullptr; n != nullptr; n = n->parent) {
-            if (n != node && std::find(neighbours.begin(), neighbours.end(), n) == neighbours.end()) {
-                neighbours.push_back(n);
-            }
-        }
-        for (FlightNode* neighbour : neighbours) {
-            if (neighbour != &tree_->root() && neighbour != node->parent &&
-                node->cost + parameters_.optimism * tree_->estimated_cost(*node, neighbour->configuration) <
-                    neighbour->cost) {
-                rewirings.push_back({neighbour, node});
-            }
-        }
-    }
-    tree_->rewire(rewirings);
 }
 
 void FlightTreePlanner::refine() {
@@ -440,62 +244,26 @@ void FlightTreePlanner::refine() {
 
 /// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
 void FlightTreePlanner::hand_to_refiner() {
-    const FlightNode* const best = best_hold();
+    const FlightNode* const best = growth_->best_hold();
     if (best == nullptr) {
         return;
     }
     const bool is_idle = refiner_->best() == nullptr && handed_over_.empty();
     if (is_idle || best->cost < (1 - parameters_.worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
-        handed_over_.push_back(tree_->plan_to(*best));
+        handed_over_.push_back(growth_->tree().plan_to(*best));
     } else if (refiner_->best() != nullptr && refiner_->wants_plan()) {
-        if (const FlightNode* hold = other_way()) {
-            handed_over_.push_back(tree_->plan_to(*hold));
+        if (const FlightNode* hold = growth_->hold_away_from(refiner_->best()->points)) {
+            handed_over_.push_back(growth_->tree().plan_to(*hold));
         }
     }
-}
-
-/// Of some holds, drawn at random, the one whose way leads farthest from the best plan; nullptr when all follow it.
-const FlightNode* FlightTreePlanner::other_way() {
-    constexpr int draws = 8;
-    const std::vector<ReferencePoint>& best_points = refiner_->best()->points;
-    const auto& holds = tree_->holds();
-    const FlightNode* farthest = nullptr;
-    double farthest_m = parameters_.alternative_distance_m;
-    for (int i = 0; i < draws; ++i) {
-        const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
-        double away_m = 0;
-        for (const FlightNode* n = hold->parent; n != nullptr; n = n->parent) {
-            away_m = std::max(away_m, distance_from_way_m(n->configuration, best_points));
-        }
-        if (!hold->is_discarded && away_m > farthest_m) {
-            farthest_m = away_m;
-            farthest = hold;
-        }
-    }
-    return farthest;
-}
-
-FlightNode* FlightTreePlanner::best_hold() const {
-    FlightNode* best = nullptr;
-    for (FlightNode* hold : tree_->holds()) {
-        if (!hold->is_discarded && (best == nullptr || hold->cost < best->cost)) {
-            best = hold;
-        }
-    }
-    return best;
-}
-
-void FlightTreePlanner::note_best_hold() {
-    const FlightNode* const hold = best_hold();
-    best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
 }
 
 /// The cheapest plan, of tree and refiner, if it is cheaper than the best plan by this share.
 std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double min_gain) const {
     const double to_beat = best_ ? (1 - min_gain) * best_->cost : HUGE_VAL;
     const FlownPlan* const refined = refiner_->best();
-    FlightNode* const hold = best_hold();
+    FlightNode* const hold = growth_->best_hold();
     if (refined != nullptr && refined->cost < to_beat && (hold == nullptr || refined->cost <= hold->cost)) {
         return Proposal{{refiner_->moments_of(*refined), refined->cost, iterations_}, refiner_->best_number()};
     }
@@ -517,6 +285,7 @@ void FlightTreePlanner::settle(Proposal proposal) {
             hooks_.accept(proposal.candidate);
         }
         best_ = std::move(proposal.candidate);
+        growth_->know_plan(best_->moments);
         return;
     }
     flights_.count_rejection("direct_flight");
@@ -526,8 +295,7 @@ void FlightTreePlanner::settle(Proposal proposal) {
             handed_over_.push_back(plan_through(best_->moments, task_.model.tick().tick_s));
         }
     } else if (proposal.hold->cost == proposal.candidate.cost) {
-        proposal.hold->is_discarded = true;  // unless it was rewired meanwhile: a new flight, a new chance
-        note_best_hold();
+        growth_->discard(*proposal.hold);  // unless it was rewired meanwhile: a new flight, a new chance
     }
 }
 
@@ -547,19 +315,20 @@ void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationConditio
 
 void FlightTreePlanner::getPlannerData(ompl::base::PlannerData& data) const {
     Planner::getPlannerData(data);
-    if (!tree_) {
+    if (!growth_) {
         return;
     }
+    const FlightTree& tree = growth_->tree();
     std::vector<ompl::base::ScopedState<>> states;  // one per node, in the order of the tree
     std::map<const FlightNode*, std::size_t> index;
     const auto vertex_of = [&](const FlightNode* node) {
         return ompl::base::PlannerDataVertex(states[index.at(node)].get());
     };
-    for (const FlightNode* node : tree_->nodes()) {
+    for (const FlightNode* node : tree.nodes()) {
         index[node] = states.size();
         point_of(states.emplace_back(si_).get()) = moment_at(*node);
     }
-    for (const FlightNode* node : tree_->nodes()) {
+    for (const FlightNode* node : tree.nodes()) {
         if (node->parent == nullptr) {
             data.addStartVertex(vertex_of(node));
         } else {
@@ -567,7 +336,7 @@ void FlightTreePlanner::getPlannerData(ompl::base::PlannerData& data) const {
                          ompl::base::Cost(node->cost - node->parent->cost));
         }
     }
-    for (const FlightNode* hold : tree_->holds()) {
+    for (const FlightNode* hold : tree.holds()) {
         data.addGoalVertex(vertex_of(hold->parent));
     }
     data.decoupleFromPlanner();  // the states above end here

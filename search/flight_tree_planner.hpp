@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "downwash/search/flight_tree.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
 #include "downwash/search/plan_refiner.hpp"
 #include "downwash/search/random.hpp"
+#include "downwash/search/tree_growth.hpp"
 
 namespace downwash::planning {
 
@@ -64,11 +64,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::uint64_t iterations() const noexcept { return iterations_; }
     [[nodiscard]] const std::optional<Candidate>& best() const noexcept { return best_; }
     /// @pre solve() was called and found a start
-    [[nodiscard]] const FlightTree& tree() const noexcept { return *tree_; }
-    /// The node whose reference comes nearest to the goal. @pre as for tree()
-    [[nodiscard]] const FlightNode& nearest_to_goal() const noexcept { return *nearest_to_goal_; }
-    /// How near that is [m]; 0 within the goal region.
-    [[nodiscard]] double nearest_distance_m() const noexcept { return nearest_distance_m_; }
+    [[nodiscard]] const TreeGrowth& growth() const noexcept { return *growth_; }
     /// Of everything that was simulated in the planner's own model since the last clear().
     [[nodiscard]] FlightStatistics statistics() const;
 
@@ -77,20 +73,6 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] virtual ompl::base::PathPtr make_path(const std::vector<FlightPoint>& moments) const;
 
  private:
-    /// A sample on its way to become a node.
-    struct Growth {
-        Configuration to;
-        std::vector<FlightNode*> neighbours;
-        struct Parent {
-            FlightNode* node;
-            double estimate;
-        };
-        std::vector<Parent> parents;  ///< by estimate
-        std::size_t next_parent = 0;
-        std::optional<FlightTree::Flown> best;
-        FlightNode* best_parent = nullptr;
-    };
-
     /// A plan on its way to become the best, of the refiner or of the tree.
     struct Proposal {
         Candidate candidate;
@@ -101,27 +83,15 @@ class FlightTreePlanner : public ompl::base::Planner {
 
     void begin(const FlightPoint& start);
     void grow();
-    [[nodiscard]] std::optional<Growth> sampled();
-    void choose_parents(std::vector<Growth>& batch);
-    [[nodiscard]] std::vector<FlightNode*> add(const std::vector<Growth>& batch);
-    void rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added);
-    [[nodiscard]] std::optional<Configuration> target();
-    [[nodiscard]] std::optional<Configuration> target_beside_best();
     void refine();
     void go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated);
     void hand_to_refiner();
-    [[nodiscard]] FlightNode* best_hold() const;
-    [[nodiscard]] const FlightNode* other_way();
-    /// Whether there is a plan, of the tree or the best one, that was not discarded.
-    [[nodiscard]] bool has_plan() const noexcept { return best_ || best_hold_cost_ < HUGE_VAL; }
-    void note_best_hold();
     [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
     [[nodiscard]] std::optional<Proposal> proposal(double min_gain) const;
     void execute(Proposal& proposal) const;
     void settle(Proposal proposal);
     void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
     [[nodiscard]] double work_beside(const Candidate& candidate) const;
-    [[nodiscard]] std::size_t neighbour_count() const;
     ompl::base::PlannerStatus report_solution();
 
     const SearchTask& task_;
@@ -136,19 +106,15 @@ class FlightTreePlanner : public ompl::base::Planner {
 
     PlannedFlights flights_;          ///< of the tree
     PlannedFlights refined_flights_;  ///< of the refiner
-    Random random_;                   ///< of the tree, and between rounds
     Random refiner_random_;
-    std::optional<FlightTree> tree_;
+    std::optional<TreeGrowth> growth_;
     std::optional<PlanRefiner> refiner_;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> best_;
     std::vector<Plan> handed_over_;       ///< the refiner takes them on in the next round
-    double best_hold_cost_ = HUGE_VAL;    ///< of the tree's holds that were not discarded
     double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
     double refiner_left_ = 0;             ///< the same of the refiner
-    const FlightNode* nearest_to_goal_ = nullptr;
-    double nearest_distance_m_ = HUGE_VAL;
 };
 
 }  // namespace downwash::planning

@@ -17,6 +17,11 @@ bool is_same_patch(const MapPatch& a, const MapPatch& b) {
     return a.u == b.u && a.w == b.w && a.steps_x == b.steps_x && a.steps_z == b.steps_z;
 }
 
+/// Exact: the share of a place in the patch is, and that of any other place falls outside [0, 1) however it is rounded.
+bool is_in_patch(double s, double t) {
+    return s >= 0 && s < 1 && t >= 0 && t < 1;
+}
+
 }  // namespace
 
 TEST_CASE("A patch gives K and the flyability of the map to the last bit") {

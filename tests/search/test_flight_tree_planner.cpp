@@ -60,7 +60,7 @@ struct Search : AsPlanner {
         static_cast<void>(planner.solve(::ompl::base::PlannerTerminationCondition(is_over)));
     }
     static bool accept_all(const planning::Candidate& /*candidate*/) { return true; }
-    [[nodiscard]] const planning::FlightTree& tree() const { return planner.tree(); }
+    [[nodiscard]] const planning::FlightTree& tree() const { return planner.growth().tree(); }
 };
 
 }  // namespace
@@ -195,7 +195,7 @@ TEST_CASE("a search that is over before it found a plan says how near it came") 
     REQUIRE(search.solve(60) == ompl::base::PlannerStatus::APPROXIMATE_SOLUTION);
     CHECK_FALSE(search.ompl.definition->hasExactSolution());
     CHECK(search.ompl.definition->hasApproximateSolution());
-    CHECK(search.ompl.definition->getSolutionDifference() == search.planner.nearest_distance_m());
+    CHECK(search.ompl.definition->getSolutionDifference() == search.planner.growth().nearest_distance_m());
 }
 
 TEST_CASE("a search that is resumed keeps its tree and its best plan") {

@@ -1,0 +1,262 @@
+#include "downwash/search/tree_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_set>
+#include <utility>
+
+namespace downwash::planning {
+namespace {
+
+/// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
+/// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
+/// et al. 2019).
+std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
+    std::vector<FlightNode*> all = nodes;
+    std::unordered_set<const FlightNode*> known(nodes.begin(), nodes.end());
+    for (FlightNode* node : nodes) {
+        for (FlightNode* n = node->parent; n != nullptr && known.insert(n).second; n = n->parent) {
+            all.push_back(n);
+        }
+    }
+    return all;
+}
+
+/// From the straight lines between the points of a way, in the plane of motion.
+double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way) {
+    double nearest_m = HUGE_VAL;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const double* a = way[i - 1].position;
+        const double* b = way[i].position;
+        const double dx = b[0] - a[0];
+        const double dz = b[1] - a[1];
+        const double length2 = dx * dx + dz * dz;
+        const double along =
+            length2 > 0 ? std::clamp(((place.x_m - a[0]) * dx + (place.z_m - a[1]) * dz) / length2, 0.0, 1.0) : 0;
+        const double off_x = place.x_m - a[0] - along * dx;
+        const double off_z = place.z_m - a[1] - along * dz;
+        nearest_m = std::min(nearest_m, std::sqrt(off_x * off_x + off_z * off_z));
+    }
+    return nearest_m;
+}
+
+}  // namespace
+
+TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
+                       PlannedFlights& flights, Random random)
+    : space_(space),
+      parameters_(parameters),
+      flights_(flights),
+      random_(random),
+      tree_(start, flights),
+      nearest_to_goal_(&tree_.root()),
+      nearest_distance_m_(space.goal_distance_m(tree_.root().configuration)) {
+    if (space_.is_near_goal(tree_.root().configuration)) {
+        const std::vector<FlightNode*> root{&tree_.root()};
+        tree_.add_holds(root);
+        note_best_hold();
+    }
+}
+
+std::optional<Configuration> TreeGrowth::target() {
+    if (known_plan_ && random_.chance(parameters_.local_bias)) {
+        return target_beside_plan();
+    }
+    return random_.chance(has_plan() ? parameters_.goal_bias : parameters_.first_goal_bias)
+               ? space_.sample_goal(random_)
+               : space_.sample(random_);
+}
+
+std::optional<Configuration> TreeGrowth::target_beside_plan() {
+    const std::size_t knots = known_plan_->size() - 1;
+    const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(knots)));
+    const Configuration knot = configuration_of((*known_plan_)[i].reference);
+    const double radius_m = parameters_.local_radius_m * random_.uniform(0, 1) * random_.uniform(0, 1);
+    return i + 1 == knots ? space_.sample_goal_near(knot, radius_m, random_)
+                          : space_.sample_near(knot, radius_m, random_);
+}
+
+std::size_t TreeGrowth::neighbour_count() const {
+    // k-nearest RRT* (Karaman and Frazzoli 2011): k > e (1 + 1/d) log n in d dimensions.
+    constexpr double dimension = 3;
+    const auto n = static_cast<double>(tree_.size());
+    return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
+}
+
+std::uint64_t TreeGrowth::grow(std::optional<std::uint64_t> max_samples) {
+    const auto wanted = static_cast<std::uint64_t>(has_plan() ? parameters_.batch_size : parameters_.first_batch_size);
+    const std::uint64_t samples = std::min(wanted, max_samples.value_or(wanted));
+    std::vector<Growth> batch;
+    for (std::uint64_t i = 0; i < samples; ++i) {
+        if (auto growth = sampled()) {
+            batch.push_back(std::move(*growth));
+        }
+    }
+    choose_parents(batch);
+    const std::vector<FlightNode*> added = add(batch);
+    add_holds(added);
+    if (has_plan()) {
+        rewire_through(batch, added);
+    }
+    return samples;
+}
+
+std::optional<TreeGrowth::Growth> TreeGrowth::sampled() {
+    const std::optional<Configuration> aim = target();
+    if (!aim) {
+        return std::nullopt;
+    }
+    const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
+    Growth growth;
+    // Goals are aimed at from any distance: what stands in between is found before anything is flown.
+    growth.to =
+        space_.is_near_goal(*aim) ? *aim : space_.steered(nearest, *aim, parameters_.range_share * space_.extent_m());
+    if (const Rejection rejection = space_.rejection_at(growth.to); rejection != Rejection::none) {
+        flights_.count_rejection(rejection);
+        return std::nullopt;
+    }
+    growth.neighbours = tree_.nearest(growth.to, neighbour_count());
+    const double min_cost_to_goal = parameters_.optimism * tree_.min_cost_to_goal(growth.to);
+    for (FlightNode* node : with_ancestors(growth.neighbours)) {
+        const double estimate = node->cost + parameters_.optimism * tree_.estimated_cost(*node, growth.to);
+        if (estimate + min_cost_to_goal < parameters_.max_detour * best_hold_cost_ &&
+            space_.distance_m(node->configuration, growth.to) > 1e-6) {
+            growth.parents.push_back({node, estimate});
+        }
+    }
+    std::stable_sort(growth.parents.begin(), growth.parents.end(),
+                     [](const Growth::Parent& a, const Growth::Parent& b) { return a.estimate < b.estimate; });
+    return growth;
+}
+
+void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
+    for (;;) {
+        std::vector<FlightTree::Edge> edges;
+        std::vector<Growth*> growths;
+        for (Growth& growth : batch) {
+            if (growth.next_parent == growth.parents.size()) {
+                continue;
+            }
+            const Growth::Parent& parent = growth.parents[growth.next_parent];
+            // Until there is a plan any way on will do.
+            if (growth.best && (parent.estimate >= growth.best->cost || !has_plan())) {
+                growth.next_parent = growth.parents.size();
+                continue;
+            }
+            edges.push_back({parent.node, space_.seen_from(parent.node->configuration, growth.to)});
+            growths.push_back(&growth);
+        }
+        if (edges.empty()) {
+            return;
+        }
+        const auto flights = tree_.flown(edges);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            Growth& growth = *growths[i];
+            if (flights[i] && (!growth.best || flights[i]->cost < growth.best->cost)) {
+                growth.best = flights[i];
+                growth.best_parent = growth.parents[growth.next_parent].node;
+            }
+            ++growth.next_parent;
+        }
+    }
+}
+
+/// One node per sample, nullptr for those that became none.
+std::vector<FlightNode*> TreeGrowth::add(const std::vector<Growth>& batch) {
+    std::vector<FlightNode*> added;
+    for (const Growth& growth : batch) {
+        const bool is_worthwhile =
+            growth.best && growth.best->cost + parameters_.optimism * tree_.min_cost_to_goal(growth.to) <
+                               parameters_.max_detour * best_hold_cost_;
+        added.push_back(is_worthwhile ? &tree_.add(*growth.best_parent, *growth.best) : nullptr);
+    }
+    return added;
+}
+
+void TreeGrowth::add_holds(const std::vector<FlightNode*>& added) {
+    std::vector<FlightNode*> arrived;
+    for (FlightNode* node : added) {
+        if (node == nullptr) {
+            continue;
+        }
+        const double distance_m = space_.goal_distance_m(node->configuration);
+        if (distance_m < nearest_distance_m_) {
+            nearest_distance_m_ = distance_m;
+            nearest_to_goal_ = node;
+        }
+        if (space_.is_near_goal(node->configuration)) {
+            arrived.push_back(node);
+        }
+    }
+    tree_.add_holds(arrived);
+    note_best_hold();
+}
+
+void TreeGrowth::rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added) {
+    std::vector<FlightTree::Rewiring> rewirings;
+    const FlightNode* hold = best_hold();
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+        FlightNode* const node = added[i];
+        if (node == nullptr) {
+            continue;
+        }
+        std::vector<FlightNode*> neighbours = batch[i].neighbours;
+        // A better corner pays only when the next corner of the best plan, far away as a rule, is reached from it.
+        for (FlightNode* n = hold != nullptr ? hold->parent : nullptr; n != nullptr; n = n->parent) {
+            if (n != node && std::find(neighbours.begin(), neighbours.end(), n) == neighbours.end()) {
+                neighbours.push_back(n);
+            }
+        }
+        for (FlightNode* neighbour : neighbours) {
+            if (neighbour != &tree_.root() && neighbour != node->parent &&
+                node->cost + parameters_.optimism * tree_.estimated_cost(*node, neighbour->configuration) <
+                    neighbour->cost) {
+                rewirings.push_back({neighbour, node});
+            }
+        }
+    }
+    tree_.rewire(rewirings);
+    note_best_hold();
+}
+
+void TreeGrowth::discard(FlightNode& hold) {
+    hold.is_discarded = true;
+    note_best_hold();
+}
+
+const FlightNode* TreeGrowth::hold_away_from(const std::vector<ReferencePoint>& way) {
+    constexpr int draws = 8;
+    const auto& holds = tree_.holds();
+    const FlightNode* farthest = nullptr;
+    double farthest_m = parameters_.alternative_distance_m;
+    for (int i = 0; i < draws; ++i) {
+        const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
+        double away_m = 0;
+        for (const FlightNode* n = hold->parent; n != nullptr; n = n->parent) {
+            away_m = std::max(away_m, distance_from_way_m(n->configuration, way));
+        }
+        if (!hold->is_discarded && away_m > farthest_m) {
+            farthest_m = away_m;
+            farthest = hold;
+        }
+    }
+    return farthest;
+}
+
+FlightNode* TreeGrowth::best_hold() const {
+    FlightNode* best = nullptr;
+    for (FlightNode* hold : tree_.holds()) {
+        if (!hold->is_discarded && (best == nullptr || hold->cost < best->cost)) {
+            best = hold;
+        }
+    }
+    return best;
+}
+
+void TreeGrowth::note_best_hold() {
+    const FlightNode* const hold = best_hold();
+    best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
+}
+
+}  // namespace downwash::planning

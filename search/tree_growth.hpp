@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "downwash/search/flight_tree.hpp"
+#include "downwash/search/flight_tree_parameters.hpp"
+#include "downwash/search/random.hpp"
+
+namespace downwash::planning {
+
+/// How the tree of flights grows: RRT* in batches of samples, whose edges are simulated side by side. Parents are
+/// chosen and nodes rewired by simulated cost; nodes within the goal's tolerances get holds.
+class TreeGrowth {
+ public:
+    /// @param random the tree draws from it   All other arguments must outlive the growth.
+    TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
+               PlannedFlights& flights, Random random);
+
+    /// One batch. @return the samples drawn: `max_samples`, or as many as make a batch
+    std::uint64_t grow(std::optional<std::uint64_t> max_samples);
+    /// Samples are drawn beside this plan too from now on. @param moments as in Candidate
+    void know_plan(const std::vector<FlightPoint>& moments) { known_plan_ = moments; }
+    /// The plan that ends with this hold does not count: no direct flight confirms it.
+    void discard(FlightNode& hold);
+
+    /// Whether there is a plan, of the tree or one that it was told of.
+    [[nodiscard]] bool has_plan() const noexcept { return known_plan_ || best_hold_cost_ < HUGE_VAL; }
+    /// The cheapest hold that was not discarded; nullptr when there is none.
+    [[nodiscard]] FlightNode* best_hold() const;
+    /// Of some holds, drawn at random, the one whose way leads farthest from a plan; nullptr when all follow it.
+    [[nodiscard]] const FlightNode* hold_away_from(const std::vector<ReferencePoint>& way);
+
+    [[nodiscard]] const FlightTree& tree() const noexcept { return tree_; }
+    /// The node whose reference comes nearest to the goal.
+    [[nodiscard]] const FlightNode& nearest_to_goal() const noexcept { return *nearest_to_goal_; }
+    /// How near that is [m]; 0 within the goal region.
+    [[nodiscard]] double nearest_distance_m() const noexcept { return nearest_distance_m_; }
+
+ private:
+    /// A sample on its way to become a node.
+    struct Growth {
+        Configuration to;
+        std::vector<FlightNode*> neighbours;
+        struct Parent {
+            FlightNode* node;
+            double estimate;
+        };
+        std::vector<Parent> parents;  ///< by estimate
+        std::size_t next_parent = 0;
+        std::optional<FlightTree::Flown> best;
+        FlightNode* best_parent = nullptr;
+    };
+
+    [[nodiscard]] std::optional<Configuration> target();
+    [[nodiscard]] std::optional<Configuration> target_beside_plan();
+    [[nodiscard]] std::size_t neighbour_count() const;
+    [[nodiscard]] std::optional<Growth> sampled();
+    void choose_parents(std::vector<Growth>& batch);
+    [[nodiscard]] std::vector<FlightNode*> add(const std::vector<Growth>& batch);
+    void add_holds(const std::vector<FlightNode*>& added);
+    void rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added);
+    void note_best_hold();
+
+    const SearchSpace& space_;
+    const FlightTreeParameters& parameters_;
+    PlannedFlights& flights_;
+    Random random_;
+    FlightTree tree_;
+    std::optional<std::vector<FlightPoint>> known_plan_;
+    double best_hold_cost_ = HUGE_VAL;  ///< of the holds that were not discarded
+    const FlightNode* nearest_to_goal_;
+    double nearest_distance_m_;
+};
+
+}  // namespace downwash::planning
