@@ -85,6 +85,16 @@ std::string elements_text(const std::vector<std::string_view>& elements) {
     return text + "]";
 }
 
+/// "{sd: number} or {range: [low, high]}".
+std::string forms_text(const std::vector<std::string_view>& forms) {
+    std::string text;
+    for (const std::string_view form : forms) {
+        text += (text.empty() ? "" : " or ") +
+                (form == "sd" ? std::string("{sd: number}") : "{" + std::string(form) + ": [low, high]}");
+    }
+    return text;
+}
+
 std::optional<std::string> number_error(const ParameterInfo& info, double value) {
     const double written =
         is_in_degrees(info.path)
@@ -137,6 +147,41 @@ std::optional<std::string> texts_error(const ParameterInfo& info, const std::vec
         }
     }
     return set_error(info, texts);
+}
+
+/// The ends of a spread have to be within the range of the parameter, factors above 0.
+std::optional<std::string> spread_error(const ParameterInfo& info, const Spread& spread) {
+    const auto form = spread.form == Spread::Form::sd ? "sd" : spread.form == Spread::Form::range ? "range" : "factor";
+    if (spread.form == Spread::Form::exact) {
+        return std::nullopt;
+    }
+    if (std::find(info.elements.begin(), info.elements.end(), form) == info.elements.end()) {
+        return std::string("is a ") + form + ": expected " + expectation(info);
+    }
+    if (!std::isfinite(spread.low) || !std::isfinite(spread.high)) {
+        return "is not finite: expected " + expectation(info);
+    }
+    if (spread.form == Spread::Form::sd && spread.high < 0) {
+        return "has a negative sd: expected a standard deviation of at least 0";
+    }
+    if (spread.form != Spread::Form::sd && spread.low > spread.high) {
+        return std::string("has a ") + form + " upside down: expected [low, high]";
+    }
+    if (spread.form == Spread::Form::factor) {
+        return spread.low > 0 && spread.high <= 10
+                   ? std::nullopt
+                   : std::optional<std::string>("has factors beyond their range: expected above 0 and at most 10");
+    }
+    if (spread.form == Spread::Form::range) {
+        const auto error = number_error(info, spread.low);
+        return error ? error : number_error(info, spread.high);
+    }
+    for (const double end : {-3 * spread.high, 3 * spread.high}) {
+        if (info.range.low.value_or(0) < 0 && number_error(info, end)) {
+            return "has an sd so large that 3 of it leave the range: expected " + expectation(info);
+        }
+    }
+    return info.range.high && number_error(info, spread.high) ? number_error(info, spread.high) : std::nullopt;
 }
 
 template <class Numbers>
@@ -224,6 +269,8 @@ std::string expectation(const ParameterInfo& info) {
             return "a list of " + joined_names(info.names) + or_null;
         case ParameterKind::files:
             return "a list of paths of files";
+        case ParameterKind::spread:
+            return "0 or " + forms_text(info.elements) + in_unit + range;
     }
     return "";
 }
@@ -253,6 +300,9 @@ std::optional<std::string> value_error(const ParameterInfo& info, const Value& v
     }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
         return texts_error(info, *texts);
+    }
+    if (const auto* spread = std::get_if<Spread>(&value)) {
+        return spread_error(info, *spread);
     }
     if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
         for (const Vector3& point : *points) {

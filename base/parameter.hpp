@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/spread.hpp"
 #include "downwash/base/vector3.hpp"
 
 namespace downwash {
 
 /// What a parameter can hold, in SI units and radians. Empty (monostate) stands for `null`.
 using Value = std::variant<std::monostate, bool, double, std::uint64_t, std::string, std::vector<double>,
-                           std::vector<Vector3>, std::vector<std::uint64_t>, std::vector<std::string>>;
+                           std::vector<Vector3>, std::vector<std::uint64_t>, std::vector<std::string>, Spread>;
 
 /// The kind of value that a key of a problem file has.
 enum class ParameterKind {
@@ -34,6 +35,7 @@ enum class ParameterKind {
     samples,     ///< a list of any number of numbers
     choices,     ///< a list of some of `names`
     files,       ///< a list of paths, relative to the file that names them
+    spread,      ///< 0, or how far a number may be from what is believed: {sd: s}, {range: [a, b]}
 };
 
 /// The allowed values, in the unit of the file (degrees if the key says so). Empty: no limit.
@@ -58,7 +60,7 @@ struct ParameterInfo {
     bool can_be_integers = false;  ///< a group that may be a list of whole numbers instead
     Range range;
     std::vector<std::string_view> names;     ///< of a choice, or of choices
-    std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}
+    std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}; the forms of a spread
     std::string condition;                   ///< says in words when the parameter applies; empty: always
     std::string_view former_name;            ///< last name of the path in earlier versions, still read
 };

@@ -174,6 +174,16 @@ Parameter<Model> samples(std::string_view path, std::string_view description, Me
     return member_row<Model, std::vector<double>>(ParameterKind::samples, path, description, member);
 }
 
+/// A Spread.
+/// @param forms in which it can be written: sd, range, factor
+template <class Model, class Member>
+Parameter<Model> spread(std::string_view path, std::string_view description, const std::vector<std::string_view>& forms,
+                        Member member) {
+    auto parameter = member_row<Model, Spread>(ParameterKind::spread, path, description, member);
+    parameter.elements = forms;
+    return parameter;
+}
+
 /// A list of paths of files.
 template <class Model, class Member>
 Parameter<Model> files(std::string_view path, std::string_view description, Member member) {

@@ -25,6 +25,7 @@ struct ExecuteArguments {
     std::string problem;
     std::string plan;
     std::string aero = "on";
+    std::optional<std::uint64_t> world, seed;
     std::optional<std::string> out;
     bool no_cache = false, as_json = false;
 };
@@ -55,11 +56,32 @@ fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
     return *given.out;
 }
 
-void fly(const Problem& problem, bool aero, Solution& solution) {
+/// The world that was asked for; nothing for the nominal one.
+std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem& problem) {
+    if (!given.world) {
+        if (given.seed) {
+            throw UsageError("--seed says which worlds there are: expected --world too");
+        }
+        return std::nullopt;
+    }
+    if (!problem.uncertainty) {
+        throw UsageError("--world needs to know what is uncertain: " + given.problem + " has no `uncertainty:`");
+    }
+    return make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot,
+                                                given.seed.value_or(problem.planner.seed), *given.world));
+}
+
+void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
     const auto model = make_flight_model(problem);
-    solution.execution =
-        execute(*model, start_state(*model, problem.start), solution.plan->reference, goals_of(problem), aero);
+    const CeilingPart ceiling{world ? model->ceilings_only() : nullptr, nullptr};
+    const FlightWorld in{world ? &*world : nullptr, &ceiling, 0};
+    const FlightState believed = start_state(*model, problem.start);
+    const auto start = world && is_at_rest(problem.start) ? hovering_start(*model, believed, aero, in) : believed;
+    if (!start) {
+        throw std::runtime_error("in this world the vehicle cannot hover at its start: its controller diverges there");
+    }
+    solution.execution = execute(*model, *start, solution.plan->reference, goals_of(problem), aero, in);
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
     solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -69,8 +91,9 @@ ExitCode run(const ExecuteArguments& given) {
     Problem read = read_problem(given.problem, {}, print_outdated);
     Solution solution = read_solution(given.plan, read);
     read = as_planned(std::move(read), solution);
+    const std::optional<FlownWorld> world = world_of(given, read);
     const OutputFolder folder(folder_for(given, read));
-    fly(read, given.aero == "on", solution);
+    fly(read, given.aero == "on", world, solution);
     const RunRecord record = write_results(folder, read, given.problem, solution);
     write_page(folder, record, nullptr, cache_folder(given.no_cache));
     fmt::print("{}", given.as_json ? record.solution_text
@@ -93,6 +116,9 @@ void add_execute(CLI::App& program, Action& action) {
     CLI::Option* option =
         command.add_option("--aero", given.aero, "on: surface effects evaluated directly (default); off: free air");
     require_one_of(*option, {"on", "off"});
+    add_value(command, "--world I", given.world,
+              "fly in world I of the problem's uncertainty; 0 is the nominal one (default)");
+    add_value(command, "--seed N", given.seed, "of the worlds; default: that of the plan");
     add_value(command, "--out DIR", given.out,
               "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
               "itself is in that folder");

@@ -48,9 +48,32 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
     }
 }
 
+/// The velocity of the air [m/s]: a factor that knows a wind says so by `wind()`; otherwise the air is calm.
+template <class T, class Factor>
+PlanePoint<T> wind_of(const Factor& factor) {
+    if constexpr (requires { factor.wind(); }) {
+        return factor.wind();
+    } else {
+        return {T(0), T(0)};
+    }
+}
+
+/// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
+/// says so by `thrust_scale(rotor)`.
+template <class T, class Factor>
+T free_air_thrust(const Factor& factor, int rotor, T nominal_n) {
+    if constexpr (requires { factor.thrust_scale(rotor); }) {
+        return factor.thrust_scale(rotor) * nominal_n;
+    } else {
+        return nominal_n;
+    }
+}
+
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
 /// centre between them (docs/model.md 4.3).
-/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body()
+/// @param thrust_n of every rotor in free air with its nominal thrust coefficient [N]: a measure of its speed
+/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body(); it
+/// may know a wind and thrust coefficients too
 template <class T, class Factor, class P>
 RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m,
                             const T thrust_n[max_rotors], Factor&& factor) {
@@ -63,7 +86,7 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
             const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
             factors[i] = factor(i, hub.x, hub.z);
         }
-        const T acting_n = factors[i] * thrust_n[i];
+        const T acting_n = factors[i] * free_air_thrust(factor, i, thrust_n[i]);
         wrench.thrust_n = wrench.thrust_n + acting_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
     }
@@ -72,7 +95,7 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
         const PlanePoint<T> center = rotor_position(model, a, x_m, z_m, body);
         T free_air_n(0);
         for (int i = 0; i < model.rotor_count; ++i) {
-            free_air_n = free_air_n + thrust_n[i];
+            free_air_n = free_air_n + free_air_thrust(factor, i, thrust_n[i]);
         }
         const T push_n = (factor(body, center.x, center.z) - T(1)) * free_air_n;
         wrench.thrust_n = wrench.thrust_n + push_n;
@@ -93,16 +116,19 @@ T rotor_power(const BasicPlantModel<P>& model, const T thrust_n[max_rotors]) {
 }
 
 /// du/dt of the plant under the free-air thrusts of its rotors.
-/// @param q coordinates [m, m, rad, rad]   @param motion at q and the speeds u: motion_at(model, q, u)
+/// @param q,u coordinates [m, m, rad, rad] and their speeds   @param motion at q and u: motion_at(model, q, u)
 /// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench()
 /// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
 template <class T, class Factor, class P>
-void accelerations(const BasicPlantModel<P>& model, const T q[4], const Motion<T>& motion, const T thrust_n[max_rotors],
-                   T joint_torque_nm, Factor&& factor, T du[4]) {
+void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], const Motion<T>& motion,
+                   const T thrust_n[max_rotors], T joint_torque_nm, Factor&& factor, T du[4]) {
     const Attitude<T>& a = motion.attitude;
     const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
-    const T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
-                        joint_torque_nm};
+    T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
+                  joint_torque_nm};
+    if (model.has_drag) {
+        add_drag(model, a, u, wind_of<T>(factor), force);
+    }
     forward_dynamics(model, motion.equations, force, du);
 }
 
@@ -144,7 +170,7 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
             }
             here = motion_at(model, q, u);
         }
-        accelerations(model, q, here, thrust_n, command.joint_torque_nm, factor, du);
+        accelerations(model, q, u, here, thrust_n, command.joint_torque_nm, factor, du);
         const T w(weight[stage]);
         for (int i = 0; i < 4; ++i) {
             q_sum[i] = q_sum[i] + w * u[i];

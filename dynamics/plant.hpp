@@ -9,10 +9,19 @@ namespace downwash {
 /// Most rotors a multirotor may have; lag states are stored in place.
 inline constexpr int max_rotors = 8;
 
+/// Air drag D(v) = (linear + quadratic |v|) v against the speed v through the air (docs/model.md 2.4); zeros: none.
+struct DragParameters {
+    double linear_n_s_m = 0;       ///< >= 0, of the rotors above all
+    double quadratic_n_s2_m2 = 0;  ///< >= 0, rho cd A / 2
+    /// Whether there is any.
+    [[nodiscard]] bool is_any() const noexcept { return linear_n_s_m > 0 || quadratic_n_s2_m2 > 0; }
+};
+
 /// The multirotor's rigid body A (thesis C.1).
 struct MultirotorParameters {
     double mass_kg = 0;              ///< > 0, rotors and battery included, arm excluded
     double pitch_inertia_kg_m2 = 0;  ///< about +y through its centre of mass, > 0
+    DragParameters drag = {};        ///< acts at its centre of mass, the same in every direction
 };
 
 /// The arm B with its end effector, one rigid body that turns about a joint fixed to the multirotor (thesis C.1).
@@ -28,6 +37,7 @@ struct ArmParameters {
     double lower_limit_rad = 0;   ///< of the angle relative to the multirotor, when limited
     double upper_limit_rad = 0;
     double max_torque_nm = 0;  ///< of the joint, > 0
+    DragParameters drag = {};  ///< of the whole arm in a stream across it; one along it has none
 };
 
 /// Rotors that spin in the body's b1-b2 plane. A command is the free-air thrust of one rotor (a PWM level).

@@ -68,6 +68,11 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
     model.has_rotor_lag = rotors.time_constant_s > 0;
     model.rotor_time_constant_s = rotors.time_constant_s;
     model.power_coefficient_w_n1p5 = rotors.power_coefficient_w_n1p5;
+    model.has_drag = multirotor.drag.is_any() || arm.drag.is_any();
+    model.body_drag_n_s_m = multirotor.drag.linear_n_s_m;
+    model.body_drag_n_s2_m2 = multirotor.drag.quadratic_n_s2_m2;
+    model.arm_drag_n_s_m = arm.drag.linear_n_s_m;
+    model.arm_drag_n_s2_m2 = arm.drag.quadratic_n_s2_m2;
     return model;
 }
 

@@ -14,6 +14,7 @@ struct PlantStructure {
     /// Near the ground the air that rises between the rotors pushes the body at their centre (thesis (2.17)).
     bool has_fountain;
     bool has_rotor_lag;  ///< without it thrust follows the command at once
+    bool has_drag;       ///< of the multirotor or of the arm
     /// The number of the body, behind those of the rotors: its hub is the centre between all of theirs.
     [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
 };
@@ -38,6 +39,8 @@ struct PlantNumbers {
     T min_thrust_n, max_thrust_n;
     T rotor_time_constant_s;  ///< > 0 in every lane where the plant has a lag
     T power_coefficient_w_n1p5;
+    T body_drag_n_s_m, body_drag_n_s2_m2;  ///< linear and quadratic in the speed through the air
+    T arm_drag_n_s_m, arm_drag_n_s2_m2;    ///< of the whole arm, in the speed across it
 };
 
 /// The plant as plain numbers, ready for the tick. With T = double one model serves all lanes of a tick; with a pack

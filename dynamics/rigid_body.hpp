@@ -166,11 +166,40 @@ T potential_energy(const BasicPlantModel<P>& model, const Attitude<T>& a, T z_m)
     return T(standard_gravity_m_s2) * (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
 }
 
-/// A point of the plane [m].
+/// A point of the plane [m], or another vector in it.
 template <class T>
 struct PlanePoint {
     T x, z;
 };
+
+/// Adds the drag of both bodies in moving air to generalised forces Q [N, N, N m, N m] (docs/model.md 2.4). Along the
+/// arm the force is integrated with the two-point Gauss rule: exact where the stream crosses all of it from one side.
+/// @param u speeds [m/s, m/s, rad/s, rad/s]   @param wind velocity of the air [m/s]
+template <class T, class P>
+void add_drag(const BasicPlantModel<P>& model, const Attitude<T>& a, const T u[4], const PlanePoint<T>& wind,
+              T force[4]) {
+    const T x_m_s = u[0] - wind.x;
+    const T z_m_s = u[1] - wind.z;
+    const T speed_m_s = lane::sqrt(x_m_s * x_m_s + z_m_s * z_m_s);
+    const T resistance = T(model.body_drag_n_s_m) + T(model.body_drag_n_s2_m2) * speed_m_s;
+    force[0] = force[0] - resistance * x_m_s;
+    force[1] = force[1] - resistance * z_m_s;
+    // Across the arm: n = (ez, -ex), the direction in which a point of it moves as the arm turns.
+    const T arm_rate = u[2] + u[3];
+    const T joint_m_s = (x_m_s + u[2] * a.joint_z) * a.arm_z - (z_m_s - u[2] * a.joint_x) * a.arm_x;
+    const T lever_m = a.joint_z * a.arm_z + a.joint_x * a.arm_x;
+    constexpr double point[] = {0.21132486540518713, 0.78867513459481287};  // 1/2 -+ 1/sqrt(12) of the length
+    for (const double share : point) {
+        const T from_joint_m = T(share) * T(model.arm_length_m);
+        const T across_m_s = joint_m_s + arm_rate * from_joint_m;
+        const T half_n =
+            T(-0.5) * (T(model.arm_drag_n_s_m) + T(model.arm_drag_n_s2_m2) * lane::abs(across_m_s)) * across_m_s;
+        force[0] = force[0] + half_n * a.arm_z;
+        force[1] = force[1] - half_n * a.arm_x;
+        force[2] = force[2] + half_n * (lever_m + from_joint_m);
+        force[3] = force[3] + half_n * from_joint_m;
+    }
+}
 
 /// The end effector in the plane [m].
 template <class T, class P>

@@ -40,6 +40,18 @@ Json json_of(const Value& value) {
         [](const auto& held) -> Json {
             if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
                 return nullptr;
+            } else if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Spread>) {
+                switch (held.form) {
+                    case Spread::Form::sd:
+                        return {{"sd", held.high}};
+                    case Spread::Form::range:
+                        return {{"range", {held.low, held.high}}};
+                    case Spread::Form::factor:
+                        return {{"factor", {held.low, held.high}}};
+                    case Spread::Form::exact:
+                        break;
+                }
+                return 0;
             } else {
                 return held;
             }
@@ -130,6 +142,19 @@ class SchemaWriter {
         return schema;
     }
 
+    [[nodiscard]] static Json spread_schema(const ParameterInfo& info) {
+        std::vector<Json> forms{{{"const", 0}}};
+        for (const std::string_view name : info.elements) {
+            const Json number{{"type", "number"}};
+            const Json value = name == "sd" ? Json{{"type", "number"}, {"minimum", 0}} : array_schema(number, 2);
+            forms.push_back({{"type", "object"},
+                             {"additionalProperties", false},
+                             {"properties", {{std::string(name), value}}},
+                             {"required", {name}}});
+        }
+        return any_of(std::move(forms));
+    }
+
     [[nodiscard]] Json form(const ParameterInfo& info) const {
         switch (info.kind) {
             case ParameterKind::group:
@@ -159,6 +184,8 @@ class SchemaWriter {
                 return array_schema({{"enum", info.names}});
             case ParameterKind::files:
                 return array_schema({{"type", "string"}});
+            case ParameterKind::spread:
+                return spread_schema(info);
         }
         return Json::object();
     }

@@ -26,6 +26,7 @@ Robot with_everything<Robot>() {
 template <>
 Problem with_everything<Problem>() {
     Problem problem;
+    problem.uncertainty.emplace();
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
     problem.goal.any_of = {problem.goal};
@@ -81,6 +82,9 @@ Value in_file_units(const std::string& path, Value value) {
         for (double& element : *numbers) {
             element = in_file_units(path, element);
         }
+    } else if (auto* spread = std::get_if<Spread>(&value); spread != nullptr && spread->form != Spread::Form::factor) {
+        spread->low = in_file_units(path, spread->low);
+        spread->high = in_file_units(path, spread->high);
     }
     return value;
 }
@@ -113,6 +117,9 @@ std::string text_of(const Value& value) {
     }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
         return list_text(*texts, [](const std::string& text) { return text; });
+    }
+    if (const auto* spread = std::get_if<Spread>(&value)) {
+        return spread_text(*spread, number_text);
     }
     return std::holds_alternative<std::monostate>(value) ? "null" : "";
 }

@@ -18,6 +18,7 @@
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash {
 
@@ -40,6 +41,11 @@ struct Start {
     /// Where vehicle and arm are, the pitch left out.
     [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
 };
+
+/// Whether nothing moves at the start.
+[[nodiscard]] constexpr bool is_at_rest(const Start& start) noexcept {
+    return start.vx_m_s == 0 && start.vz_m_s == 0 && start.pitch_rate_rad_s == 0 && start.arm_rate_rad_s == 0;
+}
 
 /// Wall time of a search that is limited by nothing else [s].
 inline constexpr double default_time_limit_s = 10;
@@ -69,6 +75,7 @@ struct Problem {
     Bounds bounds;
     std::vector<Obstacle> obstacles;
     AeroSettings aero;
+    std::optional<Uncertainty> uncertainty;  ///< nothing: everything is as believed
     Start start;
     std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
     Goal goal;

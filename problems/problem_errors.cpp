@@ -293,7 +293,18 @@ std::vector<KeyError> split_whole_numbers(const Problem& p) {
     return errors;
 }
 
-const std::array<Check<ProblemCheck>, 17> checks{{
+std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
+    std::vector<KeyError> errors;
+    if (p.uncertainty) {
+        errors = uncertainty_errors(*p.uncertainty, p.robot);
+        for (KeyError& error : errors) {
+            error.key = "uncertainty." + error.key;
+        }
+    }
+    return errors;
+}
+
+const std::array<Check<ProblemCheck>, 18> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -310,6 +321,7 @@ const std::array<Check<ProblemCheck>, 17> checks{{
       "planner.safety_margin_m"},
      start_in_collision},
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
+    {{"uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
     {{"planner.parameters"}, split_whole_numbers},

@@ -14,6 +14,7 @@
 #include "downwash/problems/goal_parameters.hpp"
 #include "downwash/problems/obstacle_parameters.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/uncertainty_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 
 namespace downwash {
@@ -229,6 +230,7 @@ Rows all_rows() {
     add_robot(rows);
     add_environment(rows);
     add_aero_rows(rows);
+    add_uncertainty_rows(rows);
     add_start(rows);
     add_goal_rows(rows);
     add_motion(rows);

@@ -138,6 +138,11 @@ class Writer {
         if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
             return points_text(row, *points);
         }
+        if (const auto* spread = std::get_if<Spread>(&value)) {
+            return spread_text(*spread, [&](double number) {
+                return spread->form == Spread::Form::factor ? to_text(number) : number_text(row, number);
+            });
+        }
         return "null";
     }
 

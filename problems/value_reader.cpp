@@ -104,6 +104,33 @@ std::vector<Vector3> read_points(const ParameterInfo& info, const YamlNode& node
     return points;
 }
 
+Spread read_spread(const ParameterInfo& info, const YamlNode& node) {
+    if (node.kind == YamlNode::Kind::scalar && !node.is_quoted && parse_number<double>(node.text) == 0.0) {
+        return {};
+    }
+    if (node.kind != YamlNode::Kind::map || node.entries.size() != 1 ||
+        node.entries[0].first->kind != YamlNode::Kind::scalar) {
+        refuse(info, node);
+    }
+    const auto& [key, given] = node.entries[0];
+    if (std::find(info.elements.begin(), info.elements.end(), key->text) == info.elements.end()) {
+        throw YamlError(key->mark, "has the unknown form '" + excerpt(key->text) + "': expected " + expectation(info));
+    }
+    if (key->text == "sd") {
+        return Spread::of_sd(read_number(info, *given));
+    }
+    if (given->kind != YamlNode::Kind::list || given->items.size() != 2) {
+        refuse(info, *given);
+    }
+    if (key->text == "factor") {
+        ParameterInfo without_unit = info;
+        without_unit.path = "factor";
+        return Spread::of_factor(read_number(without_unit, *given->items[0]),
+                                 read_number(without_unit, *given->items[1]));
+    }
+    return Spread::over(read_number(info, *given->items[0]), read_number(info, *given->items[1]));
+}
+
 Value read_typed(const ParameterInfo& info, const YamlNode& node) {
     if (info.nullable && node.kind == YamlNode::Kind::null) {
         return {};
@@ -129,6 +156,8 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
         case ParameterKind::choices:
         case ParameterKind::files:
             return read_elements(info, node, read_text);
+        case ParameterKind::spread:
+            return read_spread(info, node);
         case ParameterKind::group:
             if (info.can_be_integers) {
                 return read_elements(info, node, read_integer);

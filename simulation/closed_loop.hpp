@@ -4,6 +4,7 @@
 
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/world_numbers.hpp"
 
 // One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
 
@@ -16,12 +17,13 @@ struct TickModel {
     double tick_s;  ///< control period, 1 / rate_hz
 };
 
-/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, and every integrator. Nothing but
-/// T: see base/numbers.hpp.
+/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, every integrator, and what its world
+/// remembers. Nothing but T: see base/numbers.hpp.
 template <class T>
 struct State {
     dynamics::PlantState<T> plant;
     controllers::LawMemory<T> memory;
+    WorldMemory<T> world;  ///< as it was where nothing is late and no gust blows
 };
 
 // With the narrow registers of every processor a tick with all that it calls in one place takes a sixth less; kernels
@@ -48,26 +50,47 @@ DOWNWASH_IN_ONE_PIECE State<T> tick(const TickModel& model, const Law& law, cons
     next.memory = controllers::remembered(law.control(
         model.plant, state.plant, motion, controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
     next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
+    next.world = state.world;
     return next;
 }
 
-#undef DOWNWASH_IN_ONE_PIECE
-
-/// The same in a world where the plant is not what its controller takes it for, perhaps a different one in every lane.
-/// @param plant what flies   @param seen the state as the controller measures it
-template <class T, class Law, class P, class Factor, class Integrate = dynamics::OneStep>
-State<T> tick_of_other_plant(const TickModel& model, const Law& law, const BasicPlantModel<P>& plant,
-                             const State<T>& state, const dynamics::PlantState<T>& seen,
-                             const BasicReferencePoint<T>& reference, Factor&& factor, controllers::Actuation<T>& given,
-                             const Integrate& integrate = {}) {
+/// The same in a world that is not what the controller takes it for, perhaps a different one in every lane. In the
+/// world without any difference it is the same to the last bit.
+/// @param noise standard normal numbers of this tick   @param effect,ceiling see WorldSurroundings
+template <class T, class Law, class Effect, class Ceiling, class Integrate = dynamics::OneStep>
+DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world,
+                                             const T noise[noise_count], const State<T>& state,
+                                             const BasicReferencePoint<T>& reference, Effect&& effect,
+                                             Ceiling&& ceiling, controllers::Actuation<T>& given,
+                                             const Integrate& integrate = {}) {
+    const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
     next.memory =
         controllers::remembered(law.control(model.plant, seen, dynamics::motion_at(model.plant, seen.q, seen.u),
                                             controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
-    next.plant = integrate(plant, state.plant, dynamics::motion_at(plant, state.plant.q, state.plant.u), given.command,
-                           T(model.tick_s), factor);
+    BasicPlantModel<T> plant;
+    static_cast<PlantStructure&>(plant) = model.plant;
+    static_cast<PlantNumbers<T>&>(plant) = world.plant;
+    // The plant moves about its centre of mass, all others follow the point that the robot file calls so.
+    dynamics::PlantState<T> moving = state.plant;
+    const auto motion = dynamics::motion_at(plant, moving.q, moving.u);
+    const auto shift = [&](dynamics::PlantState<T>& by, const dynamics::Attitude<T>& a, T sign) {
+        const T x = a.cos_pitch * world.center_of_mass_x_m + a.sin_pitch * world.center_of_mass_z_m;
+        const T z = a.cos_pitch * world.center_of_mass_z_m - a.sin_pitch * world.center_of_mass_x_m;
+        by.q[0] = by.q[0] + sign * x;
+        by.q[1] = by.q[1] + sign * z;
+        by.u[0] = by.u[0] + sign * (by.u[2] * z);
+        by.u[1] = by.u[1] - sign * (by.u[2] * x);
+    };
+    shift(moving, motion.attitude, T(1));
+    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, ceiling);
+    next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), surroundings);
+    shift(next.plant, dynamics::attitude(plant, next.plant.q[2], next.plant.q[3]), T(-1));
+    next.world = later(world, state.plant, state.world, noise);
     return next;
 }
+
+#undef DOWNWASH_IN_ONE_PIECE
 
 /// A single tick, where neither the law's type nor the motion of the state is at hand.
 template <class Factor, class Integrate = dynamics::OneStep>

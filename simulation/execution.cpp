@@ -32,11 +32,19 @@ Outcome outcome_of(Rejection rejection) {
 }
 
 /// Writes the log of one flight while it is flown.
-template <class Factor>
+template <class Factor, class Ceiling>
 class Recorder {
  public:
-    Recorder(const FlightModel& model, const Factor& factor, Execution& execution)
-        : model_(model), plant_(model.tick().plant), factor_(factor), execution_(execution) {}
+    /// @param world nullptr: the plain tick   @param factor,ceiling see WorldSurroundings
+    Recorder(const FlightModel& model, const FlownWorld* world, Factor& factor, Ceiling& ceiling, Execution& execution)
+        : model_(model),
+          plant_(model.tick().plant),
+          world_(world),
+          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor, ceiling),
+          execution_(execution) {}
+
+    /// Flown so far.
+    [[nodiscard]] std::int64_t ticks() const noexcept { return tick_; }
 
     void add_row(const FlightState& state, const ReferencePoint& reference, const Given& given) {
         FlightRow row;
@@ -51,11 +59,12 @@ class Recorder {
             const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
             row.rotor_command_n[i] = given.command.thrust_n[i];
             row.rotor_lag_n[i] = state.plant.thrust_n[i];
-            row.rotor_factor[i] = factor_(i, hub.x, hub.z);
+            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z);
             row.thrust_command_n += row.rotor_command_n[i];
             row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
-            row.thrust_n += row.rotor_factor[i] * thrust_n[i];
-            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * thrust_n[i];
+            const double free_air_n = dynamics::free_air_thrust(surroundings_, i, thrust_n[i]);
+            row.thrust_n += row.rotor_factor[i] * free_air_n;
+            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * free_air_n;
         }
         row.arm_torque_nm = given.command.joint_torque_nm;
         row.clearance_m = clearance_m_;
@@ -72,7 +81,8 @@ class Recorder {
     /// @param before one tick ago; nullptr at the start
     Rejection judge(const FlightState& state, const ReferencePoint& reference, const FlightState* before = nullptr) {
         const double clearance_before_m = clearance_m_;
-        clearance_m_ = model_.collisions().clearance_m(pose_of(state));
+        const PlanarPose pose = among_obstacles(pose_of(state), world_);
+        clearance_m_ = model_.collisions().clearance_m(pose);
         execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
         execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
         if (!is_stable(state, reference)) {
@@ -82,14 +92,14 @@ class Recorder {
             return Rejection::collision;
         }
         if (before != nullptr) {
-            const double between_m = simulation::least_clearance_between_m(model_, pose_of(*before), clearance_before_m,
-                                                                           pose_of(state), clearance_m_);
+            const double between_m = simulation::least_clearance_between_m(
+                model_, among_obstacles(pose_of(*before), world_), clearance_before_m, pose, clearance_m_);
             if (between_m <= 0) {
                 execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
                 return Rejection::collision;
             }
         }
-        if (execution_.aero && !is_flyable(model_, pose_of(state))) {
+        if (execution_.aero && !is_flyable(model_, pose)) {
             return Rejection::flyable_area;
         }
         return Rejection::none;
@@ -107,7 +117,8 @@ class Recorder {
  private:
     const FlightModel& model_;
     const PlantModel& plant_;
-    const Factor& factor_;
+    const FlownWorld* world_;
+    simulation::WorldSurroundings<double, Factor, Ceiling> surroundings_;
     Execution& execution_;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
@@ -173,16 +184,17 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
     }
 }
 
-template <class Factor>
+template <class Factor, class Ceiling>
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                       std::span<const Goal> goals, bool aero, const Factor& factor) {
+                       std::span<const Goal> goals, bool aero, const FlightWorld& in, Factor factor, Ceiling ceiling) {
+    const FlownWorld* const world = flown_world(model, in.world);
     Execution execution;
     execution.aero = aero;
     execution.rotor_count = model.tick().plant.rotor_count;
     execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
     execution.min_clearance_m = std::numeric_limits<double>::infinity();
 
-    Recorder<Factor> recorder(model, factor, execution);
+    Recorder<Factor, Ceiling> recorder(model, world, factor, ceiling, execution);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
     Rejection rejection = recorder.judge(state, reference);
@@ -191,16 +203,19 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         if (rejection != Rejection::none) {
             break;
         }
-        rejection = simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state,
-                                          [&](const FlightState& before, const ReferencePoint& at, const Given& given,
-                                              const FlightState& next, const ReferencePoint& next_reference) {
-                                              reference = next_reference;
-                                              return recorder.after_tick(before, at, given, next, next_reference);
-                                          });
+        const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
+                               const FlightState& next, const ReferencePoint& next_reference) {
+            reference = next_reference;
+            return recorder.after_tick(before, at, given, next, next_reference);
+        };
+        rejection = world == nullptr
+                        ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state, after)
+                        : simulation::fly_ticks(model.tick(), *world, in.first_tick + recorder.ticks(), segment, factor,
+                                                ceiling, dynamics::RefinedStep{}, state, after);
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     Given given{};
-    static_cast<void>(simulation::tick(model.tick(), state, reference, factor, given));
+    static_cast<void>(simulation::nominal_tick(model, state, reference, factor, given));
     recorder.add_row(state, reference, given);
 
     execution.outcome = outcome_of(rejection);
@@ -208,6 +223,18 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.duration_s = execution.rows.back().t_s;
     judge_goals(model, goals, hold_ends(model, knots, goals), execution);
     return execution;
+}
+
+/// Calls fly(effect, effect of ceilings) with what acts on the rotors.
+template <class Fly>
+auto with_effects(const FlightModel& model, bool aero, const FlightWorld& in, const Fly& fly) {
+    if (!aero || !model.has_effects()) {
+        return fly(simulation::NoEffect{}, simulation::NoEffect{});
+    }
+    if (in.ceiling != nullptr && in.ceiling->model != nullptr) {
+        return fly(simulation::DirectFactor{model}, simulation::DirectFactor{*in.ceiling->model});
+    }
+    return fly(simulation::DirectFactor{model}, simulation::NoEffect{});
 }
 
 }  // namespace
@@ -227,12 +254,36 @@ bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& st
 }
 
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                  std::span<const Goal> goals, bool aero) {
+                  std::span<const Goal> goals, bool aero, const FlightWorld& in) {
     assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
-    if (aero && model.has_effects()) {
-        return execute_with(model, start, knots, goals, true, simulation::DirectFactor{model});
+    return with_effects(model, aero, in, [&](auto effect, auto ceiling) {
+        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, effect, ceiling);
+    });
+}
+
+std::optional<FlightState> hovering_start(const FlightModel& model, const FlightState& start, bool aero,
+                                          const FlightWorld& in) {
+    const double* q = start.plant.q;
+    const ReferencePoint here = at_rest({q[0], q[1], q[3]});
+    const double tick_s = model.tick().tick_s;
+    const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
+    const FlownWorld& world = in.world != nullptr ? *in.world : model.nominal_world();
+    const FlownWorld quiet = without_noise(world);
+    FlightState state = start;
+    state.world = memory_at_start(quiet, start.plant);
+    const Rejection rejection = with_effects(model, aero, in, [&](auto effect, auto ceiling) {
+        return simulation::fly_ticks(model.tick(), quiet, 0, hover, effect, ceiling, dynamics::OneStep{}, state,
+                                     [&](const FlightState&, const ReferencePoint&, const Given&,
+                                         const FlightState& next, const ReferencePoint& reference) {
+                                         return is_stable(next, reference) ? Rejection::none : Rejection::unstable;
+                                     });
+    });
+    if (rejection != Rejection::none) {
+        return std::nullopt;
     }
-    return execute_with(model, start, knots, goals, false, simulation::NoEffect{});
+    state.plant.energy_j = start.plant.energy_j;
+    state.world = memory_at_start(world, state.plant);
+    return state;
 }
 
 }  // namespace downwash

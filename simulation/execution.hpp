@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -67,9 +68,10 @@ struct Execution : FlightSums {
 /// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold
 /// apart
 /// @param aero false flies as if there were no surface effects (and no flyable area)
+/// @param in the world of the flight; of its ceiling part only the model is asked
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
                                                 const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,
-                                                bool aero);
+                                                bool aero, const FlightWorld& in = {});
 
 /// The same for one goal.
 [[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,
@@ -83,5 +85,15 @@ struct Execution : FlightSums {
 
 /// Whether a vehicle meets the goal at this instant: within tolerance and slow enough.
 [[nodiscard]] DOWNWASH_EXPORT bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state);
+
+/// How long a vehicle has hovered at its start before a flight in a world begins [s].
+inline constexpr double settling_before_start_s = 20;
+
+/// The vehicle that has hovered at its start in a world until its controller has settled, without noise and gusts, with
+/// surface effects evaluated directly. Empty if it does not stay stable there.
+/// @param start at rest, as believed   @param aero as for execute()
+[[nodiscard]] DOWNWASH_EXPORT std::optional<FlightState> hovering_start(const FlightModel& model,
+                                                                        const FlightState& start, bool aero,
+                                                                        const FlightWorld& in);
 
 }  // namespace downwash

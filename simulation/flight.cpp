@@ -15,43 +15,49 @@ constexpr std::int64_t ticks_between_questions = 4096;
 
 /// The rules, cheapest first.
 Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                      const simulation::RuleLimits& limits, const Given& given, const FlightState& before,
-                      const FlightState& state, const ReferencePoint& reference) {
+                      const simulation::RuleLimits& limits, const FlownWorld* world, const Given& given,
+                      const FlightState& before, const FlightState& state, const ReferencePoint& reference) {
     const double broken = simulation::broken_rule(limits, given.saturation, state, reference);
     if (broken > 0) {
         return static_cast<Rejection>(static_cast<int>(broken));
     }
-    if (map != nullptr && !simulation::is_flyable(model, *map, pose_of(state))) {
+    const PlanarPose pose = among_obstacles(pose_of(state), world);
+    if (map != nullptr && !simulation::is_flyable(model, *map, pose)) {
         return Rejection::flyable_area;
     }
-    if (model.collisions().is_nearer_than(pose_of(state), rules.margin_m) ||
-        simulation::comes_nearer_between(model, pose_of(before), pose_of(state), rules.margin_m)) {
+    if (model.collisions().is_nearer_than(pose, rules.margin_m) ||
+        simulation::comes_nearer_between(model, among_obstacles(pose_of(before), world), pose, rules.margin_m)) {
         return Rejection::collision;
     }
     return Rejection::none;
 }
 
-template <class Factor>
+template <class Factor, class Ceiling>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, Factor&& factor) {
+                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in, Factor&& factor,
+                       Ceiling&& ceiling) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
+    const FlownWorld* const world = flown_world(model, in.world);
     SegmentFlight flight;
-    flight.rejection = simulation::fly_ticks(
-        model.tick(), segment, factor, dynamics::OneStep{}, state,
-        [&](const FlightState& before, const ReferencePoint&, const Given& given, const FlightState& next,
-            const ReferencePoint& next_reference) {
-            ++flight.ticks;
-            if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
-                return Rejection::interrupted;
-            }
-            simulation::add_tick(flight, model.tick().plant, before, next);
-            const Rejection rejection = broken_rule(model, map, rules, limits, given, before, next, next_reference);
-            if (rejection == Rejection::none && rules.measures_clearance) {
-                flight.clearance_integral +=
-                    model.tick().tick_s * simulation::clearance_density(model.collisions().clearance_m(pose_of(next)));
-            }
-            return rejection;
-        });
+    const auto after = [&](const FlightState& before, const ReferencePoint&, const Given& given,
+                           const FlightState& next, const ReferencePoint& next_reference) {
+        ++flight.ticks;
+        if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
+            return Rejection::interrupted;
+        }
+        simulation::add_tick(flight, model.tick().plant, before, next);
+        const Rejection rejection = broken_rule(model, map, rules, limits, world, given, before, next, next_reference);
+        if (rejection == Rejection::none && rules.measures_clearance) {
+            flight.clearance_integral +=
+                model.tick().tick_s *
+                simulation::clearance_density(model.collisions().clearance_m(among_obstacles(pose_of(next), world)));
+        }
+        return rejection;
+    };
+    flight.rejection = world == nullptr
+                           ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::OneStep{}, state, after)
+                           : simulation::fly_ticks(model.tick(), *world, in.first_tick, segment, factor, ceiling,
+                                                   dynamics::OneStep{}, state, after);
     return flight;
 }
 
@@ -66,12 +72,17 @@ bool is_stable(const FlightState& state, const ReferencePoint& reference) {
 }
 
 SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                  const ReferenceSegment& segment, FlightState& state) {
+                  const ReferenceSegment& segment, FlightState& state, const FlightWorld& in) {
     if (map == nullptr) {
-        return fly_with(model, map, rules, segment, state, simulation::NoEffect{});
+        return fly_with(model, map, rules, segment, state, in, simulation::NoEffect{}, simulation::NoEffect{});
     }
-    return fly_with(model, map, rules, segment, state,
-                    simulation::MapEffect<double>(simulation::rotor_maps(model, *map)));
+    const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
+    simulation::MapEffect<double> effect(maps);
+    if (in.ceiling == nullptr || in.ceiling->map == nullptr) {
+        return fly_with(model, map, rules, segment, state, in, effect, simulation::NoEffect{});
+    }
+    const simulation::RotorMaps ceiling = simulation::rotor_maps(*in.ceiling->model, *in.ceiling->map);
+    return fly_with(model, map, rules, segment, state, in, effect, simulation::MapEffect<double>(ceiling));
 }
 
 }  // namespace downwash

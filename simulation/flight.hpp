@@ -58,7 +58,8 @@ struct SegmentFlight : FlightSums {
 /// @param map surface effects while planning; nullptr: no surface effects and no flyable area
 /// @param state vehicle at the beginning, replaced by the vehicle at the end, or where the flight was rejected
 [[nodiscard]] DOWNWASH_EXPORT SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                                                const ReferenceSegment& segment, FlightState& state);
+                                                const ReferenceSegment& segment, FlightState& state,
+                                                const FlightWorld& in = {});
 
 /// Distance of the vehicle from its reference in (x, z) [m].
 [[nodiscard]] DOWNWASH_EXPORT double tracking_error_m(const FlightState& state, const ReferencePoint& reference);

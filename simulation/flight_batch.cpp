@@ -12,6 +12,7 @@
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/flight_lane.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/noise.hpp"
 
 namespace downwash {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using simulation::FlightKernelModel;
 using simulation::FlightLane;
 using simulation::FlightLanes;
-using simulation::FlightWorld;
+using simulation::FlightSetting;
 using simulation::lane_count;
 
 constexpr int max_ticks_per_call = 1024;
@@ -45,23 +46,28 @@ Kernels kernels_for(Instructions instructions, std::size_t law) {
     return {simulation::baseline_kernel(law), simulation::baseline_kernel(law)};
 }
 
-FlightKernelModel make_kernel_model(const FlightWorld& world) {
-    const simulation::TickModel& tick = world.model.tick();
+FlightKernelModel make_kernel_model(const FlightSetting& setting, const CeilingPart* ceiling) {
+    const simulation::TickModel& tick = setting.model.tick();
     const PlantModel& plant = tick.plant;
     FlightKernelModel kernel{};
     kernel.tick = &tick;
     kernel.law = std::visit([](const auto& law) { return static_cast<const void*>(&law); }, tick.law);
-    kernel.limits = simulation::rule_limits(world.rules, world.model.robot().arm);
-    kernel.reach = simulation::motion_reach(world.model);
+    kernel.limits = simulation::rule_limits(setting.rules, setting.model.robot().arm);
+    kernel.reach = simulation::motion_reach(setting.model);
     for (int i = 0; i < plant.rotor_count; ++i) {
         const double hub_m =
             std::sqrt(plant.rotor_x_m[i] * plant.rotor_x_m[i] + plant.rotor_z_m[i] * plant.rotor_z_m[i]);
         kernel.reach.body_m = std::max(kernel.reach.body_m, hub_m);
     }
-    kernel.has_map = world.map != nullptr;
+    kernel.has_map = setting.map != nullptr;
     if (kernel.has_map) {
-        kernel.maps = simulation::rotor_maps(world.model, *world.map);
+        kernel.maps = simulation::rotor_maps(setting.model, *setting.map);
     }
+    kernel.has_ceiling_map = kernel.has_map && ceiling != nullptr && ceiling->map != nullptr;
+    if (kernel.has_ceiling_map) {
+        kernel.ceiling_maps = simulation::rotor_maps(*ceiling->model, *ceiling->map);
+    }
+    kernel.normal_levels = simulation::normal_levels();
     return kernel;
 }
 
@@ -86,10 +92,10 @@ std::span<const Instructions> known_instructions() noexcept {
 
 struct FlightPool::Impl {
     Impl(const FlightModel& model, const AeroMap* map, FlightRules the_rules, const Goal* goal,
-         Instructions instructions)
+         Instructions instructions, const CeilingPart* ceiling)
         : rules(std::move(the_rules)),
-          world{model, map, rules, goal},
-          kernel_model(make_kernel_model(world)),
+          setting{model, map, rules, goal},
+          kernel_model(make_kernel_model(setting, ceiling)),
           kernels(kernels_for(instructions, model.tick().law.index())) {}
 
     /// Flies jobs until none is left. Several threads may call it at once.
@@ -98,7 +104,7 @@ struct FlightPool::Impl {
         std::vector<FlightLane> flights;
         flights.reserve(lane_count);
         for (int i = 0; i < lane_count; ++i) {
-            flights.emplace_back(world, lanes, i);
+            flights.emplace_back(setting, lanes, i);
         }
         for (;;) {
             for (FlightLane& lane : std::span(flights).first(lanes_used)) {
@@ -169,7 +175,7 @@ struct FlightPool::Impl {
     }
 
     FlightRules rules;
-    FlightWorld world;
+    FlightSetting setting;
     FlightKernelModel kernel_model;
     Kernels kernels;
 
@@ -188,8 +194,8 @@ struct FlightPool::Impl {
 };
 
 FlightPool::FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
-                       Instructions instructions)
-    : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions)) {
+                       Instructions instructions, const CeilingPart* ceiling)
+    : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions, ceiling)) {
     for (int i = 1; i < threads; ++i) {
         impl_->others.emplace_back([impl = impl_.get(), i] { impl->stand_by(static_cast<std::size_t>(i)); });
     }
@@ -217,6 +223,12 @@ void FlightPool::fly(std::span<FlightJob> jobs) {
     Impl& pool = *impl_;
     pool.jobs = jobs;
     pool.next_job = 0;
+    const auto world_of = [&](const FlightJob& job) { return flown_world(pool.setting.model, job.world); };
+    pool.kernel_model.is_in_worlds =
+        std::any_of(jobs.begin(), jobs.end(), [&](const FlightJob& job) { return world_of(job) != nullptr; });
+    pool.kernel_model.has_noise = std::any_of(jobs.begin(), jobs.end(), [&](const FlightJob& job) {
+        return world_of(job) != nullptr && world_of(job)->has_noise;
+    });
     // One lane takes as long as two: two flights are not worth waking other threads.
     const std::size_t helpers = jobs.size() <= 2 ? 0 : pool.allowed.load();
     pool.lanes_used = std::clamp<std::size_t>((jobs.size() + helpers) / (helpers + 1), 1, lane_count);

@@ -24,6 +24,9 @@ struct FlightJob {
     /// The vehicle must meet the goal in this many last ticks of the last leg, and in the state before them. Otherwise
     /// the flight is rejected as goal_missed. 0: no goal.
     std::int64_t judged_ticks = 0;
+    /// In which it is flown; nullptr: the nominal one. Must outlive the flight.
+    const FlownWorld* world = nullptr;
+    std::int64_t first_tick = 0;  ///< see FlightWorld
 
     /// The leg on which the flight ended early; nullptr when it did not.
     [[nodiscard]] DOWNWASH_EXPORT const FlightLeg* rejected_leg() const noexcept;
@@ -57,9 +60,10 @@ class DOWNWASH_EXPORT FlightPool {
     /// @param map,rules as for fly(); all threads call rules.is_over
     /// @param goal of jobs with judged_ticks; may be nullptr when there are none
     /// @param threads at least 1, the calling one included; the others wait between batches
+    /// @param ceiling of jobs in worlds; see FlightWorld
     /// @pre model, map and goal outlive the pool, and the processor has the `instructions`
     FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads = 1,
-               Instructions instructions = best_instructions());
+               Instructions instructions = best_instructions(), const CeilingPart* ceiling = nullptr);
     ~FlightPool();
     FlightPool(const FlightPool&) = delete;
     FlightPool& operator=(const FlightPool&) = delete;

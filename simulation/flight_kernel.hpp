@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/map_effect.hpp"
@@ -20,7 +21,10 @@ using LaneRows = double[sizeof(Struct) / sizeof(double)][lane_count];
 /// Everything about the edges that changes, as structure of arrays; [..][lane].
 struct alignas(64) FlightLanes {
     LaneRows<State<double>> state;
-    LaneRows<ReferencePoint> reference;  ///< at the current tick
+    LaneRows<WorldNumbers<double>> world;  ///< unused where no flight is in a world
+    std::uint64_t tape[lane_count];        ///< of its noise
+    double first_tick[lane_count];         ///< of the segment, from the start of the whole flight
+    LaneRows<ReferencePoint> reference;    ///< at the current tick
 
     // The segment that is flown.
     double coefficient[3][6][lane_count];
@@ -52,6 +56,11 @@ struct FlightKernelModel {
     MotionReach reach;  ///< with hubs as part of the body
     bool has_map;
     RotorMaps maps;
+    bool is_in_worlds;     ///< some flight needs what WorldNumbers says
+    bool has_noise;        ///< some world has
+    bool has_ceiling_map;  ///< see CeilingPart
+    RotorMaps ceiling_maps;
+    const float* normal_levels;
 };
 
 /// Flies all lanes tick by tick until an active one breaks a rule, is unclear, or is at the end of its segment, or

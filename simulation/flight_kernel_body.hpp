@@ -7,6 +7,7 @@
 //
 #include "downwash/controllers/quintic.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
+#include "downwash/simulation/noise.hpp"
 
 namespace downwash::simulation {
 inline namespace {  // NOLINT(google-build-namespaces)
@@ -17,13 +18,15 @@ using lane::PackMask;
 static_assert(lane_count % lane::pack_width == 0);
 
 /// 0 where every hub is in a cell that is flyable throughout.
+/// @param scene_x_m,scene_z_m where the surfaces are, from where the map has them
 template <class Effect>
-Pack flyable_doubt(const PlantModel& plant, const State<Pack>& state, const dynamics::Attitude<Pack>& a,
-                   Effect& effect) {
+Pack flyable_doubt(const PlantModel& plant, const State<Pack>& state, const dynamics::Attitude<Pack>& a, Pack scene_x_m,
+                   Pack scene_z_m, Effect& effect) {
     Pack doubt(0);
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
         if (effect.same_as(rotor) == rotor) {
-            const auto hub = dynamics::rotor_position(plant, a, state.plant.q[0], state.plant.q[1], rotor);
+            const auto hub =
+                dynamics::rotor_position(plant, a, state.plant.q[0] - scene_x_m, state.plant.q[1] - scene_z_m, rotor);
             doubt = lane::max(doubt, effect.doubt(rotor, hub.x, hub.z));
         }
     }
@@ -57,6 +60,9 @@ struct LaneGroup {
     }
 };
 
+/// Stands for the effect of ceilings where no flight is in a world.
+struct NoWorlds {};
+
 /// The coordinates (x, z, pitch, arm) of every lane.
 struct Coordinates {
     Pack q[4];
@@ -81,8 +87,22 @@ inline BasicReferencePoint<Pack> reference_at(const LaneGroup& group, Pack tick,
     return any(is_end) ? select_each(is_end, group.load<BasicReferencePoint<Pack>>(lanes.end), reference) : reference;
 }
 
-template <class Law, class Effect>
-void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect) {
+/// The standard normal numbers that the lanes' worlds draw for a tick.
+inline void draw_noises(const FlightKernelModel& model, const LaneGroup& group, Pack tick, Pack noise[noise_count]) {
+    alignas(sizeof(Pack)) double numbers[noise_count][lane::pack_width];
+    for (int lane = 0; lane < lane::pack_width; ++lane) {
+        draw_noise(model.normal_levels, group.lanes.tape[group.first + lane],
+                   static_cast<std::int64_t>(lane::number_in(tick, lane)), &numbers[0][lane], lane::pack_width);
+    }
+    for (int i = 0; i < noise_count; ++i) {
+        noise[i] = lane::load<Pack>(numbers[i]);
+    }
+}
+
+/// @tparam Ceiling see WorldSurroundings, or NoWorlds
+template <class Law, class Effect, class Ceiling>
+void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect, Ceiling ceiling) {
+    constexpr bool is_in_worlds = !std::is_same_v<Ceiling, NoWorlds>;
     FlightLanes& lanes = group.lanes;
     const PackMask is_active = group.load(lanes.is_active) > Pack(0);
     if (!any(is_active)) {
@@ -103,9 +123,24 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     const Pack max_speed_m_s = group.load(lanes.max_speed_m_s);
     const Pack ticks = group.load(lanes.ticks);
     dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
+    WorldNumbers<Pack> world;
+    Pack noise[noise_count] = {};
+    Pack first_tick;
+    if constexpr (is_in_worlds) {
+        world = group.load<WorldNumbers<Pack>>(lanes.world);
+        first_tick = group.load(lanes.first_tick);
+    }
     for (int n = 0; n < max_ticks; ++n) {
         controllers::Actuation<Pack> given;
-        const State<Pack> next = tick(*model.tick, law, state, motion, reference, effect, given);
+        State<Pack> next;
+        if constexpr (is_in_worlds) {
+            if (model.has_noise) {
+                draw_noises(model, group, first_tick + tick_count, noise);
+            }
+            next = tick_in_world(*model.tick, law, world, noise, state, reference, effect, ceiling, given);
+        } else {
+            next = tick(*model.tick, law, state, motion, reference, effect, given);
+        }
         tick_count = tick_count + Pack(1);
         reference = reference_at(group, tick_count, Pack(model.tick->tick_s));
         add_tick(sums, plant, state, next);
@@ -113,7 +148,11 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
             before.q[i] = state.plant.q[i];
         }
         state = next;
-        motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
+        if constexpr (is_in_worlds) {
+            motion.attitude = dynamics::attitude(plant, state.plant.q[2], state.plant.q[3]);
+        } else {
+            motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
+        }
         rejection = broken_rule(model.limits, given.saturation, state, reference);
         const Pack* u = state.plant.u;
         const PackMask is_slow = lane::sqrt(u[0] * u[0] + u[1] * u[1]) < max_speed_m_s;
@@ -121,7 +160,13 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
             (motion_m(model.reach, anchor.q, state.plant.q) > free_motion_m) | (tick_count >= look_tick);
         unclear = select(is_due | !is_slow, Pack(1), Pack(0));
         if constexpr (requires { effect.doubt(0, u[0], u[0]); }) {
-            unclear = lane::max(unclear, flyable_doubt(plant, state, motion.attitude, effect));
+            Pack scene_x_m(0);
+            Pack scene_z_m(0);
+            if constexpr (is_in_worlds) {
+                scene_x_m = world.scene_x_m;
+                scene_z_m = world.scene_z_m;
+            }
+            unclear = lane::max(unclear, flyable_doubt(plant, state, motion.attitude, scene_x_m, scene_z_m, effect));
         }
         if (any(is_active & ((rejection > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
             break;
@@ -146,10 +191,17 @@ template <class Law>
 void
 fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
     for (int first = 0; first < lane_count; first += lane::pack_width) {
-        if (model.has_map) {
-            fly_group<Law>(model, {lanes, first}, max_ticks, MapEffect<Pack>(model.maps));
+        const LaneGroup group{lanes, first};
+        if (!model.is_in_worlds && model.has_map) {
+            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), NoWorlds{});
+        } else if (!model.is_in_worlds) {
+            fly_group<Law>(model, group, max_ticks, NoEffect{}, NoWorlds{});
+        } else if (model.has_ceiling_map) {
+            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), MapEffect<Pack>(model.ceiling_maps));
+        } else if (model.has_map) {
+            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), NoEffect{});
         } else {
-            fly_group<Law>(model, {lanes, first}, max_ticks, NoEffect{});
+            fly_group<Law>(model, group, max_ticks, NoEffect{}, NoEffect{});
         }
     }
 }

@@ -24,7 +24,7 @@ inline constexpr int no_free_motion = 3;
 inline constexpr double clearance_error_m = 1e-7;
 
 /// What the flights of a batch have in common.
-struct FlightWorld {
+struct FlightSetting {
     const FlightModel& model;
     const AeroMap* map;
     const FlightRules& rules;
@@ -34,8 +34,8 @@ struct FlightWorld {
 /// The flight of one job in one lane.
 class FlightLane {
  public:
-    FlightLane(const FlightWorld& world, FlightLanes& lanes, int number)
-        : world_(&world), lanes_(&lanes), number_(number) {}
+    FlightLane(const FlightSetting& setting, FlightLanes& lanes, int number)
+        : setting_(&setting), lanes_(&lanes), number_(number) {}
 
     [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
 
@@ -43,7 +43,11 @@ class FlightLane {
     void begin(FlightJob& job) {
         job_ = &job;
         leg_ = 0;
+        world_ = flown_world(setting_->model, job.world);
+        first_tick_ = job.first_tick;
         write(job.start, lanes_->state);
+        write((world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers, lanes_->world);
+        lanes_->tape[number_] = world_ != nullptr ? world_->world.tape : 0;
         lanes_->is_active[number_] = 1;
         level_ = 0;
         look_after_every_tick();
@@ -61,6 +65,8 @@ class FlightLane {
         copy_numbers(other);
         job_ = std::exchange(other.job_, nullptr);
         leg_ = other.leg_;
+        world_ = other.world_;
+        first_tick_ = other.first_tick_;
         level_ = other.level_;
         lanes_->is_active[other.number_] = 0;
     }
@@ -112,7 +118,7 @@ class FlightLane {
     }
     [[nodiscard]] FlightState state() const noexcept { return read<FlightState>(lanes_->state); }
 
-    [[nodiscard]] const PlantModel& plant() const noexcept { return world_->model.tick().plant; }
+    [[nodiscard]] const PlantModel& plant() const noexcept { return setting_->model.tick().plant; }
 
     void begin_leg() {
         const ReferenceSegment& segment = job_->legs[leg_].segment;
@@ -125,6 +131,7 @@ class FlightLane {
         }
         lanes_->inverse_duration_1_s[number_] = segment.inverse_duration_1_s();
         lanes_->tick[number_] = 0;
+        lanes_->first_tick[number_] = static_cast<double>(first_tick_);
         lanes_->ticks[number_] = static_cast<double>(segment.ticks());
         write(FlightSums{}, lanes_->sums);
         lanes_->look_tick[number_] =
@@ -151,11 +158,11 @@ class FlightLane {
     /// that it surely still meets the goal.
     Rejection goal_rejection() {
         const FlightState now = state();
-        if (!meets_goal(*world_->goal, plant(), now)) {
+        if (!meets_goal(*setting_->goal, plant(), now)) {
             return Rejection::goal_missed;
         }
         const double motion_m =
-            motion_within_goal_m(*world_->goal, plant(), pose_of(now), world_->model.collisions().body_reach_m());
+            motion_within_goal_m(*setting_->goal, plant(), pose_of(now), setting_->model.collisions().body_reach_m());
         lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
         lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;
@@ -166,33 +173,35 @@ class FlightLane {
 
     /// Flyable area and collision at the state of now; how far the robot may move until the next look.
     Rejection rejection_nearby() {
-        const PlanarPose pose = pose_of(state());
-        if (world_->map != nullptr && !is_flyable(world_->model, *world_->map, pose)) {
+        const PlanarPose pose = among_obstacles(pose_of(state()), world_);
+        if (setting_->map != nullptr && !is_flyable(setting_->model, *setting_->map, pose)) {
             return Rejection::flyable_area;
         }
-        const CollisionChecker& collisions = world_->model.collisions();
+        const CollisionChecker& collisions = setting_->model.collisions();
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
-        if (comes_nearer_between(world_->model, read<PlanarPose>(lanes_->before), pose, world_->rules.margin_m)) {
+        if (comes_nearer_between(setting_->model, among_obstacles(read<PlanarPose>(lanes_->before), world_), pose,
+                                 setting_->rules.margin_m)) {
             return Rejection::collision;
         }
-        if (world_->rules.measures_clearance || !find_free_motion(pose)) {
+        if (setting_->rules.measures_clearance || !find_free_motion(pose)) {
             look_after_every_tick();
-            if (collisions.is_nearer_than(pose, world_->rules.margin_m)) {
+            if (collisions.is_nearer_than(pose, setting_->rules.margin_m)) {
                 return Rejection::collision;
             }
         }
-        if (world_->rules.measures_clearance) {
+        if (setting_->rules.measures_clearance) {
             SegmentFlight& flight = job_->legs[leg_].flight;
-            flight.clearance_integral += world_->model.tick().tick_s * clearance_density(collisions.clearance_m(pose));
+            flight.clearance_integral +=
+                setting_->model.tick().tick_s * clearance_density(collisions.clearance_m(pose));
         }
         return Rejection::none;
     }
 
     bool find_free_motion(const PlanarPose& pose) {
         for (int level = std::max(0, level_ - 1); level < no_free_motion; ++level) {
-            if (!world_->model.collisions().is_nearer_than(pose, world_->rules.margin_m + free_motions_m[level])) {
+            if (!setting_->model.collisions().is_nearer_than(pose, setting_->rules.margin_m + free_motions_m[level])) {
                 level_ = level;
-                write(pose, lanes_->anchor);
+                write(pose_of(state()), lanes_->anchor);
                 lanes_->free_motion_m[number_] = free_motions_m[level] - clearance_error_m;
                 return true;
             }
@@ -205,6 +214,7 @@ class FlightLane {
         FlightLeg& leg = job_->legs[leg_];
         leg.flight.rejection = rejection;
         leg.end = state();
+        first_tick_ += leg.flight.ticks;
         if (rejection == Rejection::none && ++leg_ < job_->legs.size()) {
             begin_leg();
             return;
@@ -213,11 +223,13 @@ class FlightLane {
         lanes_->is_active[number_] = 0;
     }
 
-    const FlightWorld* world_;
+    const FlightSetting* setting_;
     FlightLanes* lanes_;
     int number_;
     FlightJob* job_ = nullptr;
     std::size_t leg_ = 0;
+    const FlownWorld* world_ = nullptr;
+    std::int64_t first_tick_ = 0;
     int level_ = 0;  ///< of the free motion found last
 };
 

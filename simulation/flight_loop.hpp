@@ -4,6 +4,7 @@
 
 #include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/map_effect.hpp"
+#include "downwash/simulation/noise.hpp"
 
 // What planning and execution share: the loop over the ticks of a segment and the sources of surface effects.
 
@@ -40,6 +41,52 @@ inline bool is_flyable(const FlightModel& model, const AeroMap& map, const Plana
     return all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
         return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
     });
+}
+
+/// One tick of a vehicle in the nominal world, whether or not its controller sees late.
+/// @param factor,integrate see tick()
+template <class Factor, class Integrate = dynamics::OneStep>
+FlightState nominal_tick(const FlightModel& model, const FlightState& state, const ReferencePoint& reference,
+                         Factor&& factor, controllers::Actuation<double>& given, const Integrate& integrate = {}) {
+    if (model.sees_at_once()) {
+        return tick(model.tick(), state, reference, factor, given, integrate);
+    }
+    const double no_noise[noise_count] = {};
+    NoEffect ceiling;
+    return std::visit(
+        [&](const auto& law) {
+            return tick_in_world(model.tick(), law, model.nominal_world().numbers, no_noise, state, reference, factor,
+                                 ceiling, given, integrate);
+        },
+        model.tick().law);
+}
+
+/// Flies a segment in a world, tick by tick, until `after` finds a reason to end the flight.
+/// @param ceiling see WorldSurroundings   @param others as for fly_ticks() without a world
+template <class Factor, class Ceiling, class Integrate, class After>
+Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_t first_tick,
+                    const ReferenceSegment& segment, Factor&& factor, Ceiling&& ceiling, const Integrate& integrate,
+                    FlightState& state, After&& after) {
+    return std::visit(
+        [&](const auto& law) {
+            ReferencePoint reference = segment.from();
+            Rejection rejection = Rejection::none;
+            double noise[noise_count] = {};
+            for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
+                if (world.has_noise) {
+                    draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
+                }
+                controllers::Actuation<double> given{};
+                const FlightState next = tick_in_world(model, law, world.numbers, noise, state, reference, factor,
+                                                       ceiling, given, integrate);
+                const ReferencePoint next_reference = segment.at_tick(t + 1);
+                rejection = after(state, reference, given, next, next_reference);
+                state = next;
+                reference = next_reference;
+            }
+            return rejection;
+        },
+        model.law);
 }
 
 /// Flies a segment tick by tick until `after` finds a reason to end the flight.

@@ -27,8 +27,10 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
                          const AeroSettings& aero)
     : robot_(robot),
       plane_(plane),
+      scene_(scene),
       tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)), robot.controller.law,
             1 / robot.controller.rate_hz},
+      nominal_world_(make_world(robot, {})),
       collisions_(scene, plane, robot.shape()) {
     EffectLayers effects = effect_layers(robot.rotors, scene, aero);
     layers_ = std::move(effects.layers);
@@ -39,6 +41,16 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
                                                      const std::function<void(double)>& on_progress,
                                                      const std::filesystem::path& cache) const {
     return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
+}
+
+std::shared_ptr<const FlightModel> FlightModel::ceilings_only() const {
+    AeroSettings aero = layers_.front().effect->settings();
+    if (!aero.enabled || aero.map || aero.ceiling.model == EffectModel::none) {
+        return nullptr;
+    }
+    aero.ground = {};
+    aero.ground.model = EffectModel::none;
+    return std::make_shared<const FlightModel>(robot_, plane_, scene_, aero);
 }
 
 Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
@@ -98,6 +110,7 @@ FlightState FlightModel::state_at(const PlanarPose& pose, const double (&u)[4]) 
     for (int i = 0; i < plant.rotor_count; ++i) {
         state.plant.thrust_n[i] = plant.force_share[i] * plant.total_mass_kg * standard_gravity_m_s2;
     }
+    state.world = memory_at_start(nominal_world_, state.plant);
     return state;
 }
 

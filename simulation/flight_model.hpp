@@ -11,6 +11,7 @@
 #include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/world.hpp"
 
 namespace downwash {
 
@@ -27,6 +28,10 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const Robot& robot() const noexcept { return robot_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const simulation::TickModel& tick() const noexcept { return tick_; }
+    /// The world in which everything is as believed.
+    [[nodiscard]] const FlownWorld& nominal_world() const noexcept { return nominal_world_; }
+    /// Whether the controller sees the state at once: then tick() is the tick of the nominal world.
+    [[nodiscard]] bool sees_at_once() const noexcept { return robot_.controller.delay_s == 0; }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
     /// The surface effect on rotor i, or on tick().plant.body() (see rotor_wrench).
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
@@ -36,6 +41,9 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     /// Number of its layer in the aero map, from 0.
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
+    /// The same vehicle, on which only surfaces above its rotors act; nullptr where none do, or where a given map does
+    /// not tell what comes from where.
+    [[nodiscard]] std::shared_ptr<const FlightModel> ceilings_only() const;
     /// Whether surfaces act on the rotors at all.
     [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
     /// K evaluated exactly at a hub in plane coordinates.
@@ -56,11 +64,40 @@ class DOWNWASH_EXPORT FlightModel {
  private:
     Robot robot_;
     PlaneOfMotion plane_;
+    std::shared_ptr<const Scene> scene_;
     simulation::TickModel tick_;
+    FlownWorld nominal_world_;
     CollisionChecker collisions_;
     std::vector<MapLayer> layers_;
     std::size_t rotor_layer_[max_rotors + 1] = {};
 };
+
+/// The part of the surface effects that comes from above, which worlds scale apart from the rest.
+struct CeilingPart {
+    std::shared_ptr<const FlightModel> model;  ///< FlightModel::ceilings_only(); may be nullptr
+    std::shared_ptr<const AeroMap> map;        ///< its map, for flights through a map
+};
+
+/// The world of a flight.
+struct FlightWorld {
+    const FlownWorld* world = nullptr;     ///< nullptr: the nominal one
+    const CeilingPart* ceiling = nullptr;  ///< nullptr: all effects count as those of the ground
+    std::int64_t first_tick = 0;           ///< control tick, from the start of the whole flight, with which it begins
+};
+
+/// The world in which to fly tick by tick; nullptr where that is the nominal one and the plain tick does.
+[[nodiscard]] inline const FlownWorld* flown_world(const FlightModel& model, const FlownWorld* world) noexcept {
+    return world != nullptr || model.sees_at_once() ? world : &model.nominal_world();
+}
+
+/// A pose as the obstacles of a world see it.
+[[nodiscard]] inline PlanarPose among_obstacles(PlanarPose pose, const FlownWorld* world) noexcept {
+    if (world != nullptr) {
+        pose.x_m -= world->world.scene_x_m;
+        pose.z_m -= world->world.scene_z_m;
+    }
+    return pose;
+}
 
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
 [[nodiscard]] DOWNWASH_EXPORT Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds);

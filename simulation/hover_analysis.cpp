@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "downwash/base/portable_math.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_trim.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
@@ -28,36 +29,18 @@ constexpr int state_numbers = number_count<double, FlightState>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Natural logarithm to some 1e-15, the same on every machine. @param x >= 0, perhaps infinite
-double natural_log(double x) {
-    if (!(x > 0 && x < infinity)) {
-        return x > 0 ? infinity : -infinity;
-    }
-    double halvings = 1;
-    while (x > 1.5 || x < 0.6) {
-        x = std::sqrt(x);
-        halvings *= 2;
-    }
-    const double t = (x - 1) / (x + 1);  // |t| <= 0.25
-    double sum = 0;
-    for (int k = 25; k >= 1; k -= 2) {
-        sum = sum * t * t + 1.0 / k;
-    }
-    return 2 * halvings * t * sum;
-}
-
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_numbers, state_numbers>;
 
 /// Of one tick at its fixed point, by central differences of those numbers of the state that feed back. The effect is
 /// linear already, so that the step may be small: 1e-6 leaves an error of some 1e-10.
-Jacobian jacobian(const TickModel& model, const HoverTrim& trim, const LinearEffect& effect) {
+Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, const LinearEffect& effect) {
     constexpr double step = 1e-6;
     const auto feeds_back = [&](int i) { return number_at<bool>(trim.feeds_back, i); };
     const auto after_change = [&](int i, double change) {
         FlightState state = trim.state;
         set_number_at(state, i, number_at<double>(state, i) + change);
         controllers::Actuation<double> given{};
-        return simulation::tick(model, state, trim.reference, effect, given);
+        return simulation::nominal_tick(model, state, trim.reference, effect, given);
     };
     Jacobian result(state_numbers, state_numbers);
     int columns = 0;
@@ -191,7 +174,7 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
         return analysis;
     }
     find_stiffness(tick, analysis.trim, effect, analysis.stability);
-    find_modes(jacobian(tick, analysis.trim, effect), tick.tick_s, analysis.stability);
+    find_modes(jacobian(model, analysis.trim, effect), tick.tick_s, analysis.stability);
     if (!(analysis.stability.spectral_radius < 1 - radius_slack)) {
         analysis.verdict = HoldVerdict::unstable;
     } else {

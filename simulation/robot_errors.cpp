@@ -7,6 +7,7 @@
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/world_numbers.hpp"
 
 namespace downwash {
 namespace {
@@ -153,7 +154,16 @@ std::vector<KeyError> too_short_lag(const Robot& robot) {
                                            rounded(least_s) + " s"}};
 }
 
-const std::array<Check<Robot>, 12> checks{{
+std::vector<KeyError> too_long_delay(const Robot& robot) {
+    if (robot.controller.delay_s * robot.controller.rate_hz <= simulation::max_delay_ticks) {
+        return {};
+    }
+    return {{"controller.delay_s", "is " + to_text(robot.controller.delay_s) + ": expected at most " +
+                                       std::to_string(simulation::max_delay_ticks) + " control ticks, " +
+                                       rounded(simulation::max_delay_ticks / robot.controller.rate_hz) + " s"}};
+}
+
+const std::array<Check<Robot>, 13> checks{{
     {{"multirotor.body"}, missing_bodies},
     {{"multirotor.body"}, shapeless_cylinders},
     {{"rotors.positions_m", "rotors.radius_m"}, unusable_rotor_layout},
@@ -163,6 +173,7 @@ const std::array<Check<Robot>, 12> checks{{
     {{"multirotor.pitch_inertia_kg_m2", "multirotor.mass_kg", "rotors.positions_m", "rotors.radius_m"},
      impossible_inertia},
     {{"rotors.time_constant_s", "controller.rate_hz"}, too_short_lag},
+    {{"controller.delay_s", "controller.rate_hz"}, too_long_delay},
     {{"arm.inertia_kg_m2", "arm.mass_kg", "arm.length_m", "arm.radius_m"}, impossible_arm_inertia},
     {{"arm.center_of_mass_m", "arm.length_m"}, outlying_center_of_mass},
     {{"arm.limits_deg"}, crossed_arm_limits},

@@ -23,6 +23,24 @@ Parameter<Robot> group(std::string_view path, std::string_view description) {
     return parameters::group<Robot>(path, description).is_required();
 }
 
+/// The keys of a drag; they may be left out.
+template <class Drag>
+void add_drag(Rows& rows, const std::string& of, std::string_view description, Drag drag) {
+    rows.push_back(parameters::group<Robot>(of + ".drag", description));
+    rows.push_back(
+        number(
+            of + ".drag.linear_n_s_m",
+            "force per speed through the air [N s/m]", [drag](auto& r) -> auto& { return drag(r).linear_n_s_m; })
+            .at_least(0)
+            .at_most(1e4));
+    rows.push_back(
+        number(
+            of + ".drag.quadratic_n_s2_m2",
+            "force per square of that speed [N s2/m2]", [drag](auto& r) -> auto& { return drag(r).quadratic_n_s2_m2; })
+            .at_least(0)
+            .at_most(1e4));
+}
+
 void add_multirotor(Rows& rows) {
     rows.push_back(group("multirotor", "the multirotor without its arm"));
     rows.push_back(number(
@@ -38,6 +56,9 @@ void add_multirotor(Rows& rows) {
                        .is_required()
                        .above(0)
                        .at_most(1e5));
+    add_drag(
+        rows, "multirotor", "air drag at its centre of mass; none where it is left out",
+        [](auto& r) -> auto& { return r.multirotor.drag; });
     rows.push_back(parameters::list<Robot>(
                        "multirotor.body", "solids that can touch obstacles, in the body frame",
                        [](auto& r) -> auto& { return r.body; })
@@ -151,6 +172,9 @@ void add_arm(Rows& rows) {
             .is_required()
             .above(0)
             .at_most(1e5));
+    add_drag(
+        rows, "arm", "air drag of the whole arm in a stream across it; none where it is left out",
+        [](auto& r) -> auto& { return r.arm.drag; });
 }
 
 /// Collects the keys that a control law describes.
@@ -254,6 +278,11 @@ void add_controller(Rows& rows) {
             "controller.rate_hz", "control ticks per second", [](auto& r) -> auto& { return r.controller.rate_hz; })
             .at_least(10)
             .at_most(1000));
+    rows.push_back(number(
+                       "controller.delay_s", "age of the state that the controller sees, at most three control ticks",
+                       [](auto& r) -> auto& { return r.controller.delay_s; })
+                       .at_least(0)
+                       .at_most(0.3));
     add_laws(rows, static_cast<const ControlLaw*>(nullptr));
 }
 

@@ -59,7 +59,7 @@ void mujoco_rk4(benchmark::State& state) {
         mj_resetData(world.model(), world.data());
         world.data()->qpos[3] = 1.5707963267948966;
         for (int i = 0; i < plant.rotor_count; ++i) {
-            world.data()->ctrl[i] = plant.force_share[i] * plant.total_mass_kg * standard_gravity_m_s2;
+            world.data()->ctrl[1 + i] = plant.force_share[i] * plant.total_mass_kg * standard_gravity_m_s2;
         }
         for (int i = 0; i < steps; ++i) {
             mj_step(world.model(), world.data());

@@ -46,8 +46,7 @@ void check_same_flight(const Robot& robot) {
         dynamics::allocate(plant, control.demand.thrust_n, control.demand.pitch_torque_nm, command.thrust_n);
         command.joint_torque_nm = controllers::joint_torque(plant, motion, control.demand.arm_acceleration,
                                                             control.demand.thrust_n, control.demand.pitch_torque_nm);
-        std::copy(command.thrust_n, command.thrust_n + plant.rotor_count, data->ctrl);
-        data->ctrl[plant.rotor_count] = command.joint_torque_nm;
+        world.command(command, plant.rotor_count);
         for (int i = 0; i < steps_per_tick; ++i) {
             state = dynamics::flight_step(plant, state, command, step_s, FreeAir{});
             mj_step(world.model(), data);

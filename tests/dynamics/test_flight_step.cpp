@@ -67,7 +67,7 @@ struct Invariants {
 struct Accelerations {
     double u[4];
     Accelerations(const PlantModel& model, const State& state, const Command& command) {
-        dynamics::accelerations(model, state.q, dynamics::motion_at(model, state.q, state.u), command.thrust_n,
+        dynamics::accelerations(model, state.q, state.u, dynamics::motion_at(model, state.q, state.u), command.thrust_n,
                                 command.joint_torque_nm, FreeAir{}, u);
     }
 };

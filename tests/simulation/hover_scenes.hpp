@@ -46,11 +46,13 @@ inline FlightRules rules_of(const Problem& problem) {
 
 /// The same flights one after the other, tick by tick.
 inline void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                           std::vector<FlightJob>& jobs) {
+                           std::vector<FlightJob>& jobs, const CeilingPart* ceiling = nullptr) {
     for (FlightJob& job : jobs) {
         FlightState state = job.start;
+        std::int64_t tick = job.first_tick;
         for (FlightLeg& leg : job.legs) {
-            leg.flight = fly(model, map, rules, leg.segment, state);
+            leg.flight = fly(model, map, rules, leg.segment, state, {job.world, ceiling, tick});
+            tick += leg.flight.ticks;
             leg.end = state;
             if (leg.flight.rejection != Rejection::none) {
                 break;

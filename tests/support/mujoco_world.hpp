@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cstring>
 #include <iomanip>
 #include <memory>
@@ -9,14 +10,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/world.hpp"
 
 namespace downwash::test {
 
-/// The robot as MJCF: two slides, a hinge for pitch, a hinge for the arm; a motor on each rotor's axis.
-inline std::string mjcf(const Robot& robot, double step_s) {
-    const double ia = robot.multirotor.pitch_inertia_kg_m2;
-    const double ib = robot.arm.inertia_kg_m2;
+/// The robot as MJCF: two slides, a hinge for pitch, a hinge for the arm; a motor on each rotor's axis, with its lag.
+/// @param world changes masses, inertias, centre of mass, thrust and lag, in MuJoCo's own terms
+inline std::string mjcf(const Robot& robot, double step_s, const World& world = {}) {
+    const double ia = robot.multirotor.pitch_inertia_kg_m2 * (1 + world.inertia_scale);
+    const double ib = robot.arm.inertia_kg_m2 * (1 + world.inertia_scale) * (1 + world.arm_mass_scale);
+    const double lag_s = robot.rotors.time_constant_s + world.rotor_time_constant_s;
     std::ostringstream xml;
     xml << std::setprecision(17);
     xml << "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
@@ -25,20 +28,27 @@ inline std::string mjcf(const Robot& robot, double step_s) {
         << "<worldbody><body name='multirotor'>"
         << "<joint name='x' type='slide' axis='1 0 0'/><joint name='z' type='slide' axis='0 0 1'/>"
         << "<joint name='pitch' type='hinge' axis='0 1 0'/>"
-        << "<inertial pos='0 0 0' mass='" << robot.multirotor.mass_kg << "' diaginertia='" << ia << ' ' << ia << ' '
-        << ia << "'/>";
+        << "<inertial pos='" << world.center_of_mass_x_m << " 0 " << world.center_of_mass_z_m << "' mass='"
+        << robot.multirotor.mass_kg * (1 + world.mass_scale) << "' diaginertia='" << ia << ' ' << ia << ' ' << ia
+        << "'/>";
     for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
         const auto& hub = robot.rotors.positions_m[i];
         xml << "<site name='rotor" << i << "' pos='" << hub[0] << ' ' << hub[1] << ' ' << hub[2] << "'/>";
     }
     xml << "<body name='arm' pos='" << robot.arm.joint_x_m << " 0 " << robot.arm.joint_z_m << "'>"
         << "<joint name='arm' type='hinge' axis='0 1 0'/>"
-        << "<inertial pos='" << robot.arm.center_of_mass_m << " 0 0' mass='" << robot.arm.mass_kg << "' diaginertia='"
-        << ib << ' ' << ib << ' ' << ib << "'/></body></body></worldbody><actuator>";
+        << "<inertial pos='" << robot.arm.center_of_mass_m << " 0 0' mass='"
+        << robot.arm.mass_kg * (1 + world.arm_mass_scale) << "' diaginertia='" << ib << ' ' << ib << ' ' << ib
+        << "'/></body></body></worldbody><actuator><motor joint='arm'/>";  // ones without a state first
     for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
-        xml << "<motor site='rotor" << i << "' gear='0 0 1 0 0 0'/>";
+        const double gear = (1 + world.thrust_scale) * (1 + world.rotor_thrust_scale[i]);
+        xml << "<general site='rotor" << i << "' gear='0 0 " << gear << " 0 0 0'";
+        if (lag_s > 0) {
+            xml << " dyntype='filter' dynprm='" << lag_s << "'";
+        }
+        xml << "/>";
     }
-    xml << "<motor joint='arm'/></actuator></mujoco>";
+    xml << "</actuator></mujoco>";
     return xml.str();
 }
 
@@ -46,8 +56,8 @@ inline std::string mjcf(const Robot& robot, double step_s) {
 class MujocoWorld {
  public:
     /// @throws std::runtime_error with MuJoCo's words
-    MujocoWorld(const Robot& robot, double step_s) {
-        const std::string xml = mjcf(robot, step_s);
+    MujocoWorld(const Robot& robot, double step_s, const World& world = {}) {
+        const std::string xml = mjcf(robot, step_s, world);
         const auto files = std::make_unique<mjVFS>();
         mj_defaultVFS(files.get());
         mj_makeEmptyFileVFS(files.get(), "robot.xml", static_cast<int>(xml.size()));
@@ -59,6 +69,11 @@ class MujocoWorld {
             throw std::runtime_error(std::string("no robot for MuJoCo: ") + error);
         }
         data_.reset(mj_makeData(model_.get()));
+    }
+    /// Holds a command from now on.
+    void command(const dynamics::PlantCommand<double>& given, int rotors) {
+        data_->ctrl[0] = given.joint_torque_nm;
+        std::copy(given.thrust_n, given.thrust_n + rotors, data_->ctrl + 1);
     }
     mjModel* model() { return model_.get(); }
     mjData* data() { return data_.get(); }

@@ -1,0 +1,27 @@
+#include "downwash/base/spread.hpp"
+
+#include <algorithm>
+
+#include "downwash/base/portable_math.hpp"
+
+namespace downwash {
+
+double Spread::difference(double p, double believed, bool range_is_of_number) const noexcept {
+    switch (form) {
+        case Form::sd: {
+            constexpr double cut = 3;
+            constexpr double below_cut = 0.0013498980316300946;  // the probability of less than -3
+            const double x = normal_quantile(below_cut + std::clamp(p, 0.0, 1.0) * (1 - 2 * below_cut));
+            return high * std::clamp(x, -cut, cut);
+        }
+        case Form::range:
+            return low + p * (high - low) - (range_is_of_number ? believed : 0);
+        case Form::factor:
+            return (low + p * (high - low)) * believed - believed;
+        case Form::exact:
+            break;
+    }
+    return 0;
+}
+
+}  // namespace downwash

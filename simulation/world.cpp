@@ -1,0 +1,116 @@
+#include "downwash/simulation/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "downwash/base/portable_math.hpp"
+#include "downwash/simulation/noise.hpp"
+
+namespace downwash {
+namespace {
+
+/// The robot that really flies, seen from the multirotor's true centre of mass.
+Robot real_robot(const Robot& believed, const World& world) {
+    Robot robot = believed;
+    robot.multirotor.mass_kg *= 1 + world.mass_scale;
+    robot.multirotor.pitch_inertia_kg_m2 *= 1 + world.inertia_scale;
+    robot.arm.mass_kg *= 1 + world.arm_mass_scale;
+    robot.arm.inertia_kg_m2 *= (1 + world.inertia_scale) * (1 + world.arm_mass_scale);
+    robot.arm.joint_x_m -= world.center_of_mass_x_m;
+    robot.arm.joint_z_m -= world.center_of_mass_z_m;
+    for (Vector3& hub_m : robot.rotors.positions_m) {
+        hub_m[0] -= world.center_of_mass_x_m;
+        hub_m[2] -= world.center_of_mass_z_m;
+    }
+    robot.rotors.time_constant_s += world.rotor_time_constant_s;
+    return robot;
+}
+
+/// The filters of the Dryden model (MIL-F-8785C 3.7.2) sampled at the control ticks without loss, for unit variance.
+/// A gust passes with the steady wind, or with 1 m/s where that is slower: a vehicle that hovers in calm air meets it
+/// as one that flies through it.
+void set_gusts(const World& world, double tick_s, simulation::WorldNumbers<double>& numbers) {
+    if (!(world.gust_m_s > 0)) {
+        return;
+    }
+    constexpr double least_speed_m_s = 1;
+    const double speed_m_s =
+        std::max(least_speed_m_s, std::sqrt(world.wind_x_m_s * world.wind_x_m_s + world.wind_z_m_s * world.wind_z_m_s));
+    numbers.gust_m_s = world.gust_m_s;
+    const double a = natural_exp(-tick_s * speed_m_s / world.gust_length_x_m);
+    numbers.gust_x_decay = a;
+    numbers.gust_x_noise = std::sqrt(1 - a * a);
+    // y1' = -y1 / tau + w, y2' = (y1 - y2) / tau with covariance P = ((2, 1), (1, 1)) / 4; a tick adds P - F P F^T.
+    const double ticks = tick_s * speed_m_s / world.gust_length_z_m;
+    const double b = natural_exp(-ticks);
+    const double c = b * ticks;
+    numbers.gust_z_decay = b;
+    numbers.gust_z_coupling = c;
+    const double q11 = 0.5 - 0.5 * b * b;
+    const double q21 = 0.25 - (0.5 * b * c + 0.25 * b * b);
+    const double q22 = 0.25 - (0.5 * c * c + 0.5 * b * c + 0.25 * b * b);
+    numbers.gust_z_noise[0] = std::sqrt(q11);
+    numbers.gust_z_noise[1] = q21 / numbers.gust_z_noise[0];
+    numbers.gust_z_noise[2] = std::sqrt(std::max(0.0, q22 - numbers.gust_z_noise[1] * numbers.gust_z_noise[1]));
+}
+
+}  // namespace
+
+FlownWorld make_world(const Robot& robot, const World& world) {
+    const Robot real = real_robot(robot, world);
+    const double tick_s = 1 / robot.controller.rate_hz;
+    FlownWorld flown{world, {}, false};
+    simulation::WorldNumbers<double>& numbers = flown.numbers;
+    numbers.plant = make_plant_model(real.multirotor, real.arm, real.rotors);
+    numbers.center_of_mass_x_m = world.center_of_mass_x_m;
+    numbers.center_of_mass_z_m = world.center_of_mass_z_m;
+    for (int i = 0; i < max_rotors; ++i) {
+        numbers.rotor_thrust_scale[i] = (1 + world.thrust_scale) * (1 + world.rotor_thrust_scale[i]);
+    }
+    numbers.ground_scale = world.ground_scale;
+    numbers.ceiling_scale = world.ceiling_scale;
+    numbers.scene_x_m = world.scene_x_m;
+    numbers.scene_z_m = world.scene_z_m;
+    numbers.delay_ticks = (robot.controller.delay_s + world.delay_s) * robot.controller.rate_hz;
+    numbers.position_bias_m[0] = world.position_bias_x_m;
+    numbers.position_bias_m[1] = world.position_bias_z_m;
+    numbers.pitch_bias_rad = world.pitch_bias_rad;
+    numbers.position_noise_m = world.position_noise_m;
+    numbers.velocity_noise_m_s = world.velocity_noise_m_s;
+    numbers.gyro_noise_rad_s = world.gyro_noise_rad_s;
+    numbers.wind_m_s[0] = world.wind_x_m_s;
+    numbers.wind_m_s[1] = world.wind_z_m_s;
+    set_gusts(world, tick_s, numbers);
+    flown.has_noise =
+        world.position_noise_m > 0 || world.velocity_noise_m_s > 0 || world.gyro_noise_rad_s > 0 || world.gust_m_s > 0;
+    return flown;
+}
+
+FlownWorld without_noise(const FlownWorld& world) noexcept {
+    FlownWorld quiet = world;
+    quiet.has_noise = false;
+    simulation::WorldNumbers<double>& numbers = quiet.numbers;
+    numbers.position_noise_m = numbers.velocity_noise_m_s = numbers.gyro_noise_rad_s = numbers.gust_m_s = 0;
+    numbers.gust_x_noise = 0;
+    std::fill(std::begin(numbers.gust_z_noise), std::end(numbers.gust_z_noise), 0.0);
+    return quiet;
+}
+
+simulation::WorldMemory<double> memory_at_start(const FlownWorld& world,
+                                                const dynamics::PlantState<double>& state) noexcept {
+    simulation::WorldMemory<double> memory{};
+    for (simulation::PastMotion<double>& past : memory.past) {
+        std::copy(state.q, state.q + 4, past.q);
+        std::copy(state.u, state.u + 4, past.u);
+    }
+    if (world.has_noise) {
+        double noise[simulation::noise_count];
+        simulation::draw_noise(simulation::normal_levels(), world.world.tape, -1, noise, 1);
+        memory.gust[0] = noise[0];
+        memory.gust[1] = std::sqrt(0.5) * noise[1];
+        memory.gust[2] = std::sqrt(0.125) * (noise[1] + noise[2]);
+    }
+    return memory;
+}
+
+}  // namespace downwash
