@@ -14,11 +14,14 @@ namespace downwash {
 namespace {
 
 /// Units as keys end in them and as people read them; a longer suffix stands before its own tail.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> our_units{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 21> our_units{{
     {"_kg_m2", "kg m2"},
     {"_w_n1p5", "W/N^1.5"},
     {"_over_radius", "rotor radii"},
     {"_radii", "rotor radii"},
+    {"_n_s2_m2", "N s2/m2"},
+    {"_n_s_m", "N s/m"},
+    {"_rad_s", "rad/s"},
     {"_deg_s2", "deg/s2"},
     {"_rad_s2", "rad/s2"},
     {"_deg_s", "deg/s"},
@@ -36,8 +39,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> our_unit
 }};
 
 /// Units that people write by mistake.
-constexpr std::array<std::string_view, 33> other_units{
-    "g",    "mm",  "cm",  "km",     "in",   "ft",   "lb",  "rad",    "rad_s", "rad_s2", "ms",
+constexpr std::array<std::string_view, 32> other_units{
+    "g",    "mm",  "cm",  "km",     "in",   "ft",   "lb",  "rad",    "rad_s2", "ms",
     "us",   "min", "h",   "kmh",    "km_h", "mph",  "kn",  "knots",  "khz",   "rpm",    "degrees",
     "rads", "mnm", "n_m", "newton", "g_m2", "kgm2", "nms", "meters", "s2",    "w",      "deg2"};
 

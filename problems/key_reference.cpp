@@ -26,7 +26,6 @@ Robot with_everything<Robot>() {
 template <>
 Problem with_everything<Problem>() {
     Problem problem;
-    problem.uncertainty.emplace();
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
     problem.goal.any_of = {problem.goal};
@@ -36,6 +35,7 @@ Problem with_everything<Problem>() {
                          {"", Mesh{}, {}, {}},
                          {"", Octomap{}, {}, {}}};
     problem.robot = with_everything<Robot>();
+    problem.uncertainty.emplace();
     return problem;
 }
 

@@ -6,7 +6,7 @@
 namespace downwash::planning {
 
 FlightPoint moment_at(const FlightNode& node) {
-    return {node.state, node.reference, node.configuration, node.cost, node.ticks_from_start};
+    return {node.fleet.front(), node.reference, node.configuration, node.cost, node.ticks_from_start};
 }
 
 FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
@@ -14,7 +14,7 @@ FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
     FlightNode root;
     root.configuration = configuration_of(start.reference);
     root.reference = start.reference;
-    root.state = start.vehicle;
+    root.fleet = flights.task().fleet_from(start.vehicle);
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
     places_.push_back(moving_.back()->configuration);
 }
@@ -78,21 +78,21 @@ std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) 
     return flights_.is_worth_flying(segment) ? std::optional(segment) : std::nullopt;
 }
 
-std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FlightJob& job) const {
-    if (job.rejection() != Rejection::none) {
+std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FleetJob& job) const {
+    if (!job.is_accepted()) {
         return std::nullopt;
     }
-    const FlightLeg& leg = job.legs.back();
-    return Flown{configuration_of(leg.segment.to()), leg.segment.ticks(), leg.end,
-                 flights_.cost_after(from.cost, from.state, leg)};
+    const ReferenceSegment& segment = job.legs().back().segment;
+    return Flown{configuration_of(segment.to()), segment.ticks(), job.end(),
+                 flights_.cost_after(from.cost, from.fleet, job, job.legs().size() - 1)};
 }
 
 std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const Edge> edges) {
-    std::vector<FlightJob> jobs;
+    std::vector<FleetJob> jobs;
     std::vector<std::size_t> edge_of;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         if (const auto segment = promising_segment(edges[i])) {
-            jobs.push_back({edges[i].from->state, {{*segment}}});
+            jobs.push_back(flights_.job(edges[i].from->fleet, edges[i].from->ticks_from_start, {{*segment}}));
             edge_of.push_back(i);
         }
     }
@@ -108,7 +108,7 @@ FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
     FlightNode& node = nodes_.emplace_back();
     node.configuration = flight.to;
     node.reference = at_rest(flight.to);
-    node.state = flight.state;
+    node.fleet = flight.fleet;
     node.cost = flight.cost;
     node.parent = &parent;
     node.ticks = flight.ticks;
@@ -120,11 +120,11 @@ FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
 }
 
 void FlightTree::add_holds(std::span<FlightNode* const> nodes) {
-    std::vector<FlightJob> jobs;
+    std::vector<FleetJob> jobs;
     std::vector<FlightNode*> held;
     for (FlightNode* node : nodes) {
         if (is_at_rest(node->reference)) {
-            jobs.push_back({node->state, {flights_.hold_leg(node->reference)}, flights_.judged_ticks()});
+            jobs.push_back(hold_job(*node));
             held.push_back(node);
         }
     }
@@ -140,11 +140,13 @@ void FlightTree::add_holds(std::span<FlightNode* const> nodes) {
     }
 }
 
-FlightJob FlightTree::edge_job(const FlightNode& from, const FlightNode& to) const {
-    if (to.is_hold) {
-        return {from.state, {flights_.hold_leg(from.reference)}, flights_.judged_ticks()};
-    }
-    return {from.state, {{segment_to(from, to.reference, to.ticks)}}};
+FleetJob FlightTree::hold_job(const FlightNode& at) const {
+    return flights_.job(at.fleet, at.ticks_from_start, {flights_.hold_leg(at.reference)}, flights_.judged_ticks());
+}
+
+FleetJob FlightTree::edge_job(const FlightNode& from, const FlightNode& to) const {
+    return to.is_hold ? hold_job(from)
+                      : flights_.job(from.fleet, from.ticks_from_start, {{segment_to(from, to.reference, to.ticks)}});
 }
 
 std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
@@ -183,7 +185,7 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     }
     struct Before {
         FlightNode* node;
-        FlightState state;
+        Fleet fleet;
         double cost;
         std::int64_t ticks;
         std::int64_t ticks_from_start;
@@ -191,8 +193,8 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     };
     std::vector<Before> changed;
     const auto replace = [&changed](FlightNode& n, const FlightNode& from, const Flown& by) {
-        changed.push_back({&n, n.state, n.cost, n.ticks, n.ticks_from_start, n.is_discarded});
-        n.state = by.state;
+        changed.push_back({&n, n.fleet, n.cost, n.ticks, n.ticks_from_start, n.is_discarded});
+        n.fleet = by.fleet;
         n.cost = by.cost;
         n.ticks = by.ticks;
         n.ticks_from_start = from.ticks_from_start + by.ticks;
@@ -200,7 +202,7 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     };
     const auto undo = [&changed] {
         for (const Before& before : changed) {
-            before.node->state = before.state;
+            before.node->fleet = before.fleet;
             before.node->cost = before.cost;
             before.node->ticks = before.ticks;
             before.node->ticks_from_start = before.ticks_from_start;
@@ -212,7 +214,7 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     std::vector<FlightNode*> generation{&node};
     while (!generation.empty()) {
         std::vector<FlightNode*> children;
-        std::vector<FlightJob> jobs;
+        std::vector<FleetJob> jobs;
         for (const FlightNode* n : generation) {
             for (FlightNode* child : n->children) {
                 children.push_back(child);

@@ -19,7 +19,7 @@ namespace downwash::planning {
 struct FlightNode {
     Configuration configuration;  ///< the reference point at which the edge to this node ends, at rest
     ReferencePoint reference;     ///< the same with its derivatives; only the root may move
-    FlightState state;            ///< the whole vehicle there, integrators included
+    Fleet fleet;                  ///< the whole vehicle there in every world, integrators included
     double cost = 0;              ///< of the flight from the start, in the objective's unit
     FlightNode* parent = nullptr;
     std::int64_t ticks = 0;  ///< length of the edge from the parent
@@ -63,8 +63,8 @@ class FlightTree {
     struct Flown {
         Configuration to;
         std::int64_t ticks;
-        FlightState state;
-        double cost;  ///< from the start
+        Fleet fleet;
+        double cost;  ///< from the start, mean over all worlds
     };
 
     /// Flies edges side by side; nothing for those that are rejected.
@@ -96,8 +96,9 @@ class FlightTree {
     [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,
                                               std::int64_t ticks) const;
     [[nodiscard]] std::optional<ReferenceSegment> promising_segment(const Edge& edge);
-    [[nodiscard]] std::optional<Flown> flown(const FlightNode& from, const FlightJob& job) const;
-    [[nodiscard]] FlightJob edge_job(const FlightNode& from, const FlightNode& to) const;
+    [[nodiscard]] std::optional<Flown> flown(const FlightNode& from, const FleetJob& job) const;
+    [[nodiscard]] FleetJob hold_job(const FlightNode& at) const;
+    [[nodiscard]] FleetJob edge_job(const FlightNode& from, const FlightNode& to) const;
     bool move_below(FlightNode& node, FlightNode& parent, const Flown& flight);
 
     PlannedFlights& flights_;

@@ -1,6 +1,7 @@
 #include "downwash/search/plan_refiner.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace downwash::planning {
@@ -35,43 +36,44 @@ void PlanRefiner::drop(int number) {
     std::erase_if(tracks_, [number](const Track& track) { return track.number == number; });
 }
 
-FlightJob PlanRefiner::job_for(const FlightState& from, const Change& change, std::size_t first,
-                               std::size_t last) const {
+FleetJob PlanRefiner::job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const {
     const double tick_s = flights_.task().model.tick().tick_s;
-    FlightJob job{from, {}, 0};
+    std::vector<FlightLeg> legs;
+    std::int64_t judged_ticks = 0;
     for (std::size_t i = first; i <= last; ++i) {
-        job.legs.push_back({{change.points[i], change.points[i + 1], change.ticks[i], tick_s}});
+        legs.push_back({{change.points[i], change.points[i + 1], change.ticks[i], tick_s}});
     }
     if (last + 1 == change.ticks.size()) {
-        job.legs.push_back(flights_.hold_leg(change.points.back()));
-        job.judged_ticks = flights_.judged_ticks();
+        legs.push_back(flights_.hold_leg(change.points.back()));
+        judged_ticks = flights_.judged_ticks();
     }
-    return job;
+    const auto before = change.ticks.begin() + static_cast<std::ptrdiff_t>(first);
+    return flights_.job(from, std::accumulate(change.ticks.begin(), before, std::int64_t{0}), std::move(legs),
+                        judged_ticks);
 }
 
-double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const {
+double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const {
     double cost = base.costs[change.first];
-    const FlightState* state = &base.states[change.first];
-    for (const FlightLeg& leg : job.legs) {
-        cost = flights_.cost_after(cost, *state, leg);
-        state = &leg.end;
+    for (std::size_t leg = 0; leg < job.legs().size(); ++leg) {
+        cost = flights_.cost_after(cost, leg == 0 ? base.fleets[change.first] : job.fleet_after(leg - 1), job, leg);
     }
     return cost;
 }
 
-FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const FlightJob& job) const {
+FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const FleetJob& job) const {
     FlownPlan plan;
     plan.points = change.points;
     plan.ticks = change.ticks;
     const auto kept = static_cast<std::ptrdiff_t>(change.first) + 1;
-    plan.states.assign(base.states.begin(), base.states.begin() + kept);
+    plan.fleets.assign(base.fleets.begin(), base.fleets.begin() + kept);
     plan.costs.assign(base.costs.begin(), base.costs.begin() + kept);
-    for (std::size_t leg = 0; leg + 1 < job.legs.size(); ++leg) {
-        plan.costs.push_back(flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs[leg]));
-        plan.states.push_back(job.legs[leg].end);
+    const std::size_t hold = job.legs().size() - 1;
+    for (std::size_t leg = 0; leg < hold; ++leg) {
+        plan.costs.push_back(flights_.cost_after(plan.costs.back(), plan.fleets.back(), job, leg));
+        plan.fleets.push_back(job.fleet_after(leg));
     }
-    plan.cost = flights_.cost_after(plan.costs.back(), plan.states.back(), job.legs.back());
-    plan.states.push_back(job.end());
+    plan.cost = flights_.cost_after(plan.costs.back(), plan.fleets.back(), job, hold);
+    plan.fleets.push_back(job.end());
     return plan;
 }
 
@@ -87,11 +89,11 @@ void PlanRefiner::take(const Plan& plan) {
         }
     }
     FlownPlan base;
-    base.states.push_back(start_.vehicle);
+    base.fleets.push_back(flights_.task().fleet_from(start_.vehicle));
     base.costs.push_back(0);
-    std::vector<FlightJob> jobs{job_for(base.states[0], change, 0, change.ticks.size() - 1)};
+    std::vector<FleetJob> jobs{job_for(base.fleets[0], change, 0, change.ticks.size() - 1)};
     flights_.fly(jobs);
-    if (jobs[0].rejection() != Rejection::none) {
+    if (!jobs[0].is_accepted()) {
         return;
     }
     Track track{flown(base, change, jobs[0]), ++taken_};
@@ -140,16 +142,16 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
 /// Of changes whose own segments are flown: where one got to the old plan's next corner for less, the rest of the plan,
 /// hold included, is flown as well.
 std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes,
-                                              std::vector<FlightJob>& jobs) {
+                                              std::vector<FleetJob>& jobs) {
     std::vector<std::size_t> promising;
     std::vector<std::size_t> unfinished;
-    std::vector<FlightJob> rests;
+    std::vector<FleetJob> rests;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Change& change = changes[i];
         const std::size_t segments = change.ticks.size();
         const bool is_whole = change.last + 1 == segments;
         const double old_cost = is_whole ? base.cost : base.costs[change.last + 1 + base.ticks.size() - segments];
-        if (jobs[i].rejection() != Rejection::none || !(cost_after(base, change, jobs[i]) < old_cost)) {
+        if (!jobs[i].is_accepted() || !(cost_after(base, change, jobs[i]) < old_cost)) {
             continue;
         }
         promising.push_back(i);
@@ -160,12 +162,11 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
     }
     flights_.fly(rests);
     for (std::size_t i = 0; i < rests.size(); ++i) {
-        std::vector<FlightLeg>& legs = jobs[unfinished[i]].legs;
-        legs.insert(legs.end(), rests[i].legs.begin(), rests[i].legs.end());
+        jobs[unfinished[i]].append(rests[i]);
     }
     std::optional<FlownPlan> best;
     for (const std::size_t i : promising) {
-        if (jobs[i].rejection() == Rejection::none) {
+        if (jobs[i].is_accepted()) {
             FlownPlan plan = flown(base, changes[i], jobs[i]);
             if (plan.cost < (best ? best->cost : base.cost)) {
                 best = std::move(plan);
@@ -182,10 +183,10 @@ void PlanRefiner::improve() {
     const std::size_t number = turn_++ % tracks_.size();
     Track& track = tracks_[number];
     std::vector<Change> changes;
-    std::vector<FlightJob> jobs;
+    std::vector<FleetJob> jobs;
     for (int tries = 0; tries < 4 * changes_side_by_side && jobs.size() < changes_side_by_side; ++tries) {
         if (auto change = changed(track)) {
-            jobs.push_back(job_for(track.plan.states[change->first], *change, change->first, change->last));
+            jobs.push_back(job_for(track.plan.fleets[change->first], *change, change->first, change->last));
             changes.push_back(std::move(*change));
         }
     }
@@ -219,11 +220,11 @@ std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
     std::vector<FlightPoint> moments;
     std::int64_t tick = 0;
     for (std::size_t i = 0; i < flown.points.size(); ++i) {
-        moments.push_back({flown.states[i], flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
+        moments.push_back({flown.fleets[i].front(), flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
         tick += i < flown.ticks.size() ? flown.ticks[i] : 0;
     }
     FlightPoint end = moments.back();
-    end.vehicle = flown.states.back();
+    end.vehicle = flown.fleets.back().front();
     end.cost = flown.cost;
     end.ticks += flights_.hold_leg(end.reference).segment.ticks();
     moments.push_back(end);

@@ -14,7 +14,7 @@ namespace downwash::planning {
 /// A plan with all that was found out by flying it, hold included.
 struct FlownPlan {
     std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
-    std::vector<FlightState> states;     ///< the vehicle at each point, and after the hold
+    std::vector<Fleet> fleets;           ///< the vehicle in every world at each point, and after the hold
     std::vector<double> costs;           ///< from the start up to each point
     std::vector<std::int64_t> ticks;     ///< from each point to the next
     double cost = 0;                     ///< hold included
@@ -65,12 +65,12 @@ class PlanRefiner {
 
     [[nodiscard]] std::optional<Change> changed(const Track& track);
     /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
-    [[nodiscard]] FlightJob job_for(const FlightState& from, const Change& change, std::size_t first,
+    [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first,
                                     std::size_t last) const;
-    [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+    [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
     [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
-                                                   std::vector<FlightJob>& jobs);
-    [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FlightJob& job) const;
+                                                   std::vector<FleetJob>& jobs);
+    [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;
 
     FlightPoint start_;
     PlannedFlights& flights_;

@@ -67,7 +67,8 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
     : task_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
-      crew_(task.model, task.map, planning_rules(task.problem, std::move(is_over)), &task.problem.goal, threads) {
+      crew_(task.model, task.map, planning_rules(task.problem, std::move(is_over)), &task.problem.goal, threads,
+            best_instructions(), task.worlds != nullptr ? &task.worlds->ceiling : nullptr) {
     forget_statistics();
 }
 
@@ -140,12 +141,61 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
 void PlannedFlights::fly(std::span<FlightJob> jobs) {
     crew_.fly(jobs);
     for (const FlightJob& job : jobs) {
-        for (const FlightLeg& leg : job.legs) {
-            statistics_.edges += leg.flight.ticks > 0 ? 1 : 0;
-            statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
-            statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
-        }
+        count(job);
         if (const FlightLeg* leg = job.rejected_leg()) {
+            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
+        }
+    }
+}
+
+void PlannedFlights::count(const FlightJob& job) {
+    for (const FlightLeg& leg : job.legs) {
+        statistics_.edges += leg.flight.ticks > 0 ? 1 : 0;
+        statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
+        statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
+    }
+}
+
+FleetJob PlannedFlights::job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
+                             std::int64_t judged_ticks) const {
+    FleetJob fleet;
+    fleet.jobs.reserve(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        const FlownWorld* world = i == 0 ? nullptr : &task_.worlds->worlds[i - 1];
+        fleet.jobs.push_back({from[i], legs, judged_ticks, world, task_.first_tick + ticks_from_start});
+    }
+    return fleet;
+}
+
+void PlannedFlights::fly(std::span<FleetJob> jobs) {
+    std::vector<FlightJob> flown;
+    const auto fly_all = [&](const auto& is_wanted) {
+        std::vector<FlightJob*> owners;
+        for (FleetJob& fleet : jobs) {
+            for (std::size_t i = 0; i < fleet.jobs.size(); ++i) {
+                if (is_wanted(fleet, i)) {
+                    owners.push_back(&fleet.jobs[i]);
+                }
+            }
+        }
+        flown.clear();
+        for (FlightJob* owner : owners) {
+            flown.push_back(std::move(*owner));
+        }
+        crew_.fly(flown);
+        for (std::size_t i = 0; i < flown.size(); ++i) {
+            count(flown[i]);
+            *owners[i] = std::move(flown[i]);
+        }
+    };
+    fly_all([](const FleetJob&, std::size_t world) { return world == 0; });
+    if (task_.worlds != nullptr) {
+        fly_all([](const FleetJob& fleet, std::size_t world) {
+            return world > 0 && fleet.jobs.front().rejection() == Rejection::none;
+        });
+    }
+    for (const FleetJob& fleet : jobs) {
+        if (const FlightLeg* leg = fleet.rejected_leg()) {
             reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
         }
     }
@@ -189,6 +239,14 @@ double PlannedFlights::cost_after(double cost_before, const FlightState& from, c
     const FlightSums& sums = leg.flight;
     return cost_before + task_.problem.planner.objective({sums, leg.end.plant.energy_j - from.plant.energy_j, time_s,
                                                           leg.flight.clearance_integral});
+}
+
+double PlannedFlights::cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        sum += cost_after(0, from[i], job.jobs[i].legs[leg]);
+    }
+    return cost_before + sum / static_cast<double>(from.size());
 }
 
 ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {

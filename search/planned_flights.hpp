@@ -42,6 +42,15 @@ class PlannedFlights {
     /// Flies jobs, and counts ticks and rejections.
     void fly(std::span<FlightJob> jobs);
 
+    /// A flight of a fleet, yet to be flown.
+    /// @param from one vehicle for each world   @param ticks_from_start at which it begins, from the search's start
+    [[nodiscard]] FleetJob job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
+                               std::int64_t judged_ticks = 0) const;
+
+    /// Flies the jobs in the nominal world, then those that were accepted there in all others. Counts ticks, and every
+    /// rejected job once.
+    void fly(std::span<FleetJob> jobs);
+
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
     /// called from any thread.
     /// @throws std::logic_error when something is rejected, or a vehicle does not come out bit for bit
@@ -53,6 +62,8 @@ class PlannedFlights {
 
     /// The cost from the start up to the end of a leg that began with `from`.
     [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
+    /// The same as the mean over all worlds.
+    [[nodiscard]] double cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const;
 
     /// A segment between two points in as few ticks as the limits of motion allow.
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
@@ -69,6 +80,7 @@ class PlannedFlights {
 
  private:
     [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
+    void count(const FlightJob& job);
     /// Counts a rejection at a place of a segment.
     void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
 

@@ -77,7 +77,7 @@ TEST_CASE("re-flying from the start reproduces every node of a random tree bit f
     }
     // A tampered state is noticed.
     FlightNode& tampered = *f.tree.nodes().back();
-    tampered.state.plant.q[0] = std::nextafter(tampered.state.plant.q[0], 100.0);
+    tampered.fleet[0].plant.q[0] = std::nextafter(tampered.fleet[0].plant.q[0], 100.0);
     CHECK_THROWS_AS(f.verify(tampered), std::logic_error);
 }
 
@@ -85,12 +85,12 @@ TEST_CASE("an edge starts from the whole vehicle state of its parent, not from r
     Fixture f;
     const FlightNode& first = f.reached(f.tree.root(), {-1, 2.5, 0.5});
     FlightNode rested = first;
-    rested.state = f.model->state_at(level_at(first.configuration));
+    rested.fleet[0] = f.model->state_at(level_at(first.configuration));
     const auto from_flight = f.flown(first, {1, 3, 0});
     const auto from_rest = f.flown(rested, {1, 3, 0});
     REQUIRE(from_flight);
     REQUIRE(from_rest);
-    CHECK_FALSE(same_bytes(from_flight->state, from_rest->state));
+    CHECK_FALSE(same_bytes(from_flight->fleet[0], from_rest->fleet[0]));
 }
 
 TEST_CASE("a rewiring that does not pay leaves the tree untouched") {
@@ -98,12 +98,12 @@ TEST_CASE("a rewiring that does not pay leaves the tree untouched") {
     FlightNode& direct = f.reached(f.tree.root(), {1, 2, 1});
     FlightNode& detour = f.reached(f.tree.root(), {-4, 4, 1});
     const FlightNode& child = f.reached(direct, {3, 2, 1});
-    const FlightState before = direct.state;
-    const FlightState child_before = child.state;
+    const FlightState before = direct.fleet[0];
+    const FlightState child_before = child.fleet[0];
     CHECK_FALSE(f.rewire(direct, detour));
     CHECK(direct.parent == &f.tree.root());
-    CHECK(same_bytes(direct.state, before));
-    CHECK(same_bytes(child.state, child_before));
+    CHECK(same_bytes(direct.fleet[0], before));
+    CHECK(same_bytes(child.fleet[0], child_before));
 }
 
 TEST_CASE("a rewiring that pays flies the whole subtree again") {
@@ -224,7 +224,7 @@ TEST_CASE("a rewiring that fails in a descendant leaves every field as it was") 
     CHECK_FALSE(f.rewire(node, f.tree.root()));
     for (std::size_t i = 0; i < before.size(); ++i) {
         INFO("node " << i);
-        CHECK(same_bytes(nodes[i]->state, before[i].state));
+        CHECK(same_bytes(nodes[i]->fleet[0], before[i].fleet[0]));
         CHECK(nodes[i]->cost == before[i].cost);
         CHECK(nodes[i]->ticks == before[i].ticks);
         CHECK(nodes[i]->ticks_from_start == before[i].ticks_from_start);

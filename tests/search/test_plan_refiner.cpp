@@ -68,7 +68,7 @@ TEST_CASE(
                                        plan.reference[i].tick - plan.reference[i - 1].tick, plan.tick_s);
         CHECK(keeps_limits(segment, f.flights.limits()));
         CHECK(fly(*f.model, f.map.get(), f.flights.rules(), segment, state).rejection == Rejection::none);
-        CHECK(std::memcmp(&state, &flown.states[i], sizeof state) == 0);
+        CHECK(std::memcmp(&state, &flown.fleets[i][0], sizeof state) == 0);
     }
     const FlightLeg hold = f.flights.hold_leg(plan.reference.back().point);
     CHECK(fly(*f.model, f.map.get(), f.flights.rules(), hold.segment, state).rejection == Rejection::none);

@@ -1,0 +1,29 @@
+#include "downwash/search/fleet.hpp"
+
+namespace downwash::planning {
+
+const FlightLeg* FleetJob::rejected_leg() const noexcept {
+    for (const FlightJob& job : jobs) {
+        if (const FlightLeg* leg = job.rejected_leg()) {
+            return leg;
+        }
+    }
+    return nullptr;
+}
+
+Fleet FleetJob::fleet_after(std::size_t leg) const {
+    Fleet fleet;
+    fleet.reserve(jobs.size());
+    for (const FlightJob& job : jobs) {
+        fleet.push_back(job.legs[leg].end);
+    }
+    return fleet;
+}
+
+void FleetJob::append(const FleetJob& next) {
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        jobs[i].legs.insert(jobs[i].legs.end(), next.jobs[i].legs.begin(), next.jobs[i].legs.end());
+    }
+}
+
+}  // namespace downwash::planning
