@@ -83,6 +83,28 @@ RunRecord write_results(const OutputFolder& folder, const Problem& problem, cons
     return record;
 }
 
+namespace {
+
+std::string certificate_rows(const Certificate& certificate) {
+    const auto& probability = certificate.failure_probability;
+    std::string text = row(
+        "certificate",
+        fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
+                    certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
+                    probability.low, probability.high, 100 * certificate.confidence));
+    std::string causes;
+    for (const auto& [cause, count] : certificate.causes) {
+        causes += (causes.empty() ? "" : ", ") + cause + " " + std::to_string(count);
+    }
+    if (!causes.empty()) {
+        text += row("", causes + "; see one: `downwash execute PROBLEM --plan solution.json --world " +
+                            std::to_string(certificate.failed.front().world) + "`");
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string verdict_on_flight(const Execution& flight) {
     const std::string name = flight.aero ? "The flight with direct aerodynamics " : "The flight in free air ";
     switch (flight.outcome) {
@@ -107,6 +129,11 @@ std::string verdict_on_search(const Solution& solution) {
         return stopped + (is_good ? "Solved. " : "A plan was found, but it does not fly. ") +
                verdict_on_flight(*solution.execution);
     }
+    if (solution.certificate && !solution.certificate->is_given) {
+        return stopped +
+               fmt::format("A way to the goal was found, but in {} of {} worlds the flight fails: it is not certified.",
+                           solution.certificate->failures, solution.certificate->worlds);
+    }
     if (solution.status == Status::approximate) {
         const auto& off_m = solution.planning.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to the goal" +
@@ -122,6 +149,9 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
     if (solution.execution) {
         text += flight_rows(solution, *solution.execution);
     }
+    if (solution.certificate) {
+        text += certificate_rows(*solution.certificate);
+    }
     const SearchRecord& record = solution.planning;
     text += row("first solution",
                 record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
@@ -135,7 +165,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         text += row("stopped by",
                     fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
                                 o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
-        if (o.cause == "direct_flight") {
+        if (o.cause == "certificate") {
+            text += row("", "The planner discarded every plan: in worlds that the search had not seen");
+            text += row("", "each failed too often.");
+        } else if (o.cause == "direct_flight") {
             text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += row("", "the last one failed or came nearer to an obstacle than the margin.");
         } else if (o.goal_distance_m <= 0) {

@@ -29,13 +29,16 @@ Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
 class FlightSearch {
  public:
     FlightSearch(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                 const Course& before, const SolveOptions& options, Solution& solution)
+                 const Course& before, const ProblemWorlds* worlds, const SolveOptions& options, Solution& solution)
         : options_(options),
           before_(before),
           goals_(before.goals),
           solution_(solution),
           clock_(part, options, solution),
-          task_(part, model, map, before.vehicle),
+          worlds_(worlds),
+          search_worlds_(worlds != nullptr ? worlds->for_search(before) : SearchWorlds{}),
+          task_(part, model, map, before.vehicle, worlds != nullptr ? &search_worlds_ : nullptr,
+                before.plan.reference.empty() ? 0 : before.plan.reference.back().tick),
           start_(start_state(model, whole.start)) {
         goals_.push_back(part.goal);
     }
@@ -46,7 +49,8 @@ class FlightSearch {
     void run_controls();
 
  private:
-    [[nodiscard]] bool survives_execution(const Plan& plan);
+    [[nodiscard]] bool survives_execution(const Plan& plan, double cost);
+    [[nodiscard]] bool is_certified(const Plan& plan, double cost);
     void accept(const Plan& plan, double cost, std::uint64_t iteration);
     void account(std::uint64_t iterations, const FlightStatistics& statistics);
     void report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan, double cost,
@@ -57,27 +61,53 @@ class FlightSearch {
     std::vector<Goal> goals_;  ///< up to the one that is searched for
     Solution& solution_;
     SearchClock clock_;
+    const ProblemWorlds* worlds_;
+    SearchWorlds search_worlds_;
     SearchTask task_;
     FlightState start_;                   ///< of the whole flight
     std::optional<Execution> execution_;  ///< made last
     double execution_wall_s_ = 0;
     std::optional<Obstruction> discarded_;  ///< what discarded the last plan that was
+    std::uint64_t attempts_ = 0;            ///< plans that asked for a certificate
+    std::optional<Certificate> certificate_;  ///< of the plan that was executed last
+    /// Of the plans without a certificate the one that failed in the least share of worlds.
+    struct Uncertified {
+        Plan plan;
+        double cost;
+        Certificate certificate;
+    };
+    std::optional<Uncertified> uncertified_;
     double known_at_s_ = 0;                 ///< when it was known whether the last plan counts
 };
 
 /// Executes a plan and says whether it counts: that of MP-ARM-ADA has to reach its goal and to keep the margin.
-bool FlightSearch::survives_execution(const Plan& plan) {
+bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     clock_.found_first(clock_.seconds());
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
         execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_);
     }
     known_at_s_ = clock_.seconds();
-    if (!execution_ ||
-        (execution_->outcome == Outcome::ok && execution_->min_clearance_m >= settings.safety_margin_m)) {
+    if (execution_ &&
+        (execution_->outcome != Outcome::ok || execution_->min_clearance_m < settings.safety_margin_m)) {
+        discarded_ = obstruction_of(*execution_, task_.space);
+        return false;
+    }
+    return worlds_ == nullptr || is_certified(plan, cost);
+}
+
+/// Whether a plan fails rarely enough in worlds that the search has not seen.
+bool FlightSearch::is_certified(const Plan& plan, double cost) {
+    certificate_ = worlds_->certify(before_, before_.continued_by(plan), task_.problem.goal, ++attempts_);
+    known_at_s_ = clock_.seconds();
+    if (certificate_->is_given) {
         return true;
     }
-    discarded_ = obstruction_of(*execution_, task_.space);
+    if (!uncertified_ ||
+        certificate_->failure_probability.estimate < uncertified_->certificate.failure_probability.estimate) {
+        uncertified_ = {plan, cost, *certificate_};
+    }
+    discarded_ = Obstruction{"certificate", plan.last(), 0};
     return false;
 }
 
@@ -97,6 +127,7 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
     solution_.status = Status::solved;
     solution_.plan = plan;
     solution_.cost = cost;
+    solution_.certificate = certificate_;
     clock_.improved(known_at_s_, cost, iteration, executed_cost);
 }
 
@@ -119,6 +150,12 @@ void FlightSearch::report_failure(const FlightStatistics& statistics, Status sta
     solution_.status = status;
     solution_.plan = std::move(plan);
     solution_.cost = cost;
+    if (uncertified_) {
+        solution_.status = Status::approximate;
+        solution_.plan = uncertified_->plan;
+        solution_.cost = uncertified_->cost;
+        solution_.certificate = uncertified_->certificate;
+    }
 }
 
 void FlightSearch::run_controls() {
@@ -134,7 +171,7 @@ void FlightSearch::run_controls() {
         return clock_.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
     };
     hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
-        if (!survives_execution(plan)) {
+        if (!survives_execution(plan, cost)) {
             return false;
         }
         accept(plan, cost, iteration);
@@ -158,7 +195,9 @@ void FlightSearch::run_tree() {
     FlightTreePlanner planner(task.information, task_, options_.threads);
     planner.setProblemDefinition(task.definition);
     planner.set_hooks(
-        {[&](const Candidate& candidate) { return survives_execution(plan_through(candidate.moments, tick_s)); },
+        {[&](const Candidate& candidate) { 
+             return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
+         },
          [&](const Candidate& candidate) {
              accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
          }});
@@ -195,8 +234,9 @@ Execution execute_directly(const FlightModel& model, const FlightState& start, c
 }
 
 void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, const SolveOptions& options, Solution& solution) {
-    FlightSearch search(part, whole, model, map, before, options, solution);
+                    const Course& before, const ProblemWorlds* worlds, const SolveOptions& options,
+                    Solution& solution) {
+    FlightSearch search(part, whole, model, map, before, worlds, options, solution);
     part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
 }
 

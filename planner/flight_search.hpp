@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/worlds.hpp"
 
 namespace downwash::planning {
 
@@ -14,7 +15,9 @@ namespace downwash::planning {
 /// MP-ARM-DA and MP-ARM-ADA: searches a flight to the goal of a problem without stops.
 /// @param part the problem up to that goal   @param whole the problem that it is a part of, or itself
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
+/// @param worlds that edges and plans have to survive; nullptr: everything is as believed
 void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, const SolveOptions& options, Solution& solution);
+                    const Course& before, const ProblemWorlds* worlds, const SolveOptions& options,
+                    Solution& solution);
 
 }  // namespace downwash::planning

@@ -75,6 +75,7 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
     }
     course.plan = std::move(plan);
     course.goals.push_back(goal);
+    course.hold_knots.push_back(course.plan.reference.size() - 1);
     course.cost += cost;
 }
 

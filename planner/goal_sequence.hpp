@@ -13,6 +13,7 @@ namespace downwash::planning {
 struct Course {
     std::vector<Goal> goals;  ///< reached and held
     Plan plan;                ///< through them, to the end of the last hold
+    std::vector<std::size_t> hold_knots;  ///< knots of it at which the holds end, in the order of the goals
     FlightState vehicle;      ///< the whole vehicle there, as the planner's own model flies it
     double cost = 0;
 

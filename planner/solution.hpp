@@ -8,6 +8,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/planner/certificate.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -29,6 +30,7 @@ struct Solution {
     std::shared_ptr<const AeroMap> map;  ///< that the search flew in, for SolveOptions::map of another; empty: none
     std::vector<TreeNode> tree;          ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;            ///< empty with Status::none
+    std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
     std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
 };
 

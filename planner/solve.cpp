@@ -34,12 +34,16 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         solution.planning.map_wall_s = clock.seconds();
         solution.map = map;
     }
+    std::optional<planning::ProblemWorlds> worlds;
+    if (problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada) {
+        worlds.emplace(problem, model, map.get(), options);
+    }
     const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
                             Solution& into) {
         if (problem.planner.variant == Variant::mp_arm) {
             planning::search_lines(part, *model, how, into);
         } else {
-            planning::search_flights(part, problem, *model, map.get(), before, how, into);
+            planning::search_flights(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how, into);
         }
     };
     solution.planning.setup_wall_s = since_call.seconds();

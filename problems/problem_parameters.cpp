@@ -215,6 +215,26 @@ void add_planner(Rows& rows) {
                        [](auto& p) -> auto& { return p.planner.safety_margin_m; })
                        .at_least(0)
                        .at_most(100));
+    const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
+    constexpr std::string_view with_uncertainty = "with an uncertainty";
+    rows.push_back(parameters::integer<Problem>(
+                       "planner.worlds", "in which every edge has to succeed, the nominal one included",
+                       [](auto& p) -> auto& { return p.planner.worlds; })
+                       .at_least(1)
+                       .at_most(64)
+                       .only(with_uncertainty, is_uncertain));
+    rows.push_back(number(
+                       "planner.max_failure_probability", "share of worlds in which a plan may fail",
+                       [](auto& p) -> auto& { return p.planner.max_failure_probability; })
+                       .at_least(1e-4)
+                       .at_most(0.5)
+                       .only(with_uncertainty, is_uncertain));
+    rows.push_back(number(
+                       "planner.confidence", "that a plan which is called solved does not fail more often",
+                       [](auto& p) -> auto& { return p.planner.confidence; })
+                       .at_least(0.5)
+                       .at_most(0.999999)
+                       .only(with_uncertainty, is_uncertain));
     add_algorithm_parameters(rows);
 }
 

@@ -172,6 +172,40 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
     // nearest_approach_m and obstruction explain a search without a plan, and there is nothing to read in its file.
 }
 
+void read_certificate(JsonReader& reader, const Node& root, std::optional<Certificate>& into) {
+    const auto node = JsonReader::member(root, "certificate");
+    if (!node || node->json->is_null()) {
+        return;
+    }
+    if (!node->json->is_object()) {
+        reader.report(*node, "expected a group of keys or null");
+        return;
+    }
+    Certificate& certificate = into.emplace();
+    reader.read_flag(*node, "given", certificate.is_given);
+    reader.read_count(*node, "worlds", certificate.worlds);
+    reader.read_count(*node, "failures", certificate.failures);
+    reader.read_count(*node, "attempts", certificate.attempts);
+    certificate.max_failure_probability = reader.amount(*node, "max_failure_probability", 0);
+    certificate.confidence = reader.amount(*node, "confidence", 0);
+    if (const auto share = JsonReader::member(*node, "failure_probability"); share && share->json->is_object()) {
+        certificate.failure_probability = {reader.amount(*share, "estimate", 0), reader.amount(*share, "low", 0),
+                                           reader.amount(*share, "high", 1)};
+    }
+    if (const auto causes = JsonReader::member(*node, "causes"); causes && causes->json->is_object()) {
+        for (const auto& [cause, value] : causes->json->items()) {
+            reader.read_count({&value, causes->key + "." + cause}, certificate.causes[cause]);
+        }
+    }
+    for (const Node& each : reader.groups(JsonReader::member(*node, "failed"))) {
+        FailedWorld& failed = certificate.failed.emplace_back();
+        reader.read_count(each, "world", failed.world);
+        if (const auto cause = JsonReader::member(each, "cause"); cause && cause->json->is_string()) {
+            failed.cause = cause->json->get<std::string>();
+        }
+    }
+}
+
 void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
     const auto node = JsonReader::member(root, "algorithm");
     if (!node) {
@@ -279,6 +313,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
     } else if (schema) {
         read_head(reader, root, solution);
         read_planning(reader, root, solution.planning);
+        read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
     }
     if (!reader.errors().empty()) {

@@ -29,6 +29,27 @@ Json obstruction_json(const std::optional<Obstruction>& obstruction) {
             {"goal_distance_m", number(obstruction->goal_distance_m)}};
 }
 
+Json certificate_json(const std::optional<Certificate>& certificate) {
+    if (!certificate) {
+        return {};
+    }
+    Json failed = Json::array();
+    for (const FailedWorld& each : certificate->failed) {
+        failed.push_back({{"world", each.world}, {"cause", each.cause}});
+    }
+    const auto& probability = certificate->failure_probability;
+    return {{"given", certificate->is_given},
+            {"worlds", certificate->worlds},
+            {"failures", certificate->failures},
+            {"failure_probability",
+             {{"estimate", probability.estimate}, {"low", probability.low}, {"high", probability.high}}},
+            {"max_failure_probability", certificate->max_failure_probability},
+            {"confidence", certificate->confidence},
+            {"attempts", certificate->attempts},
+            {"causes", certificate->causes},
+            {"failed", std::move(failed)}};
+}
+
 Json planning_json(const SearchRecord& record) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
@@ -130,6 +151,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"threads", solution.threads},
         {"cost", solution.plan ? number(solution.cost) : Json()},
         {"planning", planning_json(solution.planning)},
+        {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
         {"execution", execution_json(solution)},
     };

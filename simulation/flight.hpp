@@ -43,6 +43,7 @@ struct FlightRules {
     Bounds bounds;                      ///< of the centre of mass
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
+    double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
     std::function<bool()> is_over;      ///< polled now and then; true ends the flight as interrupted
     bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
 };

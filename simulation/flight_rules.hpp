@@ -15,6 +15,7 @@ struct RuleLimits {
     double x_low_m, x_high_m, z_low_m, z_high_m;
     double arm_low_rad, arm_high_rad;  ///< infinite without limits
     double max_tracking_error_m, max_arm_error_rad;
+    double max_saturation;
 };
 
 /// Those of a flight with this arm.
@@ -27,7 +28,8 @@ inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm
             arm.is_limited ? arm.lower_limit_rad : -infinity,
             arm.is_limited ? arm.upper_limit_rad : infinity,
             rules.max_tracking_error_m,
-            rules.max_arm_error_rad};
+            rules.max_arm_error_rad,
+            rules.max_saturation};
 }
 
 /// Distance of the vehicle from its reference in (x, z) [m].
@@ -65,7 +67,7 @@ T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state, con
                                         lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
     T rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), T(0));
     rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
-    rejection = lane::select(saturation > T(1), number_of(Rejection::saturation), rejection);
+    rejection = lane::select(saturation > T(limits.max_saturation), number_of(Rejection::saturation), rejection);
     return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
 }
 

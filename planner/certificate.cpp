@@ -1,0 +1,66 @@
+#include "downwash/planner/certificate.hpp"
+
+#include <cmath>
+
+namespace downwash {
+
+double binomial_probability(std::uint64_t failures, std::uint64_t worlds, double p) noexcept {
+    if (failures >= worlds) {
+        return 1;
+    }
+    // From the most likely number down, so that nothing is lost where (1 - p)^n is too small for a double.
+    double power = 1;
+    int scale = 0;  // powers of 2^-512 that are left out
+    constexpr double tiny = 0x1p-512;
+    for (std::uint64_t i = 0; i < worlds; ++i) {
+        power *= 1 - p;
+        if (power < tiny) {
+            power /= tiny;
+            ++scale;
+        }
+    }
+    double term = power;
+    double sum = term;
+    for (std::uint64_t k = 1; k <= failures; ++k) {
+        term *= static_cast<double>(worlds - k + 1) / static_cast<double>(k) * p / (1 - p);
+        sum += term;
+        if (scale > 0 && sum > 1 / tiny) {
+            term *= tiny;
+            sum *= tiny;
+            --scale;
+        }
+    }
+    for (; scale > 0; --scale) {
+        sum *= tiny;
+    }
+    return sum < 1 ? sum : 1;
+}
+
+double failure_bound(std::uint64_t failures, std::uint64_t worlds, double alpha) noexcept {
+    if (failures >= worlds) {
+        return 1;
+    }
+    double low = 0;
+    double high = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (binomial_probability(failures, worlds, middle) >= alpha ? low : high) = middle;
+    }
+    return high;
+}
+
+CertificateTest::CertificateTest(double max_failure_probability, double confidence, std::uint64_t attempt) {
+    const auto a = static_cast<double>(attempt);
+    double left = (1 - confidence) / (a * (a + 1));
+    std::uint64_t worlds = 1;
+    for (std::uint64_t failures = 0; failures <= most_failures; ++failures) {
+        const double alpha = failures < most_failures ? 0.5 * left : left;
+        left -= alpha;
+        while (binomial_probability(failures, worlds, max_failure_probability) > alpha) {
+            ++worlds;
+        }
+        stages_[failures] = worlds;
+    }
+}
+
+}  // namespace downwash
