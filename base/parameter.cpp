@@ -40,9 +40,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 21> our_unit
 
 /// Units that people write by mistake.
 constexpr std::array<std::string_view, 32> other_units{
-    "g",    "mm",  "cm",  "km",     "in",   "ft",   "lb",  "rad",    "rad_s2", "ms",
-    "us",   "min", "h",   "kmh",    "km_h", "mph",  "kn",  "knots",  "khz",   "rpm",    "degrees",
-    "rads", "mnm", "n_m", "newton", "g_m2", "kgm2", "nms", "meters", "s2",    "w",      "deg2"};
+    "g",   "mm",  "cm",     "km",   "in",   "ft",  "lb",     "rad", "rad_s2", "ms",      "us",
+    "min", "h",   "kmh",    "km_h", "mph",  "kn",  "knots",  "khz", "rpm",    "degrees", "rads",
+    "mnm", "n_m", "newton", "g_m2", "kgm2", "nms", "meters", "s2",  "w",      "deg2"};
 
 std::string_view suffix_of(std::string_view name) {
     for (const auto& [suffix, unit] : our_units) {

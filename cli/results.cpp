@@ -87,11 +87,11 @@ namespace {
 
 std::string certificate_rows(const Certificate& certificate) {
     const auto& probability = certificate.failure_probability;
-    std::string text = row(
-        "certificate",
-        fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
-                    certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
-                    probability.low, probability.high, 100 * certificate.confidence));
+    std::string text =
+        row("certificate",
+            fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
+                        certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
+                        probability.low, probability.high, 100 * certificate.confidence));
     std::string causes;
     for (const auto& [cause, count] : certificate.causes) {
         causes += (causes.empty() ? "" : ", ") + cause + " " + std::to_string(count);

@@ -9,7 +9,7 @@ namespace downwash {
 /// Most rotors a multirotor may have; lag states are stored in place.
 inline constexpr int max_rotors = 8;
 
-/// Air drag D(v) = (linear + quadratic |v|) v against the speed v through the air (docs/model.md 2.4); zeros: none.
+/// Air drag D(v) = (linear + quadratic |v|) v against the speed v through the air (docs/model.md 2.1); zeros: none.
 struct DragParameters {
     double linear_n_s_m = 0;       ///< >= 0, of the rotors above all
     double quadratic_n_s2_m2 = 0;  ///< >= 0, rho cd A / 2

@@ -172,7 +172,7 @@ struct PlanePoint {
     T x, z;
 };
 
-/// Adds the drag of both bodies in moving air to generalised forces Q [N, N, N m, N m] (docs/model.md 2.4). Along the
+/// Adds the drag of both bodies in moving air to generalised forces Q [N, N, N m, N m] (docs/model.md 2.1). Along the
 /// arm the force is integrated with the two-point Gauss rule: exact where the stream crosses all of it from one side.
 /// @param u speeds [m/s, m/s, rad/s, rad/s]   @param wind velocity of the air [m/s]
 template <class T, class P>

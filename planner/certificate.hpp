@@ -27,7 +27,7 @@ struct Certificate {
     } failure_probability{0, 0, 1};
     double max_failure_probability = 0;
     double confidence = 0;
-    std::uint64_t attempts = 0;  ///< plans that asked for one so far, this one included; they share the error
+    std::uint64_t attempts = 0;  ///< plans of the search that asked for one; they share the error
     std::map<std::string, std::uint64_t> causes;
     std::vector<FailedWorld> failed;  ///< the first of them
 };
@@ -42,7 +42,7 @@ struct Certificate {
 /// When a plan passes: a test in stages. A plan passes stage k with at most k failures in stage_worlds(k); with more
 /// failures than stages it fails. All plans of a search together pass by luck with probability 1 - confidence at most:
 /// attempt a gets the share 1 / (a (a + 1)) of it, and each stage of it half of what is left.
-class CertificateTest {
+class DOWNWASH_EXPORT CertificateTest {
  public:
     static constexpr std::uint64_t most_failures = 3;
 

@@ -39,7 +39,8 @@ class FlightSearch {
           search_worlds_(worlds != nullptr ? worlds->for_search(before) : SearchWorlds{}),
           task_(part, model, map, before.vehicle, worlds != nullptr ? &search_worlds_ : nullptr,
                 before.plan.reference.empty() ? 0 : before.plan.reference.back().tick),
-          start_(start_state(model, whole.start)) {
+          start_(start_state(model, whole.start)),
+          attempts_(before.attempts) {
         goals_.push_back(part.goal);
     }
 
@@ -67,8 +68,8 @@ class FlightSearch {
     FlightState start_;                   ///< of the whole flight
     std::optional<Execution> execution_;  ///< made last
     double execution_wall_s_ = 0;
-    std::optional<Obstruction> discarded_;  ///< what discarded the last plan that was
-    std::uint64_t attempts_ = 0;            ///< plans that asked for a certificate
+    std::optional<Obstruction> discarded_;    ///< what discarded the last plan that was
+    std::uint64_t attempts_;                  ///< plans that asked for a certificate
     std::optional<Certificate> certificate_;  ///< of the plan that was executed last
     /// Of the plans without a certificate the one that failed in the least share of worlds.
     struct Uncertified {
@@ -77,7 +78,7 @@ class FlightSearch {
         Certificate certificate;
     };
     std::optional<Uncertified> uncertified_;
-    double known_at_s_ = 0;                 ///< when it was known whether the last plan counts
+    double known_at_s_ = 0;  ///< when it was known whether the last plan counts
 };
 
 /// Executes a plan and says whether it counts: that of MP-ARM-ADA has to reach its goal and to keep the margin.
@@ -88,8 +89,7 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
         execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_);
     }
     known_at_s_ = clock_.seconds();
-    if (execution_ &&
-        (execution_->outcome != Outcome::ok || execution_->min_clearance_m < settings.safety_margin_m)) {
+    if (execution_ && (execution_->outcome != Outcome::ok || execution_->min_clearance_m < settings.safety_margin_m)) {
         discarded_ = obstruction_of(*execution_, task_.space);
         return false;
     }
@@ -139,6 +139,9 @@ void FlightSearch::account(std::uint64_t iterations, const FlightStatistics& sta
     record.simulated_s = static_cast<double>(statistics.ticks) * task_.model.tick().tick_s;
     record.states_checked = statistics.states_checked;
     record.rejected = statistics.rejected;
+    if (solution_.certificate) {
+        solution_.certificate->attempts = attempts_;
+    }
 }
 
 /// Of a search that found no plan that counts: what it came to, and what stood before the goal. If it had a plan, that
@@ -155,6 +158,7 @@ void FlightSearch::report_failure(const FlightStatistics& statistics, Status sta
         solution_.plan = uncertified_->plan;
         solution_.cost = uncertified_->cost;
         solution_.certificate = uncertified_->certificate;
+        solution_.certificate->attempts = attempts_;
     }
 }
 
@@ -194,13 +198,12 @@ void FlightSearch::run_tree() {
     const OmplTask task(task_, random);
     FlightTreePlanner planner(task.information, task_, options_.threads);
     planner.setProblemDefinition(task.definition);
-    planner.set_hooks(
-        {[&](const Candidate& candidate) { 
-             return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
-         },
-         [&](const Candidate& candidate) {
-             accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
-         }});
+    planner.set_hooks({[&](const Candidate& candidate) {
+                           return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
+                       },
+                       [&](const Candidate& candidate) {
+                           accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
+                       }});
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_observer(

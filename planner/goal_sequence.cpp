@@ -176,6 +176,11 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
         search(part, options_of_part(options, solution.planning, course.cost, is_last), course, found);
         budget.spend(found.planning);
 
+        if (found.certificate) {
+            course.attempts = found.certificate->attempts;
+            solution.certificate = found.certificate;
+        }
+
         const bool is_solved = found.status == Status::solved;
         if (is_last && is_solved) {
             take_improvements(solution.planning, found.planning, course.cost);

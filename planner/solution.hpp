@@ -27,11 +27,11 @@ struct Solution {
     double cost = 0;            ///< the planner's own figure; 0 without a plan
     double execution_cost = 0;  ///< by the same objective in the flight with direct aerodynamics
     SearchRecord planning;
-    std::shared_ptr<const AeroMap> map;  ///< that the search flew in, for SolveOptions::map of another; empty: none
-    std::vector<TreeNode> tree;          ///< of the search, one after the other if it took several; if asked for
-    std::optional<Plan> plan;            ///< empty with Status::none
+    std::shared_ptr<const AeroMap> map;      ///< that the search flew in, for SolveOptions::map of another; empty: none
+    std::vector<TreeNode> tree;              ///< of the search, one after the other if it took several; if asked for
+    std::optional<Plan> plan;                ///< empty with Status::none
     std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
-    std::optional<Execution> execution;  ///< the whole plan flown from the start with direct aerodynamics
+    std::optional<Execution> execution;      ///< the whole plan flown from the start with direct aerodynamics
 };
 
 /// What an executed flight costs.

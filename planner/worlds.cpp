@@ -153,8 +153,8 @@ SearchWorlds ProblemWorlds::for_search(const Course& before) const {
     search.ceiling = ceiling_;
     for (std::uint64_t i = 1; i < problem_.planner.worlds; ++i) {
         const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem_.planner.seed} ^ simulation::mixed(i));
-        search.worlds.push_back(make_world(
-            problem_.robot, world_at(*problem_.uncertainty, problem_.robot, search_quantiles(i), tape)));
+        search.worlds.push_back(
+            make_world(problem_.robot, world_at(*problem_.uncertainty, problem_.robot, search_quantiles(i), tape)));
     }
     const std::vector<std::optional<FlightState>> starts = starts_in(search.worlds);
     std::vector<FlightJob> jobs;

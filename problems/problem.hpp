@@ -67,7 +67,7 @@ struct PlannerSettings {
     std::uint64_t worlds = 8;               ///< that every edge has to survive, the nominal one included, >= 1
     double max_failure_probability = 0.01;  ///< of a plan that is called solved, in (0, 1)
     double confidence = 0.95;               ///< of that, in (0, 1)
-    ParameterValues parameters;     ///< those that differ from their defaults
+    ParameterValues parameters;             ///< those that differ from their defaults
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.

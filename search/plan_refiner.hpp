@@ -65,8 +65,7 @@ class PlanRefiner {
 
     [[nodiscard]] std::optional<Change> changed(const Track& track);
     /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
-    [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first,
-                                    std::size_t last) const;
+    [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const;
     [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
     [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
                                                    std::vector<FleetJob>& jobs);

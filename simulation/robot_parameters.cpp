@@ -27,18 +27,16 @@ Parameter<Robot> group(std::string_view path, std::string_view description) {
 template <class Drag>
 void add_drag(Rows& rows, const std::string& of, std::string_view description, Drag drag) {
     rows.push_back(parameters::group<Robot>(of + ".drag", description));
-    rows.push_back(
-        number(
-            of + ".drag.linear_n_s_m",
-            "force per speed through the air", [drag](auto& r) -> auto& { return drag(r).linear_n_s_m; })
-            .at_least(0)
-            .at_most(1e4));
-    rows.push_back(
-        number(
-            of + ".drag.quadratic_n_s2_m2",
-            "force per square of that speed", [drag](auto& r) -> auto& { return drag(r).quadratic_n_s2_m2; })
-            .at_least(0)
-            .at_most(1e4));
+    rows.push_back(number(
+                       of + ".drag.linear_n_s_m",
+                       "force per speed through the air", [drag](auto& r) -> auto& { return drag(r).linear_n_s_m; })
+                       .at_least(0)
+                       .at_most(1e4));
+    rows.push_back(number(
+                       of + ".drag.quadratic_n_s2_m2",
+                       "force per square of that speed", [drag](auto& r) -> auto& { return drag(r).quadratic_n_s2_m2; })
+                       .at_least(0)
+                       .at_most(1e4));
 }
 
 void add_multirotor(Rows& rows) {

@@ -35,6 +35,21 @@ TEST_CASE("A plan flown again flies as before") {
         CHECK(work.files(home) == before);
         CHECK(work.files(home + "-executed").size() == files_of_a_run);
     }
+    SECTION("and otherwise in another world, the same each time, if the problem says what is uncertain") {
+        check_rejected(work.run("execute", problem, "--plan", plan, "--world 3"), "has no `uncertainty:`");
+        std::string text = work.text(home + "/effective.yaml");
+        const std::string none = "uncertainty: none";
+        text.replace(text.find(none), none.size(), "uncertainty: {}");
+        write_file(work / (home + "/uncertain.yaml"), text);
+        const auto in_world = [&](const std::string& world, const std::string& out) {
+            work.succeed("execute", home + "/uncertain.yaml", "--plan", plan, world, "--out", out);
+            return work.text(out + "/trajectory.csv");
+        };
+        const std::string third = in_world("--world 3", "third");
+        CHECK(in_world("--world 3", "again") == third);
+        CHECK(in_world("--world 0", "nominal") != third);
+        CHECK(in_world("--world 3 --seed 9", "other") != third);
+    }
     SECTION("but not in a problem that starts elsewhere") {
         const Result rejected = work.run("execute", problem_file("open_air"), "--plan", plan);
         check_rejected(rejected, plan + ":");

@@ -23,6 +23,29 @@ const Edit edits[] = {
     {"arm_deg: 90", "color: red",
      "12:1: start.arm_deg is missing: expected a number in deg from -3600 to 3600\n12:26: unknown key 'color' in "
      "start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s or arm_rate_deg_s"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {aero: {ceiling_scale: {sd: -0.1}}}",
+     "13:37: uncertainty.aero.ceiling_scale has a negative sd: expected a standard deviation of at least 0"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {mass_scale: {range: [0.1, -0.1]}}}",
+     "13:37: uncertainty.vehicle.mass_scale has a range upside down: expected [low, high]"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {sensing: {gyro_noise_rad_s: {range: [0, 1]}}}",
+     "13:44: uncertainty.sensing.gyro_noise_rad_s has the unknown form 'range': expected 0 or {sd: number} in rad/s "
+     "from "
+     "0 to 10"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {wind: {gust_m_s: 0.3}}",
+     "13:32: uncertainty.wind.gust_m_s is '0.3': expected 0 or {sd: number} in m/s from 0 to 30"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {aero: {ceiling_scale: {sd: 0.4}}}",
+     "13:37: uncertainty.aero.ceiling_scale has an sd so large that 3 of it leave the range: expected 0 or {sd: "
+     "number} "
+     "or {range: [low, high]} from -0.9 to 0.9"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {weather: {}}",
+     "13:15: unknown key 'weather' in uncertainty: expected aero, vehicle, sensing or wind"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
+     "13:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {}\nplanner: {max_failure_probability: 0}",
+     "14:36: planner.max_failure_probability is 0: expected a number from 0.0001 to 0.5\n18:1: planner is written "
+     "twice: "
+     "expected once, as in line 14"},
+    {"seed: 1", "seed: 1, worlds: 4", "16:81: planner.worlds has a meaning only with an uncertainty: remove it"},
     {"x_m: -4", "x_m: left", "12:14: start.x_m is 'left': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: \"-4\"",
      "12:14: start.x_m is text in quotes, \"-4\": expected a number in m from -100000 to 100000"},
@@ -156,7 +179,8 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n16:101: unknown "
      "key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m or parameters\n16:112: unknown key 'max_iteration' in planner: did you mean 'max_iterations'?"},
+     "safety_margin_m, worlds, max_failure_probability, confidence or parameters\n16:112: unknown key 'max_iteration' "
+     "in planner: did you mean 'max_iterations'?"},
     {"aero:\n", "aero: none\naero2:\n", "10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
     {"seed: 1", "seed: -1", "16:78: planner.seed is '-1': expected a whole number from 0 to 4294967295"},
     {"seed: 1", "seed: 1.5", "16:78: planner.seed is '1.5': expected a whole number from 0 to 4294967295"},
@@ -177,7 +201,7 @@ const Edit edits[] = {
      "16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
      "16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m or parameters"},
+     "safety_margin_m, worlds, max_failure_probability, confidence or parameters"},
 };
 
 }  // namespace

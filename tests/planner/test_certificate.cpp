@@ -1,0 +1,140 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "../support/error_of.hpp"
+#include "../support/random.hpp"
+#include "../support/same_bytes.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/planner/certificate.hpp"
+#include "downwash/planner/solve.hpp"
+
+// What plans are worth where not everything is as believed.
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+/// The ceiling problem with what is not known, and a controller that bears it.
+Problem uncertain_problem() {
+    Problem problem = ceiling_problem();
+    ModelInversion& gains = gains_of(problem.robot);
+    gains.position_kp = 3;
+    gains.position_kd = 3.2;
+    gains.position_ki = 1.2;
+    gains.attitude_rate_ki = 10;
+    gains.arm_ki = 40;
+    problem.goal = tip_goal(3, 4.6);
+    problem.uncertainty.emplace();
+    problem.planner.worlds = 4;
+    problem.planner.max_failure_probability = 0.05;
+    return problem;
+}
+
+/// The share of searches in which some plan passes, all of which fail with probability p; ten plans in each.
+double share_that_passes(double p, double max_p, double confidence, int searches) {
+    Random random(4);
+    std::vector<CertificateTest> tests;
+    for (std::uint64_t attempt = 1; attempt <= 10; ++attempt) {
+        tests.emplace_back(max_p, confidence, attempt);
+    }
+    int passed = 0;
+    for (int i = 0; i < searches; ++i) {
+        bool passes = false;
+        for (std::size_t attempt = 0; attempt < tests.size() && !passes; ++attempt) {
+            std::uint64_t failures = 0;
+            for (std::uint64_t worlds = 1; failures <= CertificateTest::most_failures && !passes; ++worlds) {
+                failures += random.uniform(0, 1) < p ? 1 : 0;
+                passes = failures <= CertificateTest::most_failures && worlds >= tests[attempt].stage_worlds(failures);
+            }
+        }
+        passed += passes ? 1 : 0;
+    }
+    return static_cast<double>(passed) / searches;
+}
+
+}  // namespace
+
+TEST_CASE("Bounds of a failure probability are those of Clopper and Pearson") {
+    CHECK(binomial_probability(0, 299, 0.01) == Approx(std::pow(0.99, 299)).epsilon(1e-12));
+    CHECK(binomial_probability(0, 298, 0.01) > 0.05);
+    CHECK(binomial_probability(0, 299, 0.01) < 0.05);
+    CHECK(binomial_probability(2, 4, 0.5) == Approx(11.0 / 16));
+    // Two-sided 95 % intervals as tabulated: 5 of 100, 0 of 20, 20 of 20, 10 of 1000.
+    CHECK(failure_bound(5, 100, 0.025) == Approx(0.11283).margin(1e-5));
+    CHECK(1 - failure_bound(95, 100, 0.025) == Approx(0.01643).margin(1e-5));
+    CHECK(failure_bound(0, 20, 0.025) == Approx(0.16843).margin(1e-5));
+    CHECK(failure_bound(20, 20, 0.025) == 1);
+    CHECK(failure_bound(10, 1000, 0.025) == Approx(0.01831).margin(1e-5));
+    // Where (1 - p)^n is no double any more.
+    CHECK(binomial_probability(5000, 10000, 0.5) == Approx(0.504).margin(1e-3));
+}
+
+TEST_CASE("Plans that fail too often do not pass by luck more often than allowed, however many try") {
+    CHECK(share_that_passes(0.0101, 0.01, 0.95, 1500) < 0.05 + 3 * std::sqrt(0.05 * 0.95 / 1500));
+    CHECK(share_that_passes(0.055, 0.05, 0.8, 1500) < 0.2 + 3 * std::sqrt(0.2 * 0.8 / 1500));
+    CHECK(share_that_passes(0.0005, 0.01, 0.95, 300) > 0.95);  // good ones do
+}
+
+TEST_CASE("A plan is solved with its certificate, the same on any number of threads") {
+    const Problem problem = uncertain_problem();
+    SolveOptions options;
+    const Solution one = solve(problem, options);
+    REQUIRE(one.status == Status::solved);
+    REQUIRE(one.certificate);
+    CHECK(one.certificate->is_given);
+    CHECK(one.certificate->worlds >= 72);  // 0 failures at half of 5 %, of which the first stage has half
+    CHECK(one.certificate->failure_probability.high < 0.1);
+    options.threads = 3;
+    const Solution three = solve(problem, options);
+    CHECK(three.cost == one.cost);
+    CHECK(three.certificate->worlds == one.certificate->worlds);
+    CHECK(three.certificate->attempts == one.certificate->attempts);
+    CHECK(same_bytes(*three.plan, *one.plan));
+    CHECK(same_bytes(*three.execution, *one.execution));
+}
+
+TEST_CASE("Goals in turn are certified as a whole, from start to end") {
+    Problem problem = uncertain_problem();
+    problem.stops = {tip_goal(-1, 4.2)};
+    problem.stops[0].hold_s = 1;
+    problem.planner.max_iterations = 300;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    REQUIRE(solution.certificate);
+    CHECK(solution.certificate->is_given);
+    CHECK(solution.execution->goals.size() == 2);
+}
+
+TEST_CASE("Without uncertainty no plan has a certificate, and knobs of worlds change nothing") {
+    Problem problem = ceiling_problem();
+    const Solution plain = solve(problem);
+    CHECK_FALSE(plain.certificate);
+    problem.planner.worlds = 3;
+    CHECK(same_bytes(*solve(problem).plan, *plain.plan));
+}
+
+TEST_CASE("A plan that only works as believed is approximate, with the share of worlds in which it fails") {
+    Problem problem = uncertain_problem();
+    problem.planner.worlds = 1;
+    problem.planner.max_failure_probability = 0.001;
+    problem.goal.end_effector->tolerance_m = 0.03;
+    problem.uncertainty->position_bias_m = Spread::of_sd(0.03);
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::approximate);
+    REQUIRE(solution.certificate);
+    CHECK_FALSE(solution.certificate->is_given);
+    CHECK(solution.certificate->failures > CertificateTest::most_failures);
+    CHECK(solution.certificate->causes.contains("goal_missed"));
+    CHECK(solution.certificate->failed.front().world > 0);
+    CHECK(solution.plan.has_value());
+}
+
+TEST_CASE("An uncertainty so wide that the vehicle cannot even hover at its start is said so at once") {
+    Problem problem = uncertain_problem();
+    problem.robot.rotors.time_constant_s = 0.02;
+    problem.uncertainty->rotor_time_constant_s = Spread::over(0.02, 0.9);
+    const std::string error = error_of([&] { static_cast<void>(solve(problem)); });
+    CHECK_THAT(error, Catch::Contains("uncertainty") && Catch::Contains("cannot hover at its start"));
+}
