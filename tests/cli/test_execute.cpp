@@ -40,8 +40,8 @@ TEST_CASE("A plan flown again flies as before") {
         std::string text = work.text(home + "/effective.yaml");
         const std::string none = "uncertainty: none";
         text.replace(text.find(none), none.size(), "uncertainty: {}");
-        write_file(work / (home + "/uncertain.yaml"), text);
-        const auto in_world = [&](const std::string& world, const std::string& out) {
+        write_file(work.in_run(home + "/uncertain.yaml"), text);
+        const auto in_world = [&](const char* world, const std::string& out) {
             work.succeed("execute", home + "/uncertain.yaml", "--plan", plan, world, "--out", out);
             return work.text(out + "/trajectory.csv");
         };
