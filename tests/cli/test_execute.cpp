@@ -42,7 +42,8 @@ TEST_CASE("A plan flown again flies as before") {
         text.replace(text.find(none), none.size(), "uncertainty: {}");
         write_file(work.in_run(home + "/uncertain.yaml"), text);
         const auto in_world = [&](const char* world, const std::string& out) {
-            work.succeed("execute", home + "/uncertain.yaml", "--plan", plan, world, "--out", out);
+            const int code = work.run("execute", home + "/uncertain.yaml", "--plan", plan, world, "--out", out).code;
+            CHECK((code == 0 || code == 3));  // in some worlds it fails
             return work.text(out + "/trajectory.csv");
         };
         const std::string third = in_world("--world 3", "third");
