@@ -48,16 +48,6 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
     }
 }
 
-/// The velocity of the air [m/s]: a factor that knows a wind says so by `wind()`; otherwise the air is calm.
-template <class T, class Factor>
-PlanePoint<T> wind_of(const Factor& factor) {
-    if constexpr (requires { factor.wind(); }) {
-        return factor.wind();
-    } else {
-        return {T(0), T(0)};
-    }
-}
-
 /// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
 /// says so by `thrust_scale(rotor)`.
 template <class T, class Factor>
@@ -117,7 +107,8 @@ T rotor_power(const BasicPlantModel<P>& model, const T thrust_n[max_rotors]) {
 
 /// du/dt of the plant under the free-air thrusts of its rotors.
 /// @param q,u coordinates [m, m, rad, rad] and their speeds   @param motion at q and u: motion_at(model, q, u)
-/// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench()
+/// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench(); there is drag only where it
+/// says how fast the air is, by `wind()` [m/s]
 /// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
 template <class T, class Factor, class P>
 void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], const Motion<T>& motion,
@@ -126,8 +117,10 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
     T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
                   joint_torque_nm};
-    if (model.has_drag) {
-        add_drag(model, a, u, wind_of<T>(factor), force);
+    if constexpr (requires { factor.wind(); }) {
+        if (model.has_drag) {
+            add_drag(model, a, u, factor.wind(), force);
+        }
     }
     forward_dynamics(model, motion.equations, force, du);
 }

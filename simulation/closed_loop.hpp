@@ -17,13 +17,17 @@ struct TickModel {
     double tick_s;  ///< control period, 1 / rate_hz
 };
 
-/// Everything about the vehicle that changes in flight: bodies, rotor lag, energy, every integrator, and what its world
-/// remembers. Nothing but T: see base/numbers.hpp.
+/// What the plain tick changes: bodies, rotor lag, energy, and every integrator. Nothing but T: see base/numbers.hpp.
 template <class T>
-struct State {
+struct VehicleState {
     dynamics::PlantState<T> plant;
     controllers::LawMemory<T> memory;
-    WorldMemory<T> world;  ///< as it was where nothing is late and no gust blows
+};
+
+/// Everything about the vehicle that changes in flight, with what its world remembers. Nothing but T.
+template <class T>
+struct State : VehicleState<T> {
+    WorldMemory<T> world;  ///< the plain tick leaves it as it is
 };
 
 // With the narrow registers of every processor a tick with all that it calls in one place takes a sixth less; kernels
@@ -42,15 +46,14 @@ struct State {
 /// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
 /// dynamics::RefinedStep
 template <class T, class Law, class Factor, class Integrate = dynamics::OneStep>
-DOWNWASH_IN_ONE_PIECE State<T> tick(const TickModel& model, const Law& law, const State<T>& state,
-                                    const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference,
-                                    Factor&& factor, controllers::Actuation<T>& given,
-                                    const Integrate& integrate = {}) {
-    State<T> next;
+DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<T>& state,
+                                           const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference,
+                                           Factor&& factor, controllers::Actuation<T>& given,
+                                           const Integrate& integrate = {}) {
+    VehicleState<T> next;
     next.memory = controllers::remembered(law.control(
         model.plant, state.plant, motion, controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
     next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
-    next.world = state.world;
     return next;
 }
 
@@ -98,7 +101,10 @@ State<double> tick(const TickModel& model, const State<double>& state, const Ref
                    controllers::Actuation<double>& given, const Integrate& integrate = {}) {
     const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
     return std::visit(
-        [&](const auto& law) { return tick(model, law, state, motion, reference, factor, given, integrate); },
+        [&](const auto& law) {
+            const VehicleState<double>& vehicle = state;
+            return State<double>{tick(model, law, vehicle, motion, reference, factor, given, integrate), state.world};
+        },
         model.law);
 }
 

@@ -20,11 +20,13 @@ using LaneRows = double[sizeof(Struct) / sizeof(double)][lane_count];
 
 /// Everything about the edges that changes, as structure of arrays; [..][lane].
 struct alignas(64) FlightLanes {
-    LaneRows<State<double>> state;
-    LaneRows<WorldNumbers<double>> world;  ///< unused where no flight is in a world
-    std::uint64_t tape[lane_count];        ///< of its noise
-    double first_tick[lane_count];         ///< of the segment, from the start of the whole flight
-    LaneRows<ReferencePoint> reference;    ///< at the current tick
+    LaneRows<VehicleState<double>> state;
+    // Unused where no flight is in a world.
+    LaneRows<WorldMemory<double>> world_memory;
+    LaneRows<WorldNumbers<double>> world;
+    std::uint64_t tape[lane_count];      ///< of its noise
+    double first_tick[lane_count];       ///< of the segment, from the start of the whole flight
+    LaneRows<ReferencePoint> reference;  ///< at the current tick
 
     // The segment that is flown.
     double coefficient[3][6][lane_count];

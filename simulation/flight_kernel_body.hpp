@@ -20,8 +20,8 @@ static_assert(lane_count % lane::pack_width == 0);
 /// 0 where every hub is in a cell that is flyable throughout.
 /// @param scene_x_m,scene_z_m where the surfaces are, from where the map has them
 template <class Effect>
-Pack flyable_doubt(const PlantModel& plant, const State<Pack>& state, const dynamics::Attitude<Pack>& a, Pack scene_x_m,
-                   Pack scene_z_m, Effect& effect) {
+Pack flyable_doubt(const PlantModel& plant, const VehicleState<Pack>& state, const dynamics::Attitude<Pack>& a,
+                   Pack scene_x_m, Pack scene_z_m, Effect& effect) {
     Pack doubt(0);
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
         if (effect.same_as(rotor) == rotor) {
@@ -110,7 +110,8 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     }
     const Law& law = *static_cast<const Law*>(model.law);
     const PlantModel& plant = model.tick->plant;
-    auto state = group.load<State<Pack>>(lanes.state);
+    std::conditional_t<is_in_worlds, State<Pack>, VehicleState<Pack>> state;
+    static_cast<VehicleState<Pack>&>(state) = group.load<VehicleState<Pack>>(lanes.state);
     auto reference = group.load<BasicReferencePoint<Pack>>(lanes.reference);
     Pack tick_count = group.load(lanes.tick);
     auto sums = group.load<BasicFlightSums<Pack>>(lanes.sums);
@@ -127,12 +128,13 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     Pack noise[noise_count] = {};
     Pack first_tick;
     if constexpr (is_in_worlds) {
+        state.world = group.load<WorldMemory<Pack>>(lanes.world_memory);
         world = group.load<WorldNumbers<Pack>>(lanes.world);
         first_tick = group.load(lanes.first_tick);
     }
     for (int n = 0; n < max_ticks; ++n) {
         controllers::Actuation<Pack> given;
-        State<Pack> next;
+        decltype(state) next;
         if constexpr (is_in_worlds) {
             if (model.has_noise) {
                 draw_noises(model, group, first_tick + tick_count, noise);
@@ -172,7 +174,10 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
             break;
         }
     }
-    group.store(state, lanes.state);
+    group.store<VehicleState<Pack>>(state, lanes.state);
+    if constexpr (is_in_worlds) {
+        group.store(state.world, lanes.world_memory);
+    }
     group.store(reference, lanes.reference);
     group.store(tick_count, lanes.tick);
     group.store(sums, lanes.sums);

@@ -45,7 +45,8 @@ class FlightLane {
         leg_ = 0;
         world_ = flown_world(setting_->model, job.world);
         first_tick_ = job.first_tick;
-        write(job.start, lanes_->state);
+        write<VehicleState<double>>(job.start, lanes_->state);
+        write(job.start.world, lanes_->world_memory);
         write((world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers, lanes_->world);
         lanes_->tape[number_] = world_ != nullptr ? world_->world.tape : 0;
         lanes_->is_active[number_] = 1;
@@ -116,7 +117,9 @@ class FlightLane {
             rows[i][number_] = number_at<double>(from, i);
         }
     }
-    [[nodiscard]] FlightState state() const noexcept { return read<FlightState>(lanes_->state); }
+    [[nodiscard]] FlightState state() const noexcept {
+        return {read<VehicleState<double>>(lanes_->state), read<WorldMemory<double>>(lanes_->world_memory)};
+    }
 
     [[nodiscard]] const PlantModel& plant() const noexcept { return setting_->model.tick().plant; }
 

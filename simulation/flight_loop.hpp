@@ -48,7 +48,7 @@ inline bool is_flyable(const FlightModel& model, const AeroMap& map, const Plana
 template <class Factor, class Integrate = dynamics::OneStep>
 FlightState nominal_tick(const FlightModel& model, const FlightState& state, const ReferencePoint& reference,
                          Factor&& factor, controllers::Actuation<double>& given, const Integrate& integrate = {}) {
-    if (model.sees_at_once()) {
+    if (model.flies_plainly()) {
         return tick(model.tick(), state, reference, factor, given, integrate);
     }
     const double no_noise[noise_count] = {};
@@ -102,7 +102,9 @@ Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, Fac
             for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
                 controllers::Actuation<double> given{};
                 const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
-                const FlightState next = tick(model, law, state, motion, reference, factor, given, integrate);
+                const VehicleState<double>& vehicle = state;
+                const FlightState next{tick(model, law, vehicle, motion, reference, factor, given, integrate),
+                                       state.world};
                 const ReferencePoint next_reference = segment.at_tick(t + 1);
                 rejection = after(state, reference, given, next, next_reference);
                 state = next;

@@ -30,8 +30,11 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const simulation::TickModel& tick() const noexcept { return tick_; }
     /// The world in which everything is as believed.
     [[nodiscard]] const FlownWorld& nominal_world() const noexcept { return nominal_world_; }
-    /// Whether the controller sees the state at once: then tick() is the tick of the nominal world.
-    [[nodiscard]] bool sees_at_once() const noexcept { return robot_.controller.delay_s == 0; }
+    /// Whether the plain tick is that of the nominal world: there is no drag, and the controller sees the state at
+    /// once.
+    [[nodiscard]] bool flies_plainly() const noexcept {
+        return robot_.controller.delay_s == 0 && !tick_.plant.has_drag;
+    }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
     /// The surface effect on rotor i, or on tick().plant.body() (see rotor_wrench).
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
@@ -87,7 +90,7 @@ struct FlightWorld {
 
 /// The world in which to fly tick by tick; nullptr where that is the nominal one and the plain tick does.
 [[nodiscard]] inline const FlownWorld* flown_world(const FlightModel& model, const FlownWorld* world) noexcept {
-    return world != nullptr || model.sees_at_once() ? world : &model.nominal_world();
+    return world != nullptr || model.flies_plainly() ? world : &model.nominal_world();
 }
 
 /// A pose as the obstacles of a world see it.

@@ -34,7 +34,7 @@ inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm
 
 /// Distance of the vehicle from its reference in (x, z) [m].
 template <class T>
-T tracking_error(const State<T>& state, const BasicReferencePoint<T>& reference) {
+T tracking_error(const VehicleState<T>& state, const BasicReferencePoint<T>& reference) {
     const T dx = reference.position[0] - state.plant.q[0];
     const T dz = reference.position[1] - state.plant.q[1];
     return lane::sqrt(dx * dx + dz * dz);
@@ -42,7 +42,7 @@ T tracking_error(const State<T>& state, const BasicReferencePoint<T>& reference)
 
 /// How far beyond stability: positive where a number is not finite, or the vehicle tumbles or runs away.
 template <class T>
-T instability(const State<T>& state, T tracking_error_m) {
+T instability(const VehicleState<T>& state, T tracking_error_m) {
     T sum(0);  // not finite as soon as one number is not
     for (int i = 0; i < 4; ++i) {
         sum = sum + lane::abs(state.plant.q[i]) + lane::abs(state.plant.u[i]);
@@ -56,7 +56,8 @@ T instability(const State<T>& state, T tracking_error_m) {
 /// Rejection; 0 for none.
 /// @param saturation of the tick   @param state,reference at its end
 template <class T>
-T broken_rule(const RuleLimits& limits, T saturation, const State<T>& state, const BasicReferencePoint<T>& reference) {
+T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& state,
+              const BasicReferencePoint<T>& reference) {
     const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);

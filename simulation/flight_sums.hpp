@@ -19,7 +19,8 @@ namespace simulation {
 
 /// Adds what one tick contributes.
 template <class T>
-void add_tick(BasicFlightSums<T>& sums, const PlantModel& plant, const State<T>& before, const State<T>& next) {
+void add_tick(BasicFlightSums<T>& sums, const PlantModel& plant, const VehicleState<T>& before,
+              const VehicleState<T>& next) {
     const T dx = next.plant.q[0] - before.plant.q[0];
     const T dz = next.plant.q[1] - before.plant.q[1];
     const T da = T(0.5 * plant.arm_length_m) * (next.plant.q[3] - before.plant.q[3]);

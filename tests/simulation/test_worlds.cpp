@@ -108,7 +108,6 @@ struct Hover {
 TEST_CASE("The world without any difference is the nominal one, to the last bit") {
     Robot robot = test_robot();
     robot.rotors.time_constant_s = GENERATE(0.0, 0.02);
-    robot.multirotor.drag = {1.5, 0.04};
     const Problem problem = problem_with(robot);
     const auto model = make_flight_model(problem);
     const auto map = model->make_map(problem.bounds);
