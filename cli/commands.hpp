@@ -21,6 +21,7 @@ void add_explain(CLI::App& program, Action& action);
 void add_manual(CLI::App& program, Action& action);
 void add_completion(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
+void add_margins(CLI::App& program, Action& action);
 void add_planners(CLI::App& program, Action& action);
 void add_aeromap_query(CLI::App& aeromap, Action& action);
 void add_aeromap_build(CLI::App& aeromap, Action& action);

@@ -1,6 +1,8 @@
 #include "downwash/simulation/hover_trim.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace downwash::simulation {
 namespace {
@@ -49,6 +51,11 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
     for (int i = 0; i < plant.rotor_count; ++i) {
         trim.state.plant.thrust_n[i] = trim.rotor_command_n[i];
         trim.feeds_back.plant.thrust_n[i] = plant.has_rotor_lag;
+    }
+
+    for (PastMotion<bool>& past : trim.feeds_back.world.past) {
+        std::fill(std::begin(past.q), std::end(past.q), robot.controller.delay_s > 0);
+        std::fill(std::begin(past.u), std::end(past.u), robot.controller.delay_s > 0);
     }
 
     // The controller's side.

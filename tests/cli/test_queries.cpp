@@ -96,6 +96,22 @@ TEST_CASE("A point query superposes both sides and is null where not flyable") {
     CHECK(points[2].at("flyable") == false);
 }
 
+TEST_CASE("margins prints how far a robot's loops are from instability, as a table and as JSON") {
+    const Workspace work;
+    const std::string robot = std::string(DOWNWASH_PROBLEMS) + "/robots/ars_lrm.yaml";
+    const auto printed = work.json("margins", robot);
+    CHECK(printed.at("robot") == "ars_lrm");
+    REQUIRE(printed.at("margins").size() == 9);  // arm up, level and down; three loops
+    const std::string text = work.run("margins", robot).out;
+    for (const auto& row : printed.at("margins")) {
+        CHECK(row.at("gain_margin_db").get<double>() > 0);
+        CHECK(row.at("phase_margin_deg").get<double>() > 0);
+        CHECK(row.at("is_enough").get<bool>() == (row.at("gain_margin_db") >= 6 && row.at("phase_margin_deg") >= 45));
+        CHECK_THAT(text, Contains(row.at("loop").get<std::string>()));
+    }
+    check_rejected(work.run("margins nowhere.yaml"), "nowhere.yaml");
+}
+
 TEST_CASE("Planners are listed for people and for programs") {
     const Workspace work;
     const auto planners = work.json("planners").at("planners");

@@ -1,0 +1,182 @@
+#include "downwash/simulation/loop_margins.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/hover_analysis.hpp"
+
+namespace downwash {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr std::array<std::string_view, 3> input_names = {"thrust", "pitch_torque", "joint_torque"};
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// One tick, with something added to a command between controller and plant.
+struct Disturbed {
+    const FlightModel& model;
+    const HoverTrim& trim;
+    LoopInput input;
+
+    struct Result {
+        FlightState next;
+        double commanded;  ///< by the controller, before anything is added
+    };
+
+    [[nodiscard]] Result operator()(const FlightState& state, double added) const {
+        const PlantModel& plant = model.tick().plant;
+        const auto integrate = [&](const auto& flown, const auto& from, const auto& motion,
+                                   dynamics::PlantCommand<double> command, double dt_s, const auto& surroundings) {
+            if (input == LoopInput::joint_torque) {
+                command.joint_torque_nm += added;
+            } else {
+                double share_n[max_rotors] = {};
+                const bool is_thrust = input == LoopInput::thrust;
+                dynamics::allocate(plant, is_thrust ? added : 0.0, is_thrust ? 0.0 : added, share_n);
+                for (int i = 0; i < plant.rotor_count; ++i) {
+                    command.thrust_n[i] += share_n[i];
+                }
+            }
+            return dynamics::flight_step(flown, from, motion, command, dt_s, surroundings);
+        };
+        controllers::Actuation<double> given{};
+        Result result{};
+        result.next = simulation::nominal_tick(model, state, trim.reference, simulation::NoEffect{}, given, integrate);
+        for (int i = 0; i < plant.rotor_count; ++i) {
+            result.commanded += input == LoopInput::thrust         ? given.command.thrust_n[i]
+                                : input == LoopInput::pitch_torque ? -plant.rotor_x_m[i] * given.command.thrust_n[i]
+                                                                   : 0;
+        }
+        if (input == LoopInput::joint_torque) {
+            result.commanded = given.command.joint_torque_nm;
+        }
+        return result;
+    }
+};
+
+/// The closed loop from what is added to a command to that command: x' = A x + B u, y = C x.
+struct LinearLoop {
+    Eigen::MatrixXd a;
+    Eigen::VectorXd b;
+    Eigen::RowVectorXd c;
+};
+
+LinearLoop linearised(const Disturbed& tick) {
+    constexpr double step = 1e-6;
+    constexpr int all = number_count<double, FlightState>;
+    std::vector<int> used;
+    for (int i = 0; i < all; ++i) {
+        if (number_at<bool>(tick.trim.feeds_back, i)) {
+            used.push_back(i);
+        }
+    }
+    const auto size = static_cast<Eigen::Index>(used.size());
+    LinearLoop loop{Eigen::MatrixXd(size, size), Eigen::VectorXd(size), Eigen::RowVectorXd(size)};
+    const auto difference = [&](const Disturbed::Result& above, const Disturbed::Result& below, auto column) {
+        for (Eigen::Index row = 0; row < size; ++row) {
+            const int i = used[static_cast<std::size_t>(row)];
+            column(row) = (number_at<double>(above.next, i) - number_at<double>(below.next, i)) / (2 * step);
+        }
+    };
+    for (Eigen::Index column = 0; column < size; ++column) {
+        const auto changed = [&](double change) {
+            FlightState state = tick.trim.state;
+            const int i = used[static_cast<std::size_t>(column)];
+            set_number_at(state, i, number_at<double>(state, i) + change);
+            return tick(state, 0);
+        };
+        const Disturbed::Result above = changed(step);
+        const Disturbed::Result below = changed(-step);
+        difference(above, below, [&](Eigen::Index row) -> double& { return loop.a(row, column); });
+        loop.c(column) = (above.commanded - below.commanded) / (2 * step);
+    }
+    difference(tick(tick.trim.state, step), tick(tick.trim.state, -step),
+               [&](Eigen::Index row) -> double& { return loop.b(row); });
+    return loop;
+}
+
+/// The loop's gain L at a frequency: the command that comes back, reversed, for one that goes in. With T from what is
+/// added to the command, u = y + d and y = T d, so that L = -T / (1 + T).
+Complex gain_at(const LinearLoop& loop, double angle_rad) {
+    const Eigen::Index size = loop.a.rows();
+    const Eigen::MatrixXcd resolvent =
+        std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - loop.a.cast<Complex>();
+    const Eigen::VectorXcd response = resolvent.partialPivLu().solve(loop.b.cast<Complex>());
+    const Complex t = (loop.c.cast<Complex>() * response)(0);
+    return -t / (1.0 + t);
+}
+
+/// Margins from samples of L over rising frequencies, between which its logarithm is taken as linear.
+LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
+    constexpr int samples = 2000;
+    constexpr double lowest_rad_s = 0.02;
+    const double highest_rad_s = std::numbers::pi / tick_s;
+    LoopMargins margins{infinity, infinity, 0, infinity};
+    double frequency_before = 0;
+    Complex before;
+    for (int i = 0; i < samples; ++i) {
+        const double share = static_cast<double>(i) / (samples - 1);
+        const double frequency = lowest_rad_s * std::pow(highest_rad_s / lowest_rad_s, share);
+        const Complex gain = gain_at(loop, std::min(frequency * tick_s, std::numbers::pi));
+        if (i > 0) {
+            const double size = std::log(std::abs(gain));
+            const double size_before = std::log(std::abs(before));
+            if (size * size_before <= 0 && size != size_before) {  // the gain crosses 1
+                const double at = size_before / (size_before - size);
+                const double frequency_there = frequency_before * std::pow(frequency / frequency_before, at);
+                const double phase = std::arg(-before) + at * std::arg(gain / before);  // from -1
+                const double folded = std::remainder(phase, 2 * std::numbers::pi);
+                margins.phase_margin_rad = std::min(margins.phase_margin_rad, std::abs(folded));
+                margins.crossover_rad_s = frequency_there;
+                const double lag = folded >= 0 ? folded : folded + 2 * std::numbers::pi;
+                margins.delay_margin_s = std::min(margins.delay_margin_s, lag / frequency_there);
+            }
+            const bool crosses_axis = gain.imag() * before.imag() <= 0 && gain.imag() != before.imag();
+            if (crosses_axis) {
+                const double at = before.imag() / (before.imag() - gain.imag());
+                const double real = before.real() + at * (gain.real() - before.real());
+                if (real < 0) {
+                    margins.gain_margin_db = std::min(margins.gain_margin_db, std::abs(20 * std::log10(-real)));
+                }
+            }
+        }
+        before = gain;
+        frequency_before = frequency;
+    }
+    return margins;
+}
+
+}  // namespace
+
+std::string_view name_of(LoopInput input) {
+    return input_names[static_cast<std::size_t>(input)];
+}
+
+std::array<LoopMargins, 3> loop_margins(const Robot& robot, double arm_rad) {
+    AeroSettings calm;
+    calm.enabled = false;
+    const FlightModel model(robot, {}, std::make_shared<const Scene>(std::vector<Obstacle>{}), calm);
+    const HoverAnalysis hover = analyse_hover(model, 0, 0, arm_rad);
+    if (hover.verdict != HoldVerdict::stable) {
+        throw_input_error("cannot hover in free air with its arm at this angle: " +
+                              std::string(hover.verdict == HoldVerdict::unstable ? "the loop is unstable"
+                                                                                 : name_of(hover.trim.limit)),
+                          "controller");
+    }
+    std::array<LoopMargins, 3> margins{};
+    for (const LoopInput input : all_loop_inputs) {
+        margins[static_cast<std::size_t>(input)] =
+            margins_of(linearised({model, hover.trim, input}), model.tick().tick_s);
+    }
+    return margins;
+}
+
+}  // namespace downwash

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "downwash/base/export.hpp"
+#include "downwash/simulation/robot.hpp"
+
+namespace downwash {
+
+/// The commands at which a loop is opened, one at a time, the others closed.
+enum class LoopInput : std::uint8_t { thrust, pitch_torque, joint_torque };
+
+/// All of them, in the order of their numbers.
+inline constexpr std::array all_loop_inputs{LoopInput::thrust, LoopInput::pitch_torque, LoopInput::joint_torque};
+
+/// Name in files: "pitch_torque".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(LoopInput input);
+
+/// How far a loop is from instability.
+struct LoopMargins {
+    double gain_margin_db = 0;    ///< least change of the gain, up or down, that makes it unstable; infinite: none
+    double phase_margin_rad = 0;  ///< least lag, or lead, that does at a gain of 1; infinite: the gain is never 1
+    double crossover_rad_s = 0;   ///< greatest frequency at which the gain is 1; 0: none
+    double delay_margin_s = 0;    ///< least further delay that makes it unstable by its phase margins
+};
+
+/// The margins of a vehicle that hovers in free air with its arm at an angle, for every LoopInput. The loop is that of
+/// the sampled system: controller, rotor lag, delay and plant, linearised at the trim.
+/// @pre robot_errors(robot) is empty   @throws InputError when it cannot hover or is unstable there
+[[nodiscard]] DOWNWASH_EXPORT std::array<LoopMargins, 3> loop_margins(const Robot& robot, double arm_rad);
+
+}  // namespace downwash

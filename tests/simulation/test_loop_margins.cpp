@@ -1,0 +1,59 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "../support/error_of.hpp"
+#include "../support/test_robot.hpp"
+#include "downwash/simulation/loop_margins.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+LoopMargins of(const std::array<LoopMargins, 3>& all, LoopInput input) {
+    return all[static_cast<std::size_t>(input)];
+}
+
+/// The height loop of a hanging arm: a PID on a double integrator with a hold, and a whole number of ticks of delay.
+std::complex<double> height_loop(const ModelInversion& gains, double tick_s, int delay_ticks, double frequency_rad_s) {
+    const std::complex<double> z = std::polar(1.0, frequency_rad_s * tick_s);
+    const std::complex<double> height = tick_s * tick_s * (z + 1.0) / (2.0 * (z - 1.0) * (z - 1.0));
+    const std::complex<double> speed = tick_s / (z - 1.0);
+    return (gains.position_kp * height + gains.position_kd * speed + gains.position_ki * height * tick_s / (z - 1.0)) *
+           std::pow(z, -delay_ticks);
+}
+
+}  // namespace
+
+TEST_CASE("The margins of the height loop are those of its transfer function") {
+    Robot robot = test_robot();
+    const int delay_ticks = GENERATE(0, 1, 3);
+    robot.controller.delay_s = 0.01 * delay_ticks;
+    const ModelInversion& gains = gains_of(robot);
+    // The delayed integral adds up what is seen; one more tick of a slow integral is below the tolerances here.
+    const LoopMargins margins = of(loop_margins(robot, quarter_turn), LoopInput::thrust);
+    double low = 0.5, high = 20;  // the only crossing of 1
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (std::abs(height_loop(gains, 0.01, delay_ticks, middle)) > 1 ? low : high) = middle;
+    }
+    CHECK(margins.crossover_rad_s == Approx(low).epsilon(1e-3));
+    const double phase = std::arg(-height_loop(gains, 0.01, delay_ticks, low));
+    CHECK(margins.phase_margin_rad == Approx(phase).epsilon(1e-3));
+    CHECK(margins.delay_margin_s == Approx(phase / low).epsilon(1e-3));
+}
+
+TEST_CASE("A loop loses its margin with rotor lag and delay, and has none where it is unstable") {
+    Robot robot = test_robot();
+    const double at_once = of(loop_margins(robot, 0.0), LoopInput::pitch_torque).phase_margin_rad;
+    robot.rotors.time_constant_s = 0.02;
+    const double lagging = of(loop_margins(robot, 0.0), LoopInput::pitch_torque).phase_margin_rad;
+    robot.controller.delay_s = 0.01;
+    const double late = of(loop_margins(robot, 0.0), LoopInput::pitch_torque).phase_margin_rad;
+    CHECK(lagging < at_once);
+    CHECK(late < lagging);
+    robot.rotors.time_constant_s = 0.2;
+    CHECK_THAT(error_of([&] { static_cast<void>(loop_margins(robot, 0.0)); }), Catch::Contains("unstable"));
+}
