@@ -107,12 +107,21 @@ void clearance(benchmark::State& state) {
 }
 BENCHMARK(clearance);
 
-/// Random edges all over the bridge under all rules, side by side.
-void batch(benchmark::State& state, bool is_aware, Instructions instructions, int threads) {
+/// What the planner's own model knows.
+enum class Model : std::uint8_t { dynamics, aerodynamics, worlds };
+
+/// Random edges all over the bridge under all rules, side by side; those in worlds each in one of its own, with noise
+/// and gusts.
+void batch(benchmark::State& state, Model model, Instructions instructions, int threads) {
     const Bridge& bridge = Bridge::get();
     FlightRules rules;
     rules.bounds = bridge.problem.bounds;
-    FlightPool pool(*bridge.model, is_aware ? bridge.map.get() : nullptr, rules, nullptr, threads, instructions);
+    const AeroMap* const map = model == Model::dynamics ? nullptr : bridge.map.get();
+    FlightPool pool(*bridge.model, map, rules, nullptr, threads, instructions, &bridge.ceiling);
+    std::vector<FlownWorld> worlds;
+    for (std::uint64_t i = 1; i <= 512; ++i) {
+        worlds.push_back(make_world(bridge.problem.robot, draw_world(Uncertainty{}, bridge.problem.robot, 1, i)));
+    }
     const double tick_s = bridge.model->tick().tick_s;
     std::vector<FlightJob> edges;
     const std::vector<PlanarPose> from = random_queries(bridge.problem.bounds);
@@ -121,6 +130,11 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
         if (!bridge.model->collisions().is_nearer_than(level_at(at), rules.margin_m)) {
             const Configuration to{at.x_m + 20 * from[i].pitch_rad, at.z_m, at.arm_rad + 0.5};
             edges.push_back({bridge.model->state_at(level_at(at)), {{{at_rest(at), at_rest(to), 800, tick_s}}}});
+            if (model == Model::worlds) {
+                FlightJob& edge = edges.back();
+                edge.world = &worlds[edges.size() - 1];
+                edge.start.world = memory_at_start(*edge.world, edge.start.plant);
+            }
         }
     }
     std::int64_t ticks = 0;
@@ -137,13 +151,15 @@ void batch(benchmark::State& state, bool is_aware, Instructions instructions, in
 /// With every set of instructions that there is here, and with two threads.
 [[maybe_unused]] const bool batches_are_registered = [] {
     constexpr const char* names[] = {"baseline", "avx2", "avx512"};
-    for (const bool is_aware : {false, true}) {
-        const std::string variant = is_aware ? "aerodynamics_aware" : "dynamics_aware";
+    for (const Model model : {Model::dynamics, Model::aerodynamics, Model::worlds}) {
+        const std::string variant = model == Model::dynamics       ? "dynamics_aware"
+                                    : model == Model::aerodynamics ? "aerodynamics_aware"
+                                                                   : "in_worlds";
         for (const Instructions instructions : known_instructions()) {
             const std::string name = "batch/" + variant + '_' + names[static_cast<int>(instructions)];
-            benchmark::RegisterBenchmark(name.c_str(), batch, is_aware, instructions, 1);
+            benchmark::RegisterBenchmark(name.c_str(), batch, model, instructions, 1);
         }
-        benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, is_aware,
+        benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, model,
                                      best_instructions(), 2)
             ->UseRealTime();
     }
