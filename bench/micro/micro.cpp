@@ -159,8 +159,8 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
             const std::string name = "batch/" + variant + '_' + names[static_cast<int>(instructions)];
             benchmark::RegisterBenchmark(name.c_str(), batch, model, instructions, 1);
         }
-        benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, model,
-                                     best_instructions(), 2)
+        benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, model, best_instructions(),
+                                     2)
             ->UseRealTime();
     }
     return true;
