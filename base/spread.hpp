@@ -26,10 +26,6 @@ struct Spread {
         return {Form::factor, low, high};
     }
 
-    [[nodiscard]] constexpr bool is_exact() const noexcept {
-        return form == Form::exact || (form == Form::sd && high == 0) || (form != Form::sd && low == high && low == 0);
-    }
-
     /// The difference from what is believed that is not exceeded with probability p.
     /// @param p from 0 to 1; both ends give the ends of the spread   @param believed the number itself, for a range of
     /// the number (`range_is_of_number`) and for factors

@@ -56,6 +56,10 @@ fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
     return *given.out;
 }
 
+std::uint64_t seed_of(const ExecuteArguments& given, const Problem& problem) {
+    return given.seed.value_or(problem.planner.seed);
+}
+
 /// The world that was asked for; nothing for the nominal one.
 std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem& problem) {
     if (!given.world) {
@@ -67,8 +71,8 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
     if (!problem.uncertainty) {
         throw UsageError("--world needs to know what is uncertain: " + given.problem + " has no `uncertainty:`");
     }
-    return make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot,
-                                                given.seed.value_or(problem.planner.seed), *given.world));
+    return make_world(problem.robot,
+                      draw_world(*problem.uncertainty, problem.robot, seed_of(given, problem), *given.world));
 }
 
 void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
@@ -94,6 +98,9 @@ ExitCode run(const ExecuteArguments& given) {
     const std::optional<FlownWorld> world = world_of(given, read);
     const OutputFolder folder(folder_for(given, read));
     fly(read, given.aero == "on", world, solution);
+    if (world) {
+        solution.execution_world = {*given.world, seed_of(given, read)};
+    }
     const RunRecord record = write_results(folder, read, given.problem, solution);
     write_page(folder, record, nullptr, cache_folder(given.no_cache));
     fmt::print("{}", given.as_json ? record.solution_text

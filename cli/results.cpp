@@ -130,6 +130,9 @@ std::string verdict_on_search(const Solution& solution) {
                verdict_on_flight(*solution.execution);
     }
     if (solution.certificate && !solution.certificate->is_given) {
+        if (solution.certificate->failures <= CertificateTest::most_failures) {
+            return stopped + "A way to the goal was found, but the search ended before it was certified.";
+        }
         return stopped +
                fmt::format("A way to the goal was found, but in {} of {} worlds the flight fails: it is not certified.",
                            solution.certificate->failures, solution.certificate->worlds);
@@ -146,6 +149,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
     std::string text = verdict + "\n\n";
     text += row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
                                       solution.algorithm, text_of(solution.objective), solution.seed));
+    if (solution.execution_world) {
+        text += row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
+                                         solution.execution_world->index, solution.execution_world->seed));
+    }
     if (solution.execution) {
         text += flight_rows(solution, *solution.execution);
     }

@@ -1,14 +1,12 @@
 #include "downwash/planner/certificate.hpp"
 
-#include <cmath>
-
 namespace downwash {
 
 double binomial_probability(std::uint64_t failures, std::uint64_t worlds, double p) noexcept {
     if (failures >= worlds) {
         return 1;
     }
-    // From the most likely number down, so that nothing is lost where (1 - p)^n is too small for a double.
+    // (1 - p)^n may be too small for a double: powers of 2^-512 are counted apart.
     double power = 1;
     int scale = 0;  // powers of 2^-512 that are left out
     constexpr double tiny = 0x1p-512;
@@ -56,8 +54,18 @@ CertificateTest::CertificateTest(double max_failure_probability, double confiden
     for (std::uint64_t failures = 0; failures <= most_failures; ++failures) {
         const double alpha = failures < most_failures ? 0.5 * left : left;
         left -= alpha;
-        while (binomial_probability(failures, worlds, max_failure_probability) > alpha) {
-            ++worlds;
+        // The probability falls with the number of worlds: double it until it is enough, then halve what is between.
+        const auto is_enough = [&](std::uint64_t number) {
+            return binomial_probability(failures, number, max_failure_probability) <= alpha;
+        };
+        std::uint64_t too_few = worlds;
+        while (!is_enough(worlds)) {
+            too_few = worlds;
+            worlds *= 2;
+        }
+        while (worlds - too_few > 1) {
+            const std::uint64_t middle = too_few + (worlds - too_few) / 2;
+            (is_enough(middle) ? worlds : too_few) = middle;
         }
         stages_[failures] = worlds;
     }

@@ -43,17 +43,6 @@ class Budget {
     double time_s_ = std::numeric_limits<double>::infinity();
 };
 
-/// Rules that a flight which kept the planner's own cannot break.
-FlightRules no_rules() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    FlightRules rules;
-    rules.margin_m = 0;
-    rules.bounds = {-infinity, infinity, -infinity, infinity};
-    rules.max_tracking_error_m = infinity;
-    rules.max_arm_error_rad = infinity;
-    return rules;
-}
-
 /// Adds a part's plan and the hold at its end, and flies them in the planner's model. What was planned by flights flies
 /// as it did; of MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it.
 void advance(Course& course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
@@ -68,7 +57,7 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
         const ReferenceKnot& from = plan.reference[i - 1];
         const ReferenceKnot& to = plan.reference[i];
         const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, tick_s);
-        const Rejection rejection = fly(model, map, no_rules(), segment, course.vehicle).rejection;
+        const Rejection rejection = fly(model, map, rules_of_execution(), segment, course.vehicle).rejection;
         if (rejection != Rejection::none && plans_flights) {
             throw std::logic_error("a part of a plan does not fly as it was planned");
         }
@@ -149,6 +138,17 @@ Course Course::from_start(const Problem& problem, const FlightModel& model) {
     Course course;
     course.vehicle = start_state(model, problem.start);
     return course;
+}
+
+FlightRules rules_of_execution() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    FlightRules rules;
+    rules.margin_m = 0;
+    rules.bounds = {-infinity, infinity, -infinity, infinity};
+    rules.max_tracking_error_m = infinity;
+    rules.max_arm_error_rad = infinity;
+    rules.max_saturation = infinity;
+    return rules;
 }
 
 Plan Course::continued_by(const Plan& next) const {

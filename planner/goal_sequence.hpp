@@ -9,6 +9,10 @@
 
 namespace downwash::planning {
 
+/// The rules of a flight that only has to succeed: it may leave bounds and reference, and ask more of rotors and joint
+/// than they have. It ends where it touches something, tumbles or leaves the flyable area.
+[[nodiscard]] FlightRules rules_of_execution();
+
 /// What lies before a search for the way to one of several goals: the flight to those before it. Empty for the first.
 struct Course {
     std::vector<Goal> goals;              ///< reached and held

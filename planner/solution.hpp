@@ -15,6 +15,12 @@
 
 namespace downwash {
 
+/// The world that a plan was executed in.
+struct ExecutionWorld {
+    std::uint64_t index = 0;
+    std::uint64_t seed = 0;
+};
+
 /// The answer to a problem.
 struct Solution {
     Status status = Status::none;
@@ -31,7 +37,8 @@ struct Solution {
     std::vector<TreeNode> tree;              ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;                ///< empty with Status::none
     std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
-    std::optional<Execution> execution;      ///< the whole plan flown from the start with direct aerodynamics
+    std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
+    std::optional<Execution> execution;             ///< the whole plan flown from the start with direct aerodynamics
 };
 
 /// What an executed flight costs.

@@ -36,7 +36,9 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
     }
     std::optional<planning::ProblemWorlds> worlds;
     if (problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada) {
+        const planning::Stopwatch clock;
         worlds.emplace(problem, model, map.get(), options);
+        solution.planning.map_wall_s += clock.seconds();
     }
     const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
                             Solution& into) {

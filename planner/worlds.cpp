@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
@@ -12,19 +11,7 @@
 namespace downwash::planning {
 namespace {
 
-/// The rules of a flight that only has to succeed: it may leave bounds and reference, and touch limits of its rotors.
-FlightRules rules_of_execution() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    FlightRules rules;
-    rules.margin_m = 0;
-    rules.bounds = {-infinity, infinity, -infinity, infinity};
-    rules.max_tracking_error_m = infinity;
-    rules.max_arm_error_rad = infinity;
-    rules.max_saturation = infinity;
-    return rules;
-}
-
-/// Worlds in which the dangers come early: strong suction under a low scene with slow, weak rotors; the reverse; wind
+/// Worlds in which the dangers come early: strong suction under a low scene with slow rotors; the reverse; wind
 /// and bias from either side; then points spread evenly.
 std::vector<double> search_quantiles(std::uint64_t number) {
     const std::span<const WorldParameter> parameters = world_parameters();
@@ -87,7 +74,7 @@ ReferenceSegment segment_of(const Plan& plan, std::size_t to) {
 
 ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, const AeroMap* map,
                              const SolveOptions& options)
-    : problem_(problem), model_(std::move(model)), map_(map), threads_(options.threads) {
+    : problem_(problem), model_(std::move(model)), map_(map), threads_(options.threads), stop_(options.stop) {
     if (map_ != nullptr) {
         ceiling_.model = model_->ceilings_only();
         if (ceiling_.model != nullptr) {
@@ -215,7 +202,7 @@ Certificate ProblemWorlds::certify(const Course& before, const Plan& whole, cons
     certificate.max_failure_probability = settings.max_failure_probability;
     certificate.confidence = settings.confidence;
     certificate.attempts = attempt;
-    while (certificate.failures <= CertificateTest::most_failures && !certificate.is_given) {
+    while (certificate.failures <= CertificateTest::most_failures && !certificate.is_given && !stop_.stop_requested()) {
         const std::uint64_t wanted = test.stage_worlds(certificate.failures) - certificate.worlds;
         std::vector<FlownWorld> worlds;
         for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
@@ -239,7 +226,7 @@ Certificate ProblemWorlds::certify(const Course& before, const Plan& whole, cons
                                certificate.worlds >= test.stage_worlds(certificate.failures);
     }
     const double alpha = 0.5 * (1 - settings.confidence);
-    const auto n = static_cast<double>(certificate.worlds);
+    const auto n = static_cast<double>(std::max<std::uint64_t>(1, certificate.worlds));
     certificate.failure_probability = {
         static_cast<double>(certificate.failures) / n,
         certificate.failures == 0

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "downwash/planner/certificate.hpp"
@@ -10,7 +11,7 @@
 
 namespace downwash::planning {
 
-/// What all flights of a problem in worlds share. Empty (nullptr) for a problem in which everything is as believed.
+/// What all flights of a problem with an uncertainty share.
 class ProblemWorlds {
  public:
     /// @param map of the planner's own model; nullptr for none   @param options for threads and the cache of maps
@@ -21,7 +22,8 @@ class ProblemWorlds {
     /// @throws InputError when the vehicle cannot hover at its start in some of them
     [[nodiscard]] SearchWorlds for_search(const Course& before) const;
 
-    /// Flies a plan in worlds that nobody has seen, until it is known whether it passes.
+    /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that the caller stops in
+    /// the middle of that has not passed.
     /// @param whole through all goals of the course and then to `goal`   @param attempt from 1
     [[nodiscard]] Certificate certify(const Course& before, const Plan& whole, const Goal& goal,
                                       std::uint64_t attempt) const;
@@ -41,6 +43,7 @@ class ProblemWorlds {
     const AeroMap* map_;
     CeilingPart ceiling_;
     int threads_;
+    std::stop_token stop_;
 };
 
 }  // namespace downwash::planning

@@ -109,16 +109,20 @@ Json execution_json(const Solution& solution) {
     for (const GoalVisit& visit : flight.goals) {
         goals.push_back({{"met", visit.is_met}, {"error_m", number(visit.error_m)}});
     }
-    return {{"aero", flight.aero},
-            {"outcome", name_of(flight.outcome)},
-            {"min_clearance_m", number(flight.min_clearance_m)},
-            {"energy_j", number(flight.energy_j)},
-            {"duration_s", number(flight.duration_s)},
-            {"cost", number(solution.execution_cost)},
-            {"max_tracking_error_m", number(flight.max_tracking_error_m)},
-            {"max_saturation", number(flight.max_saturation)},
-            {"goal_error_m", number(flight.goal_error_m)},
-            {"goals", std::move(goals)}};
+    Json execution = {{"aero", flight.aero},
+                      {"outcome", name_of(flight.outcome)},
+                      {"min_clearance_m", number(flight.min_clearance_m)},
+                      {"energy_j", number(flight.energy_j)},
+                      {"duration_s", number(flight.duration_s)},
+                      {"cost", number(solution.execution_cost)},
+                      {"max_tracking_error_m", number(flight.max_tracking_error_m)},
+                      {"max_saturation", number(flight.max_saturation)},
+                      {"goal_error_m", number(flight.goal_error_m)},
+                      {"goals", std::move(goals)}};
+    if (solution.execution_world) {
+        execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};
+    }
+    return execution;
 }
 
 /// A name, or the weights of a sum.

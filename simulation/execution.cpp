@@ -215,7 +215,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     Given given{};
-    static_cast<void>(simulation::nominal_tick(model, state, reference, factor, given));
+    static_cast<void>(simulation::quiet_tick(model, state, reference, factor, given, dynamics::OneStep{}, world));
     recorder.add_row(state, reference, given);
 
     execution.outcome = outcome_of(rejection);

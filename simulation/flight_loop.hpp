@@ -43,74 +43,80 @@ inline bool is_flyable(const FlightModel& model, const AeroMap& map, const Plana
     });
 }
 
-/// One tick of a vehicle in the nominal world, whether or not its controller sees late.
-/// @param factor,integrate see tick()
+/// One tick of a vehicle in a world, without its noise and gusts; surface effects are the nominal ones.
+/// @param factor,integrate see tick()   @param in nullptr: the nominal world
 template <class Factor, class Integrate = dynamics::OneStep>
-FlightState nominal_tick(const FlightModel& model, const FlightState& state, const ReferencePoint& reference,
-                         Factor&& factor, controllers::Actuation<double>& given, const Integrate& integrate = {}) {
-    if (model.flies_plainly()) {
+FlightState quiet_tick(const FlightModel& model, const FlightState& state, const ReferencePoint& reference,
+                       Factor&& factor, controllers::Actuation<double>& given, const Integrate& integrate = {},
+                       const FlownWorld* in = nullptr) {
+    const FlownWorld* const world = flown_world(model, in);
+    if (world == nullptr) {
         return tick(model.tick(), state, reference, factor, given, integrate);
     }
     const double no_noise[noise_count] = {};
     NoEffect ceiling;
     return std::visit(
         [&](const auto& law) {
-            return tick_in_world(model.tick(), law, model.nominal_world().numbers, no_noise, state, reference, factor,
-                                 ceiling, given, integrate);
+            return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, ceiling, given,
+                                 integrate);
         },
         model.tick().law);
 }
 
-/// Flies a segment in a world, tick by tick, until `after` finds a reason to end the flight.
-/// @param ceiling see WorldSurroundings   @param others as for fly_ticks() without a world
+/// Moves a vehicle along a segment until `after` finds a reason to end the flight.
+/// @param step callable (tick of the segment, state, reference, given) -> state one tick later
+/// @param after callable (before, reference, given, next, next_reference) -> Rejection
+template <class Step, class After>
+Rejection fly_steps(const ReferenceSegment& segment, FlightState& state, const Step& step, After&& after) {
+    ReferencePoint reference = segment.from();
+    Rejection rejection = Rejection::none;
+    for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
+        controllers::Actuation<double> given{};
+        const FlightState next = step(t, state, reference, given);
+        const ReferencePoint next_reference = segment.at_tick(t + 1);
+        rejection = after(state, reference, given, next, next_reference);
+        state = next;
+        reference = next_reference;
+    }
+    return rejection;
+}
+
+/// Flies a segment in a world, tick by tick.
+/// @param ceiling see WorldSurroundings   @param after see fly_steps()
 template <class Factor, class Ceiling, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_t first_tick,
                     const ReferenceSegment& segment, Factor&& factor, Ceiling&& ceiling, const Integrate& integrate,
                     FlightState& state, After&& after) {
     return std::visit(
         [&](const auto& law) {
-            ReferencePoint reference = segment.from();
-            Rejection rejection = Rejection::none;
             double noise[noise_count] = {};
-            for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
+            const auto step = [&](std::int64_t t, const FlightState& from, const ReferencePoint& reference,
+                                  controllers::Actuation<double>& given) {
                 if (world.has_noise) {
                     draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
                 }
-                controllers::Actuation<double> given{};
-                const FlightState next = tick_in_world(model, law, world.numbers, noise, state, reference, factor,
-                                                       ceiling, given, integrate);
-                const ReferencePoint next_reference = segment.at_tick(t + 1);
-                rejection = after(state, reference, given, next, next_reference);
-                state = next;
-                reference = next_reference;
-            }
-            return rejection;
+                return tick_in_world(model, law, world.numbers, noise, from, reference, factor, ceiling, given,
+                                     integrate);
+            };
+            return fly_steps(segment, state, step, after);
         },
         model.law);
 }
 
-/// Flies a segment tick by tick until `after` finds a reason to end the flight.
-/// @param factor,integrate see tick()
-/// @param after callable (before, reference, given, next, next_reference) -> Rejection
+/// Flies a segment by the plain tick.
+/// @param factor,integrate see tick()   @param after see fly_steps()
 template <class Factor, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, Factor&& factor,
                     const Integrate& integrate, FlightState& state, After&& after) {
     return std::visit(
         [&](const auto& law) {
-            ReferencePoint reference = segment.from();
-            Rejection rejection = Rejection::none;
-            for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
-                controllers::Actuation<double> given{};
-                const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
-                const VehicleState<double>& vehicle = state;
-                const FlightState next{tick(model, law, vehicle, motion, reference, factor, given, integrate),
-                                       state.world};
-                const ReferencePoint next_reference = segment.at_tick(t + 1);
-                rejection = after(state, reference, given, next, next_reference);
-                state = next;
-                reference = next_reference;
-            }
-            return rejection;
+            const auto step = [&](std::int64_t, const FlightState& from, const ReferencePoint& reference,
+                                  controllers::Actuation<double>& given) {
+                const VehicleState<double>& vehicle = from;
+                const auto motion = dynamics::motion_at(model.plant, vehicle.plant.q, vehicle.plant.u);
+                return FlightState{tick(model, law, vehicle, motion, reference, factor, given, integrate), from.world};
+            };
+            return fly_steps(segment, state, step, after);
         },
         model.law);
 }

@@ -40,7 +40,7 @@ Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, const LinearE
         FlightState state = trim.state;
         set_number_at(state, i, number_at<double>(state, i) + change);
         controllers::Actuation<double> given{};
-        return simulation::nominal_tick(model, state, trim.reference, effect, given);
+        return simulation::quiet_tick(model, state, trim.reference, effect, given);
     };
     Jacobian result(state_numbers, state_numbers);
     int columns = 0;

@@ -49,7 +49,7 @@ struct Disturbed {
         };
         controllers::Actuation<double> given{};
         Result result{};
-        result.next = simulation::nominal_tick(model, state, trim.reference, simulation::NoEffect{}, given, integrate);
+        result.next = simulation::quiet_tick(model, state, trim.reference, simulation::NoEffect{}, given, integrate);
         for (int i = 0; i < plant.rotor_count; ++i) {
             result.commanded += input == LoopInput::thrust         ? given.command.thrust_n[i]
                                 : input == LoopInput::pitch_torque ? -plant.rotor_x_m[i] * given.command.thrust_n[i]

@@ -67,7 +67,7 @@ bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& d
     double in_the_end = 0;
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<double> given{};
-        state = simulation::nominal_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
+        state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
         const double d = distance(state, trim.state);
         if (!(d < disturbance.leaving)) {
             return true;

@@ -48,6 +48,8 @@ TEST_CASE("A plan flown again flies as before") {
         };
         const std::string third = in_world("--world 3", "third");
         CHECK(in_world("--world 3", "again") == third);
+        const auto flown = nlohmann::json::parse(work.text("third/solution.json"));
+        CHECK(flown.at("execution").at("world") == nlohmann::json{{"index", 3}, {"seed", 1}});
         CHECK(in_world("--world 0", "nominal") != third);
         CHECK(in_world("--world 3 --seed 9", "other") != third);
     }

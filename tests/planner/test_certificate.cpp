@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <stop_token>
 #include <vector>
 
 #include "../support/error_of.hpp"
@@ -69,6 +70,27 @@ TEST_CASE("Bounds of a failure probability are those of Clopper and Pearson") {
     CHECK(failure_bound(10, 1000, 0.025) == Approx(0.01831).margin(1e-5));
     // Where (1 - p)^n is no double any more.
     CHECK(binomial_probability(5000, 10000, 0.5) == Approx(0.504).margin(1e-3));
+}
+
+TEST_CASE("Stages are the least numbers of worlds that are enough, for rare failures too") {
+    const CertificateTest usual(0.01, 0.95, 1);
+    CHECK(binomial_probability(0, usual.stage_worlds(0), 0.01) <= 0.0125);
+    CHECK(binomial_probability(0, usual.stage_worlds(0) - 1, 0.01) > 0.0125);
+    CHECK(binomial_probability(3, usual.stage_worlds(3), 0.01) <= 0.003125);
+    CHECK(binomial_probability(3, usual.stage_worlds(3) - 1, 0.01) > 0.003125);
+    const CertificateTest rare(1e-4, 0.999, 50);
+    CHECK(rare.stage_worlds(0) == Approx(std::log(2 * 50 * 51 / 0.001) / 1e-4).epsilon(1e-3));
+}
+
+TEST_CASE("A search that is stopped while a plan is certified does not call it solved") {
+    const Problem problem = uncertain_problem();
+    std::stop_source source;
+    source.request_stop();
+    SolveOptions options;
+    options.stop = source.get_token();
+    const Solution solution = solve(problem, options);
+    CHECK(solution.status != Status::solved);
+    CHECK_FALSE((solution.certificate && solution.certificate->is_given));
 }
 
 TEST_CASE("Plans that fail too often do not pass by luck more often than allowed, however many try") {

@@ -89,7 +89,7 @@ double distance(const FlightState& a, const FlightState& b) {
 
 FlightState flown(const FlightModel& model, const HoverTrim& trim, const FlightState& from) {
     controllers::Actuation<double> given{};
-    return simulation::nominal_tick(model, from, trim.reference, simulation::DirectFactor{model}, given);
+    return simulation::quiet_tick(model, from, trim.reference, simulation::DirectFactor{model}, given);
 }
 
 /// Whether a disturbance of a millimetre leaves five centimetres, or is still growing in the end.
