@@ -1,4 +1,5 @@
 #include "downwash/bench/campaign_rows.hpp"
+#include "downwash/base/quantile.hpp"
 
 namespace downwash::bench {
 namespace {

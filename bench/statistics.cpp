@@ -1,4 +1,5 @@
 #include "downwash/bench/statistics.hpp"
+#include "downwash/base/quantile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,20 +54,6 @@ Share share_of(std::size_t hits, std::size_t attempts) {
     const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
     const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
     return {hits, attempts, hits == 0 ? 0 : centre - half, hits == attempts ? 1 : centre + half};
-}
-
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    std::sort(values.begin(), values.end());
-    const double at = q * static_cast<double>(values.size() - 1);
-    const auto low = static_cast<std::size_t>(at);
-    const double share = at - static_cast<double>(low);
-    if (share == 0 || low + 1 == values.size() || values[low] == values[low + 1]) {
-        return values[low];
-    }
-    return std::isfinite(values[low]) ? values[low] + share * (values[low + 1] - values[low]) : values[low + 1];
 }
 
 Range median_range(std::vector<double> values, double confidence) {

@@ -19,10 +19,6 @@ struct Share {
 /// @pre hits <= attempts
 [[nodiscard]] Share share_of(std::size_t hits, std::size_t attempts);
 
-/// The q-quantile, 0 <= q <= 1: linear between the order statistics (type 7 of Hyndman and Fan 1996). Values may be
-/// infinite; between a finite and an infinite one it is infinite. NaN without values.
-[[nodiscard]] double quantile(std::vector<double> values, double q);
-
 struct Range {
     double low, high;
 };

@@ -39,7 +39,8 @@ std::string rejections(const SearchRecord& record) {
 
 /// A length to the millimetre; a touch by less is no negative zero.
 std::string millimetres(double length_m) {
-    return fmt::format("{:.3f} m", std::round(length_m * 1000) / 1000 + 0.0);
+    return !std::isfinite(length_m) ? "without limit"
+                                    : fmt::format("{:.3f} m", std::round(length_m * 1000) / 1000 + 0.0);
 }
 
 std::string flight_rows(const Solution& solution, const Execution& flight) {
@@ -91,14 +92,16 @@ std::string certificate_rows(const Certificate& certificate) {
         row("certificate",
             fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
                         certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
-                        probability.low, probability.high, 100 * certificate.confidence));
+                        probability.low, probability.high, 100 * certificate.confidence)) +
+        row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
+                    millimetres(certificate.clearance_m.p50) + " in half of them");
     std::string causes;
     for (const auto& [cause, count] : certificate.causes) {
         causes += (causes.empty() ? "" : ", ") + cause + " " + std::to_string(count);
     }
     if (!causes.empty()) {
         text += row("", causes + "; see one: `downwash execute PROBLEM --plan solution.json --world " +
-                            std::to_string(certificate.failed.front().world) + "`");
+                            std::to_string(certificate.worst.front().world) + "`");
     }
     return text;
 }
@@ -164,6 +167,9 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
                 record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     text += row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     text += row("rejected", rejections(record));
+    if (record.first_certified_wall_s) {
+        text += row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
+    }
     if (record.nearest_approach_m) {
         text += row("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/numbers.hpp"
@@ -21,6 +22,9 @@ struct ModelInversion {
     double position_ki = 0;                     ///< [1/s3]
     double position_integral_limit_m_s2 = 2.0;  ///< greatest ki * integral, per axis
 
+    /// Of the height, which thrust alone controls, without the detour through the pitch. Empty: those of the position.
+    std::optional<double> height_kp, height_kd, height_ki;
+
     double attitude_kp = 0;       ///< pitch angle to pitch rate [1/s]
     double attitude_rate_kp = 0;  ///< pitch rate to pitch acceleration [1/s]
     double attitude_rate_ki = 0;  ///< integral of the pitch rate error [1/s2]
@@ -35,6 +39,16 @@ struct ModelInversion {
 
     double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
     double min_vertical_force_ratio = 0.2;     ///< f_min of the inversion as a share of the weight
+
+    /// Gains of an axis, x or z.
+    struct AxisGains {
+        double kp, kd, ki;
+    };
+    [[nodiscard]] AxisGains axis_gains(int axis) const noexcept {
+        return axis == 0 ? AxisGains{position_kp, position_kd, position_ki}
+                         : AxisGains{height_kp.value_or(position_kp), height_kd.value_or(position_kd),
+                                     height_ki.value_or(position_ki)};
+    }
 
     /// What the law remembers between ticks.
     template <class T>
@@ -91,9 +105,9 @@ struct ModelInversion {
         T error[2];
         for (int i = 0; i < 2; ++i) {
             error[i] = reference.position[i] - q[i];
-            v[i] = reference.acceleration[i] + T(position_kd) * (reference.velocity[i] - u[i]) +
-                   T(position_kp) * error[i] +
-                   controllers::integral_action(position_ki, position_integral_limit_m_s2, memory.position_integral[i]);
+            const AxisGains gains = axis_gains(i);
+            v[i] = reference.acceleration[i] + T(gains.kd) * (reference.velocity[i] - u[i]) + T(gains.kp) * error[i] +
+                   controllers::integral_action(gains.ki, position_integral_limit_m_s2, memory.position_integral[i]);
         }
         const T arm_error = reference.position[2] - q[3];
         const T v7 = reference.acceleration[2] + T(arm_kd) * (reference.velocity[2] - u[3]) + T(arm_kp) * arm_error +
@@ -140,7 +154,7 @@ struct ModelInversion {
 
         step.integrated = step.frozen;
         for (int i = 0; i < 2; ++i) {
-            const T integral = controllers::integrate(position_ki, position_integral_limit_m_s2,
+            const T integral = controllers::integrate(axis_gains(i).ki, position_integral_limit_m_s2,
                                                       memory.position_integral[i], error[i], dt_s);
             step.integrated.position_integral[i] =
                 lane::select(is_force_clipped, memory.position_integral[i], integral);
@@ -176,7 +190,8 @@ struct ModelInversion {
         const double vx = (sine / cosine * thrust_n - nominal.arm_mass_kg * equations.arm_x * v7) / mass_kg;
         const double vz = (thrust_n - equations.bias[1] - nominal.arm_mass_kg * equations.arm_z * v7) / mass_kg;
         const auto x = controllers::settled_pid(vx, position_kp, position_ki, position_integral_limit_m_s2);
-        const auto z = controllers::settled_pid(vz, position_kp, position_ki, position_integral_limit_m_s2);
+        const AxisGains height = axis_gains(1);
+        const auto z = controllers::settled_pid(vz, height.kp, height.ki, position_integral_limit_m_s2);
         const auto arm = controllers::settled_pid(v7, arm_kp, arm_ki, arm_integral_limit_rad_s2);
         rest.error[0] = x.error;
         rest.error[1] = z.error;
@@ -184,7 +199,7 @@ struct ModelInversion {
         rest.memory = {{x.integral, z.integral}, rate.integral, arm.integral, rest.pitch_reference_rad, 0, rate.error};
         rest.feeds_back = {
             {x.feeds_back, z.feeds_back}, rate.feeds_back, arm.feeds_back, true, true, rate_feed_forward};
-        rest.height_gain_1_s2 = position_kp;
+        rest.height_gain_1_s2 = height.kp;
         rest.pitch_gain_1_s2 = attitude_kp * attitude_rate_kp;
         if (!(std::abs(rest.pitch_reference_rad) < max_tilt_rad)) {
             rest.limit = HoldLimit::tilt;
@@ -206,6 +221,10 @@ struct ModelInversion {
         rows.add(rows.gain("position.ki", "[1/s3]", &Law::position_ki));
         rows.add(rows.gain("position.integral_limit_m_s2", "most that the integral may ask for, per axis",
                            &Law::position_integral_limit_m_s2));
+        rows.optional_group("height", "height of the multirotor to acceleration, where its gains differ");
+        rows.add(rows.gain("height.kp", "[1/s2]; null: position.kp", &Law::height_kp));
+        rows.add(rows.gain("height.kd", "[1/s]; null: position.kd", &Law::height_kd));
+        rows.add(rows.gain("height.ki", "[1/s3]; null: position.ki", &Law::height_ki));
         rows.group("attitude", "pitch of the multirotor to angular acceleration");
         rows.add(rows.gain("attitude.kp", "pitch error to pitch rate [1/s]", &Law::attitude_kp)
                      .formerly("k5")

@@ -47,6 +47,16 @@ double failure_bound(std::uint64_t failures, std::uint64_t worlds, double alpha)
     return high;
 }
 
+FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds, double confidence) noexcept {
+    if (worlds == 0) {
+        return {};
+    }
+    const double alpha = 0.5 * (1 - confidence);
+    return {static_cast<double>(failures) / static_cast<double>(worlds),
+            failures == 0 ? 0 : 1 - failure_bound(worlds - failures, worlds, alpha),
+            failure_bound(failures, worlds, alpha)};
+}
+
 CertificateTest::CertificateTest(double max_failure_probability, double confidence, std::uint64_t attempt) {
     const auto a = static_cast<double>(attempt);
     double left = (1 - confidence) / (a * (a + 1));

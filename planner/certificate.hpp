@@ -6,13 +6,20 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/simulation/execution.hpp"
 
 namespace downwash {
 
-/// A flight of a plan in a world that failed.
-struct FailedWorld {
+/// A failure probability and its interval (Clopper and Pearson 1934).
+struct FailureInterval {
+    double estimate = 0, low = 0, high = 1;
+};
+
+/// How a plan flew in one world.
+struct WorldSample {
     std::uint64_t world = 0;  ///< index, as of draw_world() with the problem's seed
-    std::string cause;        ///< a Rejection by its name
+    Outcome outcome = Outcome::ok;
+    double min_clearance_m = 0;  ///< up to where the flight ended; infinity without obstacles
 };
 
 /// What flights of a plan in worlds that no search has seen say about it.
@@ -20,16 +27,16 @@ struct Certificate {
     bool is_given = false;  ///< the failure probability is at most max_failure_probability, with this confidence
     std::uint64_t worlds = 0;
     std::uint64_t failures = 0;
-    /// Clopper and Pearson's interval (1934) for the share of worlds in which the plan fails; both ends together have
-    /// the confidence below.
-    struct {
-        double estimate, low, high;
-    } failure_probability{0, 0, 1};
+    /// Of all worlds, with the confidence below.
+    FailureInterval failure_probability;
     double max_failure_probability = 0;
     double confidence = 0;
-    std::uint64_t attempts = 0;  ///< plans of the search that asked for one; they share the error
-    std::map<std::string, std::uint64_t> causes;
-    std::vector<FailedWorld> failed;  ///< the first of them
+    std::uint64_t attempts = 0;                   ///< plans of the search that asked for one; they share the error
+    std::map<std::string, std::uint64_t> causes;  ///< of the failures, by the name of their outcome
+    struct {
+        double p01, p10, p50;
+    } clearance_m{0, 0, 0};          ///< quantiles of the least clearance of each flight
+    std::vector<WorldSample> worst;  ///< failed flights first, then those that came nearest to an obstacle
 };
 
 /// The probability of at most `failures` among so many worlds, if each fails with probability p.
@@ -38,6 +45,10 @@ struct Certificate {
 
 /// The greatest p for which at most so many failures are not less likely than alpha (Clopper and Pearson 1934).
 [[nodiscard]] DOWNWASH_EXPORT double failure_bound(std::uint64_t failures, std::uint64_t worlds, double alpha) noexcept;
+
+/// What so many failures say about the failure probability; both ends together have the confidence.
+[[nodiscard]] DOWNWASH_EXPORT FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds,
+                                                               double confidence) noexcept;
 
 /// When a plan passes: a test in stages. A plan passes stage k with at most k failures in stage_worlds(k); with more
 /// failures than stages it fails. All plans of a search together pass by luck with probability 1 - confidence at most:

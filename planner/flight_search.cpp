@@ -29,7 +29,7 @@ Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
 class FlightSearch {
  public:
     FlightSearch(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                 const Course& before, const ProblemWorlds* worlds, const SolveOptions& options, Solution& solution)
+                 const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution)
         : options_(options),
           before_(before),
           goals_(before.goals),
@@ -62,7 +62,7 @@ class FlightSearch {
     std::vector<Goal> goals_;  ///< up to the one that is searched for
     Solution& solution_;
     SearchClock clock_;
-    const ProblemWorlds* worlds_;
+    ProblemWorlds* worlds_;
     SearchWorlds search_worlds_;
     SearchTask task_;
     FlightState start_;                   ///< of the whole flight
@@ -98,7 +98,7 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
-    certificate_ = worlds_->certify(before_, before_.continued_by(plan), task_.problem.goal, ++attempts_);
+    certificate_ = worlds_->certify(before_.continued_by(plan), goals_.size(), ++attempts_);
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;
@@ -128,6 +128,9 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
     solution_.plan = plan;
     solution_.cost = cost;
     solution_.certificate = certificate_;
+    if (certificate_ && !solution_.planning.first_certified_wall_s) {
+        solution_.planning.first_certified_wall_s = known_at_s_;
+    }
     clock_.improved(known_at_s_, cost, iteration, executed_cost);
 }
 
@@ -237,8 +240,7 @@ Execution execute_directly(const FlightModel& model, const FlightState& start, c
 }
 
 void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, const ProblemWorlds* worlds, const SolveOptions& options,
-                    Solution& solution) {
+                    const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution) {
     FlightSearch search(part, whole, model, map, before, worlds, options, solution);
     part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
 }

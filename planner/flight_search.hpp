@@ -17,6 +17,6 @@ namespace downwash::planning {
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
 /// @param worlds that edges and plans have to survive; nullptr: everything is as believed
 void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, const ProblemWorlds* worlds, const SolveOptions& options, Solution& solution);
+                    const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution);
 
 }  // namespace downwash::planning

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/flight.hpp"
 
@@ -64,7 +65,6 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
     }
     course.plan = std::move(plan);
     course.goals.push_back(goal);
-    course.hold_knots.push_back(course.plan.reference.size() - 1);
     course.cost += cost;
 }
 
@@ -109,6 +109,9 @@ void take_improvements(SearchRecord& whole, const SearchRecord& last, double cos
     if (last.first_solution_wall_s) {
         whole.first_solution_wall_s = whole.wall_s + *last.first_solution_wall_s;
     }
+    if (last.first_certified_wall_s) {
+        whole.first_certified_wall_s = whole.wall_s + *last.first_certified_wall_s;
+    }
     for (const Improvement& improvement : last.improvements) {
         whole.improvements.push_back({whole.wall_s + improvement.wall_s, whole.iterations + improvement.iteration,
                                       cost_before + improvement.cost, improvement.flown_cost});
@@ -138,17 +141,6 @@ Course Course::from_start(const Problem& problem, const FlightModel& model) {
     Course course;
     course.vehicle = start_state(model, problem.start);
     return course;
-}
-
-FlightRules rules_of_execution() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    FlightRules rules;
-    rules.margin_m = 0;
-    rules.bounds = {-infinity, infinity, -infinity, infinity};
-    rules.max_tracking_error_m = infinity;
-    rules.max_arm_error_rad = infinity;
-    rules.max_saturation = infinity;
-    return rules;
 }
 
 Plan Course::continued_by(const Plan& next) const {
@@ -199,6 +191,7 @@ void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroM
             ++solution.planning.rejected["too_long"];
             solution.planning.improvements.clear();
             solution.planning.first_solution_wall_s.reset();
+            solution.planning.first_certified_wall_s.reset();
             solution.status = Status::approximate;
             solution.plan = course.plan;
             solution.cost = course.cost;

@@ -9,17 +9,12 @@
 
 namespace downwash::planning {
 
-/// The rules of a flight that only has to succeed: it may leave bounds and reference, and ask more of rotors and joint
-/// than they have. It ends where it touches something, tumbles or leaves the flyable area.
-[[nodiscard]] FlightRules rules_of_execution();
-
 /// What lies before a search for the way to one of several goals: the flight to those before it. Empty for the first.
 struct Course {
-    std::vector<Goal> goals;              ///< reached and held
-    Plan plan;                            ///< through them, to the end of the last hold
-    std::vector<std::size_t> hold_knots;  ///< knots of it at which the holds end, in the order of the goals
-    std::uint64_t attempts = 0;           ///< plans that asked for a certificate on the way
-    FlightState vehicle;                  ///< the whole vehicle there, as the planner's own model flies it
+    std::vector<Goal> goals;     ///< reached and held
+    Plan plan;                   ///< through them, to the end of the last hold
+    std::uint64_t attempts = 0;  ///< plans that asked for a certificate on the way
+    FlightState vehicle;         ///< the whole vehicle there, as the planner's own model flies it
     double cost = 0;
 
     /// The course before the first goal.

@@ -34,10 +34,11 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         solution.planning.map_wall_s = clock.seconds();
         solution.map = map;
     }
+    const bool plans_in_worlds = problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada;
     std::optional<planning::ProblemWorlds> worlds;
-    if (problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada) {
+    if (plans_in_worlds) {
         const planning::Stopwatch clock;
-        worlds.emplace(problem, model, map.get(), options);
+        worlds.emplace(problem, model, map, options);
         solution.planning.map_wall_s += clock.seconds();
     }
     const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
@@ -57,6 +58,13 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
         solution.execution = planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan,
                                                         goals_of(problem), solution.planning.flight_wall_s);
+    }
+    if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
+        // The others know nothing of worlds: what becomes of their plan is for comparison.
+        const auto flown_map =
+            problem.aero.enabled ? model->make_map(problem.bounds, options.threads, {}, options.map_cache) : nullptr;
+        planning::ProblemWorlds fresh(problem, model, flown_map, options);
+        solution.certificate = fresh.certify(*solution.plan, goals_of(problem).size(), 1);
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {

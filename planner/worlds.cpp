@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/search/planned_flights.hpp"
+#include "downwash/base/parallel.hpp"
+#include "downwash/planner/certificate_record.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash::planning {
@@ -64,86 +66,40 @@ std::vector<double> search_quantiles(std::uint64_t number) {
     return quantiles;
 }
 
-ReferenceSegment segment_of(const Plan& plan, std::size_t to) {
-    const ReferenceKnot& a = plan.reference[to - 1];
-    const ReferenceKnot& b = plan.reference[to];
-    return {a.point, b.point, b.tick - a.tick, plan.tick_s};
+/// The outcome of a flight that ended so.
+Outcome outcome_of(Rejection rejection) {
+    switch (rejection) {
+        case Rejection::none:
+            return Outcome::ok;
+        case Rejection::collision:
+            return Outcome::collision;
+        case Rejection::flyable_area:
+            return Outcome::left_flyable_area;
+        case Rejection::goal_missed:
+            return Outcome::goal_missed;
+        default:
+            return Outcome::unstable;
+    }
 }
 
 }  // namespace
 
-ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, const AeroMap* map,
-                             const SolveOptions& options)
-    : problem_(problem), model_(std::move(model)), map_(map), threads_(options.threads), stop_(options.stop) {
-    if (map_ != nullptr) {
-        ceiling_.model = model_->ceilings_only();
-        if (ceiling_.model != nullptr) {
-            ceiling_.map = ceiling_.model->make_map(problem.bounds, options.threads, {}, options.map_cache);
-        }
-    }
-}
+ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,
+                             std::shared_ptr<const AeroMap> map, const SolveOptions& options)
+    : problem_(problem),
+      flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache),
+      threads_(options.threads),
+      stop_(options.stop) {}
 
-std::vector<std::optional<FlightState>> ProblemWorlds::starts_in(const std::vector<FlownWorld>& worlds) const {
-    const FlightState believed = start_state(*model_, problem_.start);
-    std::vector<std::optional<FlightState>> starts(worlds.size(), believed);
-    if (is_at_rest(problem_.start)) {
-        const ReferencePoint here = at_rest(problem_.start.configuration());
-        const double tick_s = model_->tick().tick_s;
-        const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
-        std::vector<FlownWorld> quiet;
-        quiet.reserve(worlds.size());
-        std::vector<FlightJob> jobs;
-        for (const FlownWorld& world : worlds) {
-            quiet.push_back(without_noise(world));
-            FlightJob job{believed, {{hover}}, 0, &quiet.back()};
-            job.start.world = memory_at_start(quiet.back(), believed.plant);
-            jobs.push_back(std::move(job));
-        }
-        FlightPool(*model_, map_, rules_of_execution(), nullptr, threads_, best_instructions(), &ceiling_).fly(jobs);
-        for (std::size_t i = 0; i < jobs.size(); ++i) {
-            starts[i] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
-        }
-    }
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        if (starts[i]) {
-            starts[i]->plant.energy_j = 0;
-            starts[i]->world = memory_at_start(worlds[i], starts[i]->plant);
-        }
-    }
-    return starts;
-}
-
-void ProblemWorlds::fly_part(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
-                             const Goal* goal) const {
-    const std::int64_t judged_ticks = std::llround(goal_settling_s / model_->tick().tick_s);
-    std::vector<FlightLeg> legs;
-    for (std::size_t i = first + 1; i <= last; ++i) {
-        legs.push_back({segment_of(plan, i)});
-    }
-    std::vector<FlightJob> flying;
-    std::vector<FlightJob*> owners;
-    for (FlightJob& job : jobs) {
-        if (job.rejection() == Rejection::none) {
-            flying.push_back({job.legs.empty() ? job.start : job.end(), legs, goal != nullptr ? judged_ticks : 0,
-                              job.world, plan.reference[first].tick});
-            owners.push_back(&job);
-        }
-    }
-    FlightPool(*model_, map_, rules_of_execution(), goal, threads_, best_instructions(), &ceiling_).fly(flying);
-    for (std::size_t i = 0; i < flying.size(); ++i) {
-        owners[i]->legs = std::move(flying[i].legs);
-    }
-}
-
-SearchWorlds ProblemWorlds::for_search(const Course& before) const {
+SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
-    search.ceiling = ceiling_;
+    search.ceiling = flights_.ceiling();
     for (std::uint64_t i = 1; i < problem_.planner.worlds; ++i) {
         const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem_.planner.seed} ^ simulation::mixed(i));
         search.worlds.push_back(
             make_world(problem_.robot, world_at(*problem_.uncertainty, problem_.robot, search_quantiles(i), tape)));
     }
-    const std::vector<std::optional<FlightState>> starts = starts_in(search.worlds);
+    const std::vector<std::optional<FlightState>> starts = flights_.starts_in(search.worlds);
     std::vector<FlightJob> jobs;
     for (std::size_t i = 0; i < starts.size(); ++i) {
         if (!starts[i]) {
@@ -154,9 +110,8 @@ SearchWorlds ProblemWorlds::for_search(const Course& before) const {
         }
         jobs.push_back({*starts[i], {}, 0, &search.worlds[i]});
     }
-    std::size_t knot = 0;
-    for (const std::size_t end : before.hold_knots) {
-        fly_part(jobs, before.plan, std::exchange(knot, end), end, nullptr);
+    if (!before.plan.reference.empty()) {
+        flights_.advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
     }
     for (const FlightJob& job : jobs) {
         search.start.push_back(job.legs.empty() ? job.start : job.end());
@@ -164,76 +119,58 @@ SearchWorlds ProblemWorlds::for_search(const Course& before) const {
     return search;
 }
 
-std::vector<Rejection> ProblemWorlds::outcomes_of(const Course& before, const Plan& whole, const Goal& goal,
-                                                  const std::vector<FlownWorld>& worlds) const {
-    const std::vector<std::optional<FlightState>> starts = starts_in(worlds);
-    std::vector<Rejection> outcomes(worlds.size(), Rejection::unstable);
-    std::vector<FlightJob> jobs;
-    std::vector<std::size_t> world_of;
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        if (starts[i]) {
-            jobs.push_back({*starts[i], {}, 0, &worlds[i]});
-            world_of.push_back(i);
-        }
-    }
-    std::size_t knot = 0;
-    for (std::size_t stop = 0; stop < before.hold_knots.size(); ++stop) {
-        const std::size_t end = before.hold_knots[stop];
-        fly_part(jobs, whole, std::exchange(knot, end), end, &before.goals[stop]);
-    }
-    Plan held = whole;
-    held.reference.push_back(held.reference.back());
-    held.reference.back().tick += hold_ticks(goal, *model_, held.reference.back().point);
-    fly_part(jobs, held, knot, held.reference.size() - 1, &goal);
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        outcomes[world_of[i]] = jobs[i].rejection();
-    }
-    return outcomes;
+FlownWorld ProblemWorlds::world(std::uint64_t index) const {
+    return make_world(problem_.robot, draw_world(*problem_.uncertainty, problem_.robot, problem_.planner.seed, index));
 }
 
-Certificate ProblemWorlds::certify(const Course& before, const Plan& whole, const Goal& goal,
-                                   std::uint64_t attempt) const {
+void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples) {
+    std::vector<FlownWorld> worlds;
+    for (const WorldSample& sample : samples) {
+        worlds.push_back(world(sample.world));
+    }
+    const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds);
+    const std::span<const Goal> goals = std::span(flights_.goals()).first(visits);
+    run_parallel(samples.size(), threads_, [&](std::size_t i) {
+        if (!starts[i]) {
+            return;
+        }
+        const Execution flight =
+            execute(flights_.model(), *starts[i], whole.reference, goals, true, {&worlds[i], &flights_.ceiling()});
+        samples[i].outcome = flight.outcome;
+        samples[i].min_clearance_m = flight.min_clearance_m;
+    });
+}
+
+Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt) {
     const PlannerSettings& settings = problem_.planner;
-    const CertificateTest test(settings.max_failure_probability, settings.confidence, attempt);
     constexpr std::uint64_t worlds_per_attempt = 1'000'000;
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
-    constexpr std::size_t most_listed = 10;
-    Certificate certificate;
-    certificate.max_failure_probability = settings.max_failure_probability;
-    certificate.confidence = settings.confidence;
-    certificate.attempts = attempt;
-    while (certificate.failures <= CertificateTest::most_failures && !certificate.is_given && !stop_.stop_requested()) {
-        const std::uint64_t wanted = test.stage_worlds(certificate.failures) - certificate.worlds;
-        std::vector<FlownWorld> worlds;
-        for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
-            const std::uint64_t index = attempt * worlds_per_attempt + certificate.worlds + i;
-            worlds.push_back(
-                make_world(problem_.robot, draw_world(*problem_.uncertainty, problem_.robot, settings.seed, index)));
-        }
-        const std::vector<Rejection> outcomes = outcomes_of(before, whole, goal, worlds);
-        for (const Rejection outcome : outcomes) {
-            if (outcome != Rejection::none) {
-                ++certificate.failures;
-                ++certificate.causes[cause_of(outcome)];
-                if (certificate.failed.size() < most_listed) {
-                    certificate.failed.push_back(
-                        {attempt * worlds_per_attempt + certificate.worlds, cause_of(outcome)});
-                }
+    constexpr std::size_t flown_directly = 3;
+    CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
+    bool is_checked = false;
+    while (!stop_.stop_requested()) {
+        const std::uint64_t wanted = record.worlds_wanted();
+        if (wanted == 0) {
+            // It passes, or fails too often. The map is not the last word where the flights came nearest.
+            if (is_checked || !record.passes()) {
+                break;
             }
-            ++certificate.worlds;
+            std::vector<WorldSample> nearest = record.nearest_successes(flown_directly);
+            fly_directly(whole, visits, nearest);
+            is_checked = !record.replace(nearest);
+            continue;
         }
-        certificate.is_given = certificate.failures <= CertificateTest::most_failures &&
-                               certificate.worlds >= test.stage_worlds(certificate.failures);
+        std::vector<FlownWorld> worlds;
+        const std::uint64_t first = attempt * worlds_per_attempt + record.worlds();
+        for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
+            worlds.push_back(world(first + i));
+        }
+        const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            record.add({first + i, outcome_of(flights[i].rejection), flights[i].min_clearance_m});
+        }
     }
-    const double alpha = 0.5 * (1 - settings.confidence);
-    const auto n = static_cast<double>(std::max<std::uint64_t>(1, certificate.worlds));
-    certificate.failure_probability = {
-        static_cast<double>(certificate.failures) / n,
-        certificate.failures == 0
-            ? 0
-            : 1 - failure_bound(certificate.worlds - certificate.failures, certificate.worlds, alpha),
-        failure_bound(certificate.failures, certificate.worlds, alpha)};
-    return certificate;
+    return record.certificate(is_checked);
 }
 
 }  // namespace downwash::planning

@@ -1,47 +1,40 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <stop_token>
-#include <vector>
 
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/world_flights.hpp"
 #include "downwash/search/fleet.hpp"
 
 namespace downwash::planning {
 
-/// What all flights of a problem with an uncertainty share.
+/// The worlds of a search and the certificates of its plans.
 class ProblemWorlds {
  public:
-    /// @param map of the planner's own model; nullptr for none   @param options for threads and the cache of maps
-    ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, const AeroMap* map,
+    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps and stop
+    /// token
+    /// @pre problem outlives it, and has an uncertainty
+    ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                   const SolveOptions& options);
 
     /// The worlds that a search flies in, and the fleet at the end of the course before it.
     /// @throws InputError when the vehicle cannot hover at its start in some of them
-    [[nodiscard]] SearchWorlds for_search(const Course& before) const;
+    [[nodiscard]] SearchWorlds for_search(const Course& before);
 
     /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that the caller stops in
     /// the middle of that has not passed.
-    /// @param whole through all goals of the course and then to `goal`   @param attempt from 1
-    [[nodiscard]] Certificate certify(const Course& before, const Plan& whole, const Goal& goal,
-                                      std::uint64_t attempt) const;
+    /// @param whole through the first `visits` goals of the problem   @param attempt from 1
+    [[nodiscard]] Certificate certify(const Plan& whole, std::size_t visits, std::uint64_t attempt);
 
  private:
-    /// A fleet hovering at the problem's start; nothing for vehicles that do not stay there.
-    [[nodiscard]] std::vector<std::optional<FlightState>> starts_in(const std::vector<FlownWorld>& worlds) const;
-    /// Why a plan fails in each world; Rejection::none where it does not.
-    [[nodiscard]] std::vector<Rejection> outcomes_of(const Course& before, const Plan& whole, const Goal& goal,
-                                                     const std::vector<FlownWorld>& worlds) const;
-    /// Flies a part of a plan, from a knot to another, in all jobs.
-    void fly_part(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
-                  const Goal* goal) const;
+    [[nodiscard]] FlownWorld world(std::uint64_t index) const;
+    /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
+    void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples);
 
     const Problem& problem_;
-    std::shared_ptr<const FlightModel> model_;
-    const AeroMap* map_;
-    CeilingPart ceiling_;
+    WorldFlights flights_;
     int threads_;
     std::stop_token stop_;
 };

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "downwash/base/text.hpp"
 #include "downwash/planner/solve.hpp"
@@ -152,6 +153,8 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
     record.flight_wall_s = reader.amount(*planning, "flight_wall_s", 0);
     const double first_s = reader.amount(*planning, "first_solution_wall_s", -1);
     record.first_solution_wall_s = first_s < 0 ? std::nullopt : std::optional(first_s);
+    const double certified_s = reader.amount(*planning, "first_certified_wall_s", -1);
+    record.first_certified_wall_s = certified_s < 0 ? std::nullopt : std::optional(certified_s);
     record.simulated_s = reader.amount(*planning, "simulated_s", 0);
     reader.read_count(*planning, "iterations", record.iterations);
     reader.read_count(*planning, "edges_simulated", record.edges_simulated);
@@ -197,12 +200,20 @@ void read_certificate(JsonReader& reader, const Node& root, std::optional<Certif
             reader.read_count({&value, causes->key + "." + cause}, certificate.causes[cause]);
         }
     }
-    for (const Node& each : reader.groups(JsonReader::member(*node, "failed"))) {
-        FailedWorld& failed = certificate.failed.emplace_back();
-        reader.read_count(each, "world", failed.world);
-        if (const auto cause = JsonReader::member(each, "cause"); cause && cause->json->is_string()) {
-            failed.cause = cause->json->get<std::string>();
-        }
+    // What flew far from every obstacle has no clearance: null.
+    const auto clearance = [&](const Node& group, const char* name) {
+        const auto value = JsonReader::member(group, name);
+        return value && !value->json->is_null() ? reader.number(*value).value_or(0)
+                                                : std::numeric_limits<double>::infinity();
+    };
+    if (const auto all = JsonReader::member(*node, "clearance_m"); all && all->json->is_object()) {
+        certificate.clearance_m = {clearance(*all, "p01"), clearance(*all, "p10"), clearance(*all, "p50")};
+    }
+    for (const Node& each : reader.groups(JsonReader::member(*node, "worst"))) {
+        WorldSample& sample = certificate.worst.emplace_back();
+        reader.read_count(each, "world", sample.world);
+        reader.read_choice(each, "outcome", all_outcomes, sample.outcome);
+        sample.min_clearance_m = clearance(each, "min_clearance_m");
     }
 }
 

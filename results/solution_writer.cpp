@@ -33,10 +33,13 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
     if (!certificate) {
         return {};
     }
-    Json failed = Json::array();
-    for (const FailedWorld& each : certificate->failed) {
-        failed.push_back({{"world", each.world}, {"cause", each.cause}});
+    Json worst = Json::array();
+    for (const WorldSample& each : certificate->worst) {
+        worst.push_back({{"world", each.world},
+                         {"outcome", name_of(each.outcome)},
+                         {"min_clearance_m", number(each.min_clearance_m)}});
     }
+    const auto& clearance = certificate->clearance_m;
     const auto& probability = certificate->failure_probability;
     return {{"given", certificate->is_given},
             {"worlds", certificate->worlds},
@@ -46,8 +49,10 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
             {"max_failure_probability", certificate->max_failure_probability},
             {"confidence", certificate->confidence},
             {"attempts", certificate->attempts},
+            {"clearance_m",
+             {{"p01", number(clearance.p01)}, {"p10", number(clearance.p10)}, {"p50", number(clearance.p50)}}},
             {"causes", certificate->causes},
-            {"failed", std::move(failed)}};
+            {"worst", std::move(worst)}};
 }
 
 Json planning_json(const SearchRecord& record) {
@@ -62,6 +67,7 @@ Json planning_json(const SearchRecord& record) {
             {"map_wall_s", number(record.map_wall_s)},
             {"flight_wall_s", number(record.flight_wall_s)},
             {"first_solution_wall_s", number(record.first_solution_wall_s)},
+            {"first_certified_wall_s", number(record.first_certified_wall_s)},
             {"iterations", record.iterations},
             {"edges_simulated", record.edges_simulated},
             {"simulated_s", number(record.simulated_s)},

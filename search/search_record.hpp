@@ -38,11 +38,12 @@ struct Obstruction {
 
 /// How a search went.
 struct SearchRecord {
-    double wall_s = 0;                            ///< of the search, direct flights of better plans included
-    double setup_wall_s = 0;                      ///< before it: checks of the problem, scene and aero map
-    double map_wall_s = 0;                        ///< of that, spent on the aero map
-    double flight_wall_s = 0;                     ///< spent on the direct flight of the reported plan
-    std::optional<double> first_solution_wall_s;  ///< first plan that the planner's own model accepted
+    double wall_s = 0;                             ///< of the search, direct flights of better plans included
+    double setup_wall_s = 0;                       ///< before it: checks of the problem, scene and aero map
+    double map_wall_s = 0;                         ///< of that, spent on the aero map
+    double flight_wall_s = 0;                      ///< spent on the direct flight of the reported plan
+    std::optional<double> first_solution_wall_s;   ///< first plan that the planner's own model accepted
+    std::optional<double> first_certified_wall_s;  ///< first plan that got its certificate
     std::uint64_t iterations = 0;
     std::uint64_t edges_simulated = 0;
     double simulated_s = 0;            ///< flight time simulated, not counting direct flights

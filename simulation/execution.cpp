@@ -134,19 +134,13 @@ std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot
     return segments;
 }
 
-/// The ticks at which the holds of the goals end, in their order; fewer when the reference does not come to all of
-/// them. The last one is that of the last goal, which is held after the last knot.
-std::vector<std::int64_t> hold_ends(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
+/// The ticks at which the hovers at the goals end, in their order; fewer when the reference does not come to all of
+/// them. The last one is that of the last goal, at which the vehicle hovers after the last knot.
+std::vector<std::int64_t> end_ticks(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
                                     std::span<const Goal> goals) {
     std::vector<std::int64_t> ends;
-    for (std::size_t i = 1; i < knots.size() && ends.size() + 1 < goals.size(); ++i) {
-        const Goal& goal = goals[ends.size()];
-        const ReferencePoint& point = knots[i].point;
-        if (point == knots[i - 1].point && is_at_rest(point) &&
-            knots[i].tick - knots[i - 1].tick >= hold_ticks(goal, model, point) &&
-            is_met(goal_error(goal, model.tick().plant, level_at(configuration_of(point))))) {
-            ends.push_back(knots[i].tick);
-        }
+    for (const std::size_t knot : hover_ends(model, knots, goals)) {
+        ends.push_back(knots[knot].tick);
     }
     if (ends.size() + 1 == goals.size()) {
         ends.push_back(knots.back().tick + hold_ticks(goals.back(), model, knots.back().point));
@@ -221,7 +215,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
-    judge_goals(model, goals, hold_ends(model, knots, goals), execution);
+    judge_goals(model, goals, end_ticks(model, knots, goals), execution);
     return execution;
 }
 
@@ -246,6 +240,21 @@ std::string_view name_of(Outcome outcome) {
 std::int64_t hold_ticks(const Goal& goal, const FlightModel& model, const ReferencePoint& at) {
     const double hold_s = nearest_goal(goal, model.tick().plant, level_at(configuration_of(at))).hold_s;
     return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(hold_s / model.tick().tick_s - 1e-9)));
+}
+
+std::vector<std::size_t> hover_ends(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
+                                    std::span<const Goal> goals) {
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 1; i < knots.size() && ends.size() + 1 < goals.size(); ++i) {
+        const Goal& goal = goals[ends.size()];
+        const ReferencePoint& point = knots[i].point;
+        if (point == knots[i - 1].point && is_at_rest(point) &&
+            knots[i].tick - knots[i - 1].tick >= hold_ticks(goal, model, point) &&
+            is_met(goal_error(goal, model.tick().plant, level_at(configuration_of(point))))) {
+            ends.push_back(i);
+        }
+    }
+    return ends;
 }
 
 bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -14,6 +15,9 @@ namespace downwash {
 
 /// How an executed plan ended.
 enum class Outcome : std::uint8_t { ok, collision, unstable, left_flyable_area, goal_missed };
+
+inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcome::unstable, Outcome::left_flyable_area,
+                                         Outcome::goal_missed};
 
 /// The outcome's name in files, for example "left_flyable_area".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome);
@@ -82,6 +86,12 @@ struct Execution : FlightSums {
 /// How many control ticks a reference point is held as a goal; among alternatives, the hold of the nearest.
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const Goal& goal, const FlightModel& model,
                                                       const ReferencePoint& at);
+
+/// The knots at which the hovers at the goals end, in their order: all but the last, at which the vehicle hovers after
+/// the last knot. Fewer where the reference does not hover at all of them.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::size_t> hover_ends(const FlightModel& model,
+                                                                  const std::vector<ReferenceKnot>& knots,
+                                                                  std::span<const Goal> goals);
 
 /// Whether a vehicle meets the goal at this instant: within tolerance and slow enough.
 [[nodiscard]] DOWNWASH_EXPORT bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& state);

@@ -1,5 +1,6 @@
 #include "downwash/simulation/flight.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "downwash/simulation/between_ticks.hpp"
@@ -47,10 +48,12 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
         }
         simulation::add_tick(flight, model.tick().plant, before, next);
         const Rejection rejection = broken_rule(model, map, rules, limits, world, given, before, next, next_reference);
-        if (rejection == Rejection::none && rules.measures_clearance) {
-            flight.clearance_integral +=
-                model.tick().tick_s *
-                simulation::clearance_density(model.collisions().clearance_m(among_obstacles(pose_of(next), world)));
+        if (rules.measures_clearance || rules.finds_min_clearance) {
+            const double clearance_m = model.collisions().clearance_m(among_obstacles(pose_of(next), world));
+            flight.min_clearance_m = std::min(flight.min_clearance_m, clearance_m);
+            if (rejection == Rejection::none && rules.measures_clearance) {
+                flight.clearance_integral += model.tick().tick_s * simulation::clearance_density(clearance_m);
+            }
         }
         return rejection;
     };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "downwash/base/export.hpp"
@@ -37,6 +38,9 @@ inline constexpr double unstable_error_m = 3.0;
     return std::max(2 * margin_m, 0.005);
 }
 
+/// A FlightPool may miss a lower clearance by this [m].
+inline constexpr double min_clearance_error_m = 0.001;
+
 /// The rules of a planned flight.
 struct FlightRules {
     double margin_m = 0.05;             ///< least clearance, also between ticks: see max_unseen_motion_m
@@ -46,6 +50,7 @@ struct FlightRules {
     double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
     std::function<bool()> is_over;      ///< polled now and then; true ends the flight as interrupted
     bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
+    bool finds_min_clearance = false;   ///< of every flight, for certificates
 };
 
 /// The outcome of a flight along one segment.
@@ -53,6 +58,9 @@ struct SegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< simulated, the rejected one included
     double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
+    /// Least clearance on control ticks, when wanted [m]: exact in fly(); in a FlightPool to min_clearance_error_m,
+    /// from the beginning of the job on.
+    double min_clearance_m = std::numeric_limits<double>::infinity();
 };
 
 /// Flies one reference segment in closed loop and rejects it at the first tick that breaks a rule.

@@ -45,6 +45,7 @@ class FlightLane {
         leg_ = 0;
         world_ = flown_world(setting_->model, job.world);
         first_tick_ = job.first_tick;
+        min_clearance_m_ = HUGE_VAL;
         write<VehicleState<double>>(job.start, lanes_->state);
         write(job.start.world, lanes_->world_memory);
         write((world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers, lanes_->world);
@@ -68,6 +69,7 @@ class FlightLane {
         leg_ = other.leg_;
         world_ = other.world_;
         first_tick_ = other.first_tick_;
+        min_clearance_m_ = other.min_clearance_m_;
         level_ = other.level_;
         lanes_->is_active[other.number_] = 0;
     }
@@ -166,21 +168,26 @@ class FlightLane {
         }
         const double motion_m =
             motion_within_goal_m(*setting_->goal, plant(), pose_of(now), setting_->model.collisions().body_reach_m());
-        lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
+        limit_free_motion(motion_m);
         lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;
         return Rejection::none;
     }
 
     void look_after_every_tick() { lanes_->free_motion_m[number_] = -1; }
+    void limit_free_motion(double motion_m) {
+        lanes_->free_motion_m[number_] = std::min(lanes_->free_motion_m[number_], motion_m - clearance_error_m);
+    }
 
     /// Flyable area and collision at the state of now; how far the robot may move until the next look.
     Rejection rejection_nearby() {
         const PlanarPose pose = among_obstacles(pose_of(state()), world_);
+        const CollisionChecker& collisions = setting_->model.collisions();
+        const double clearance_m = setting_->rules.finds_min_clearance ? collisions.clearance_m(pose) : HUGE_VAL;
+        min_clearance_m_ = std::min(min_clearance_m_, clearance_m);
         if (setting_->map != nullptr && !is_flyable(setting_->model, *setting_->map, pose)) {
             return Rejection::flyable_area;
         }
-        const CollisionChecker& collisions = setting_->model.collisions();
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
         if (comes_nearer_between(setting_->model, among_obstacles(read<PlanarPose>(lanes_->before), world_), pose,
                                  setting_->rules.margin_m)) {
@@ -191,6 +198,9 @@ class FlightLane {
             if (collisions.is_nearer_than(pose, setting_->rules.margin_m)) {
                 return Rejection::collision;
             }
+        }
+        if (setting_->rules.finds_min_clearance) {
+            limit_free_motion(std::max(clearance_m - min_clearance_m_, min_clearance_error_m));
         }
         if (setting_->rules.measures_clearance) {
             SegmentFlight& flight = job_->legs[leg_].flight;
@@ -216,6 +226,7 @@ class FlightLane {
     void end_with(Rejection rejection) {
         FlightLeg& leg = job_->legs[leg_];
         leg.flight.rejection = rejection;
+        leg.flight.min_clearance_m = min_clearance_m_;
         leg.end = state();
         first_tick_ += leg.flight.ticks;
         if (rejection == Rejection::none && ++leg_ < job_->legs.size()) {
@@ -233,7 +244,8 @@ class FlightLane {
     std::size_t leg_ = 0;
     const FlownWorld* world_ = nullptr;
     std::int64_t first_tick_ = 0;
-    int level_ = 0;  ///< of the free motion found last
+    double min_clearance_m_ = HUGE_VAL;  ///< since the job began, when wanted
+    int level_ = 0;                      ///< of the free motion found last
 };
 
 }  // namespace downwash::simulation

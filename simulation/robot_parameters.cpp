@@ -196,11 +196,17 @@ class LawRows {
         rows_.push_back(std::move(row));
     }
     void group(std::string_view path, std::string_view description) { add(downwash::group(below(path), description)); }
+    /// Keys that need not be there.
+    void optional_group(std::string_view path, std::string_view description) {
+        add(parameters::group<Robot>(below(path), description));
+    }
     /// Never negative.
-    Parameter<Robot> gain(std::string_view path, std::string_view description, double Law::*member) const {
+    template <class Number>
+    Parameter<Robot> gain(std::string_view path, std::string_view description, Number Law::*member) const {
         return number(path, description, member).at_least(0).at_most(1e4);
     }
-    Parameter<Robot> number(std::string_view path, std::string_view description, double Law::*member) const {
+    template <class Number>
+    Parameter<Robot> number(std::string_view path, std::string_view description, Number Law::*member) const {
         return parameters::number<Robot>(below(path), description, place(member));
     }
     Parameter<Robot> flag(std::string_view path, std::string_view description, bool Law::*member) const {

@@ -57,9 +57,9 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     const double error[3] = {s[reference_x] - q[0], s[reference_z] - q[1], s[reference_arm] - q[3]};
     Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
     for (int i = 0; i < 2; ++i) {
-        wanted[i] =
-            g.position_kd * (velocity[i] - u[i]) + g.position_kp * error[i] +
-            limited(g.position_ki * s[integral_x + static_cast<std::size_t>(i)], g.position_integral_limit_m_s2);
+        const ModelInversion::AxisGains gains = g.axis_gains(i);
+        wanted[i] = gains.kd * (velocity[i] - u[i]) + gains.kp * error[i] +
+                    limited(gains.ki * s[integral_x + static_cast<std::size_t>(i)], g.position_integral_limit_m_s2);
     }
     wanted[3] = g.arm_kd * (velocity[2] - u[3]) + g.arm_kp * error[2] +
                 limited(g.arm_ki * s[integral_arm], g.arm_integral_limit_rad_s2);

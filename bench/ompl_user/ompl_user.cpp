@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../support/measuring.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/ompl_user/user_planner.hpp"
 #include "downwash/bench/statistics.hpp"
@@ -45,7 +46,7 @@ std::string milliseconds(double time_s) {
 void print_ratio(const Row& user, const Row& ours) {
     constexpr double min_ratio = 50;
     constexpr double confidence_of_each = 0.975;
-    const double ratio = bench::quantile(user.times_s, 0.5) / bench::quantile(ours.times_s, 0.5);
+    const double ratio = quantile(user.times_s, 0.5) / quantile(ours.times_s, 0.5);
     const bench::Range theirs = bench::median_range(user.times_s, confidence_of_each);
     const bench::Range own = bench::median_range(ours.times_s, confidence_of_each);
     fmt::print("\n| bound | found | |\n| --- | --- | --- |\n");
@@ -68,7 +69,7 @@ void print(const Options& options, const Problem& problem, const std::vector<Row
         fmt::print("| {} | {}/{} | {:.3f} to {:.3f} |", row.name, solved.hits, solved.attempts, solved.low,
                    solved.high);
         for (const double q : {0.25, 0.5, 0.75, 0.95}) {
-            fmt::print(" {} |", milliseconds(bench::quantile(row.times_s, q)));
+            fmt::print(" {} |", milliseconds(quantile(row.times_s, q)));
         }
         fmt::print("\n");
     }

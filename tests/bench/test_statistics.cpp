@@ -1,3 +1,4 @@
+#include "downwash/base/quantile.hpp"
 #include "downwash/bench/statistics.hpp"
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <limits>
 
 using namespace downwash::bench;
+using downwash::quantile;
 
 namespace {
 

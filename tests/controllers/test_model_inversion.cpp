@@ -88,9 +88,12 @@ double wanted_arm_acceleration(const ModelInversion& g, const Case& c) {
 }
 
 double wanted_acceleration(const ModelInversion& g, const Case& c, int axis) {
-    return c.reference.acceleration[axis] + g.position_kd * (c.reference.velocity[axis] - c.u[axis]) +
-           g.position_kp * (c.reference.position[axis] - c.q[axis]) +
-           limited(g.position_ki * c.memory.position_integral[axis], g.position_integral_limit_m_s2);
+    const bool is_height = axis == 1;
+    return c.reference.acceleration[axis] +
+           (is_height && g.height_kd ? *g.height_kd : g.position_kd) * (c.reference.velocity[axis] - c.u[axis]) +
+           (is_height && g.height_kp ? *g.height_kp : g.position_kp) * (c.reference.position[axis] - c.q[axis]) +
+           limited((is_height && g.height_ki ? *g.height_ki : g.position_ki) * c.memory.position_integral[axis],
+                   g.position_integral_limit_m_s2);
 }
 
 }  // namespace

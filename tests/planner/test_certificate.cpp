@@ -9,6 +9,7 @@
 #include "../support/test_problem.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 
 // What plans are worth where not everything is as believed.
 
@@ -108,6 +109,10 @@ TEST_CASE("A plan is solved with its certificate, the same on any number of thre
     CHECK(one.certificate->is_given);
     CHECK(one.certificate->worlds >= 72);  // 0 failures at half of 5 %, of which the first stage has half
     CHECK(one.certificate->failure_probability.high < 0.1);
+    CHECK(one.certificate->clearance_m.p01 > 0);
+    CHECK(one.certificate->clearance_m.p50 > one.certificate->clearance_m.p01);
+    CHECK(one.certificate->worst.size() == 10);
+    CHECK(one.planning.first_certified_wall_s > one.planning.first_solution_wall_s);
     options.threads = 3;
     const Solution three = solve(problem, options);
     CHECK(three.cost == one.cost);
@@ -115,6 +120,36 @@ TEST_CASE("A plan is solved with its certificate, the same on any number of thre
     CHECK(three.certificate->attempts == one.certificate->attempts);
     CHECK(same_bytes(*three.plan, *one.plan));
     CHECK(same_bytes(*three.execution, *one.execution));
+}
+
+TEST_CASE("The clearances of a certificate are those of flights with direct aerodynamics") {
+    const Problem problem = uncertain_problem();
+    const Solution solution = solve(problem);
+    REQUIRE(solution.certificate);
+    const auto model = make_flight_model(problem);
+    const CeilingPart ceiling{model->ceilings_only(), nullptr};
+    for (const WorldSample& sample : solution.certificate->worst) {
+        INFO("world " << sample.world);
+        const FlownWorld world = make_world(
+            problem.robot, draw_world(*problem.uncertainty, problem.robot, problem.planner.seed, sample.world));
+        const FlightWorld in{&world, &ceiling};
+        const auto start = hovering_start(*model, start_state(*model, problem.start), true, in);
+        REQUIRE(start);
+        const Execution flight = execute(*model, *start, solution.plan->reference, goals_of(problem), true, in);
+        CHECK(flight.outcome == sample.outcome);
+        CHECK(sample.min_clearance_m == Approx(flight.min_clearance_m).margin(2 * min_clearance_error_m));
+    }
+}
+
+TEST_CASE("MP-ARM and MP-ARM-DA learn in which share of worlds their plan fails, and stay solved") {
+    Problem problem = uncertain_problem();
+    problem.planner.variant = GENERATE(Variant::mp_arm, Variant::mp_arm_da);
+    problem.planner.max_iterations = 300;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    REQUIRE(solution.certificate);
+    CHECK(solution.certificate->worlds > CertificateTest::most_failures);
+    CHECK_FALSE(solution.planning.first_certified_wall_s);
 }
 
 TEST_CASE("Goals in turn are certified as a whole, from start to end") {
@@ -149,7 +184,8 @@ TEST_CASE("A plan that only works as believed is approximate, with the share of 
     CHECK_FALSE(solution.certificate->is_given);
     CHECK(solution.certificate->failures > CertificateTest::most_failures);
     CHECK(solution.certificate->causes.contains("goal_missed"));
-    CHECK(solution.certificate->failed.front().world > 0);
+    CHECK(solution.certificate->worst.front().world > 0);
+    CHECK(solution.certificate->worst.front().outcome == Outcome::goal_missed);
     CHECK(solution.plan.has_value());
 }
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "downwash/planner/certificate.hpp"
+
+namespace downwash::planning {
+
+/// Flights of a plan in worlds, as they come, and what they say about it.
+class CertificateRecord {
+ public:
+    /// @param attempt from 1
+    CertificateRecord(double max_failure_probability, double confidence, std::uint64_t attempt)
+        : test_(max_failure_probability, confidence, attempt),
+          max_failure_probability_(max_failure_probability),
+          confidence_(confidence),
+          attempt_(attempt) {}
+
+    [[nodiscard]] std::uint64_t worlds() const noexcept { return samples_.size(); }
+    [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+    /// Few enough failures in enough worlds.
+    [[nodiscard]] bool passes() const noexcept { return !has_failed() && worlds_wanted() == 0; }
+    /// How many more worlds it takes to pass, if no other flight fails; 0 once nothing can change.
+    [[nodiscard]] std::uint64_t worlds_wanted() const noexcept;
+
+    void add(const WorldSample& sample);
+    /// The flights without a failure that came nearest to an obstacle.
+    [[nodiscard]] std::vector<WorldSample> nearest_successes(std::size_t count) const;
+    /// Takes flights again that are known better now. @return whether one of them failed
+    bool replace(const std::vector<WorldSample>& samples);
+
+    /// @param is_given as far as the caller is concerned; it takes enough worlds, too
+    [[nodiscard]] Certificate certificate(bool is_given) const;
+
+ private:
+    [[nodiscard]] bool has_failed() const noexcept { return failures_ > CertificateTest::most_failures; }
+
+    CertificateTest test_;
+    double max_failure_probability_;
+    double confidence_;
+    std::uint64_t attempt_;
+    std::uint64_t failures_ = 0;
+    std::vector<WorldSample> samples_;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,152 @@
+#include "downwash/planner/world_flights.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/execution.hpp"
+
+namespace downwash {
+namespace {
+
+ReferenceSegment segment_of(const Plan& plan, std::size_t to) {
+    const ReferenceKnot& a = plan.reference[to - 1];
+    const ReferenceKnot& b = plan.reference[to];
+    return {a.point, b.point, b.tick - a.tick, plan.tick_s};
+}
+
+/// A plan with the hover at its last goal as its last two knots.
+Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model) {
+    plan.reference.push_back(plan.reference.back());
+    plan.reference.back().tick += hold_ticks(goal, model, plan.reference.back().point);
+    return plan;
+}
+
+double min_clearance_m(const FlightJob& job) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const FlightLeg& leg : job.legs) {
+        least_m = std::min(least_m, leg.flight.min_clearance_m);
+    }
+    return least_m;
+}
+
+}  // namespace
+
+FlightRules rules_of_execution() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    FlightRules rules;
+    rules.margin_m = 0;
+    rules.bounds = {-infinity, infinity, -infinity, infinity};
+    rules.max_tracking_error_m = infinity;
+    rules.max_arm_error_rad = infinity;
+    rules.max_saturation = infinity;
+    rules.finds_min_clearance = true;
+    return rules;
+}
+
+WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
+                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache)
+    : problem_(problem),
+      model_(std::move(model)),
+      map_(std::move(map)),
+      goals_(goals_of(problem)),
+      threads_(threads),
+      pools_(goals_.size()) {
+    if (map_ != nullptr) {
+        ceiling_.model = model_->ceilings_only();
+        if (ceiling_.model != nullptr) {
+            ceiling_.map = ceiling_.model->make_map(problem.bounds, threads, {}, map_cache);
+        }
+    }
+}
+
+FlightPool& WorldFlights::pool(std::size_t goal) {
+    if (pools_[goal] == nullptr) {
+        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_of_execution(), &goals_[goal], threads_,
+                                                    best_instructions(), &ceiling_);
+    }
+    return *pools_[goal];
+}
+
+std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const FlownWorld> worlds) {
+    const FlightState believed = start_state(*model_, problem_.start);
+    std::vector<std::optional<FlightState>> starts(worlds.size(), believed);
+    if (is_at_rest(problem_.start)) {
+        const ReferencePoint here = at_rest(problem_.start.configuration());
+        const double tick_s = model_->tick().tick_s;
+        const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
+        std::vector<FlownWorld> quiet;
+        quiet.reserve(worlds.size());
+        std::vector<FlightJob> jobs;
+        for (const FlownWorld& world : worlds) {
+            quiet.push_back(without_noise(world));
+            FlightJob job{believed, {{hover}}, 0, &quiet.back()};
+            job.start.world = memory_at_start(quiet.back(), believed.plant);
+            jobs.push_back(std::move(job));
+        }
+        pool(0).fly(jobs);
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            starts[i] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+        }
+    }
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (starts[i]) {
+            starts[i]->plant.energy_j = 0;
+            starts[i]->world = memory_at_start(worlds[i], starts[i]->plant);
+        }
+    }
+    return starts;
+}
+
+void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
+                           std::optional<std::size_t> goal) {
+    const std::int64_t judged_ticks = goal ? std::llround(goal_settling_s / model_->tick().tick_s) : 0;
+    std::vector<FlightLeg> legs;
+    for (std::size_t i = first + 1; i <= last; ++i) {
+        legs.push_back({segment_of(plan, i)});
+    }
+    std::vector<FlightJob> flying;
+    std::vector<FlightJob*> owners;
+    for (FlightJob& job : jobs) {
+        if (job.rejection() == Rejection::none) {
+            flying.push_back(
+                {job.legs.empty() ? job.start : job.end(), legs, judged_ticks, job.world, plan.reference[first].tick});
+            owners.push_back(&job);
+        }
+    }
+    pool(goal.value_or(0)).fly(flying);
+    for (std::size_t i = 0; i < flying.size(); ++i) {
+        std::move(flying[i].legs.begin(), flying[i].legs.end(), std::back_inserter(owners[i]->legs));
+    }
+}
+
+std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds) {
+    const std::vector<std::optional<FlightState>> starts = starts_in(worlds);
+    std::vector<WorldFlight> flights(worlds.size(), {Rejection::unstable, 0});
+    std::vector<FlightJob> jobs;
+    std::vector<std::size_t> world_of;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (starts[i]) {
+            jobs.push_back({*starts[i], {}, 0, &worlds[i]});
+            world_of.push_back(i);
+        }
+    }
+    const std::span<const Goal> visited = std::span(goals_).first(visits);
+    const std::vector<std::size_t> hovers = hover_ends(*model_, plan.reference, visited);
+    std::size_t knot = 0;
+    for (std::size_t i = 0; i < hovers.size(); ++i) {
+        advance(jobs, plan, std::exchange(knot, hovers[i]), hovers[i], i);
+    }
+    const Plan held = with_hover(plan, visited.back(), *model_);
+    advance(jobs, held, knot, held.reference.size() - 1, visits - 1);
+    const bool misses_a_goal = hovers.size() + 1 < visits;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const Rejection rejection = jobs[i].rejection();
+        flights[world_of[i]] = {rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
+                                min_clearance_m(jobs[i])};
+    }
+    return flights;
+}
+
+}  // namespace downwash

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/simulation/flight_batch.hpp"
+
+namespace downwash {
+
+/// How a plan flies in one world.
+struct WorldFlight {
+    Rejection rejection = Rejection::none;  ///< `unstable` also for a vehicle that does not stay at its start
+    double min_clearance_m = 0;             ///< up to where the flight ended, to min_clearance_error_m
+};
+
+/// Flies whole plans of a problem in its worlds, from the start through all goals, through the aero map and side by
+/// side. A flight succeeds if it touches nothing, stays stable and flyable, and meets every goal; see docs/model.md 7
+/// and 9.
+class DOWNWASH_EXPORT WorldFlights {
+ public:
+    /// @param map of the planner's own model; nullptr for none: then surfaces do not act
+    /// @param threads at least 1; nothing but the time depends on it   @param map_cache see FlightModel::make_map
+    /// @pre problem outlives it
+    WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
+                 int threads = 1, const std::filesystem::path& map_cache = {});
+
+    /// Vehicles that have hovered at the problem's start, or that start there moving; nothing for those that do not
+    /// stay there.
+    [[nodiscard]] std::vector<std::optional<FlightState>> starts_in(std::span<const FlownWorld> worlds);
+
+    /// Flies a plan in each of the worlds. @param plan through the first `visits` goals of the problem
+    [[nodiscard]] std::vector<WorldFlight> fly(const Plan& plan, std::size_t visits,
+                                               std::span<const FlownWorld> worlds);
+
+    /// Moves vehicles on along a plan, from one of its knots to another; a flight that ended stays as it is.
+    /// @param goal number of the goal at which they hover in the end; empty: they are not judged
+    void advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
+                 std::optional<std::size_t> goal);
+
+    [[nodiscard]] const std::vector<Goal>& goals() const noexcept { return goals_; }
+    [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
+    [[nodiscard]] const CeilingPart& ceiling() const noexcept { return ceiling_; }
+
+ private:
+    /// The pool of flights to a goal, made when first needed.
+    FlightPool& pool(std::size_t goal);
+
+    const Problem& problem_;
+    std::shared_ptr<const FlightModel> model_;
+    std::shared_ptr<const AeroMap> map_;
+    CeilingPart ceiling_;
+    std::vector<Goal> goals_;
+    int threads_;
+    std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
+};
+
+/// The rules of a flight that only has to succeed: it may leave bounds and reference, and ask more of rotors and joint
+/// than they have. It ends where it touches something, tumbles or leaves the flyable area.
+[[nodiscard]] DOWNWASH_EXPORT FlightRules rules_of_execution();
+
+}  // namespace downwash
