@@ -21,7 +21,8 @@ struct Demand {
 template <class T>
 struct Actuation {
     dynamics::PlantCommand<T> command;  ///< held over the tick, within the limits
-    T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped
+    T saturation;  ///< greatest demand over its limit: 1 at the limit, more when something had to be clipped; a rotor's
+                   ///< lead does not count
 };
 
 /// The joint torque for the demanded arm acceleration under the thrust and pitch torque that the rotors give. Where
@@ -70,13 +71,18 @@ dynamics::RotorWrench<T> expected_wrench(const PlantModel& nominal, const dynami
 
 /// The commands for a demand: allocated to the rotors, clipped to their limits and to that of the joint.
 /// @param seen state as the controller knows it   @param motion nominal motion of that state
+/// @param rotor_lead how much more a rotor is asked for than it lacks, so that its lag shrinks by 1 / (1 + lead); see
+/// docs/model.md 5.2
 template <class T>
 void actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
-             const Demand<T>& demand, double tick_s, Actuation<T>& given) {
+             const Demand<T>& demand, double tick_s, Actuation<T>& given, double rotor_lead = 0) {
     T demand_n[max_rotors];
     dynamics::allocate(nominal, demand.thrust_n, demand.pitch_torque_nm, demand_n);
     given.saturation = thrust_saturation(nominal, demand_n);
     for (int i = 0; i < nominal.rotor_count; ++i) {
+        if (nominal.has_rotor_lag && rotor_lead > 0) {
+            demand_n[i] = demand_n[i] + T(rotor_lead) * (demand_n[i] - seen.thrust_n[i]);
+        }
         given.command.thrust_n[i] = lane::clamp(demand_n[i], T(nominal.min_thrust_n), T(nominal.max_thrust_n));
     }
     const dynamics::RotorWrench<T> wrench = expected_wrench(nominal, seen, given.command.thrust_n, tick_s);

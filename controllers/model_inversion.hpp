@@ -37,6 +37,8 @@ struct ModelInversion {
     double arm_ki = 0;  ///< [1/s3]
     double arm_integral_limit_rad_s2 = 5.0;
 
+    double rotor_lead = 0;  ///< see controllers::actuate()
+
     double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
     double min_vertical_force_ratio = 0.2;     ///< f_min of the inversion as a share of the weight
 
@@ -84,7 +86,7 @@ struct ModelInversion {
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
                       controllers::Actuation<T>& given) const {
         const Step<T> step = demanded(nominal, seen, motion, memory, reference, T(tick_s));
-        controllers::actuate(nominal, seen, motion, step.demand, tick_s, given);
+        controllers::actuate(nominal, seen, motion, step.demand, tick_s, given, rotor_lead);
         return select_each(given.saturation > T(1), step.frozen, step.integrated);
     }
 
@@ -247,6 +249,10 @@ struct ModelInversion {
         rows.add(rows.gain("arm.ki", "[1/s3]", &Law::arm_ki));
         rows.add(rows.gain("arm.integral_limit_rad_s2", "most that the integral may ask for",
                            &Law::arm_integral_limit_rad_s2));
+        rows.add(rows.number("rotor_lead", "share by which rotors with a lag are asked for more than they lack",
+                             &Law::rotor_lead)
+                     .at_least(0)
+                     .at_most(10));
         rows.add(rows.number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
                      .above(0)
                      .below(90));
