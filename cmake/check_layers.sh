@@ -22,6 +22,7 @@ rivals:      base scene dynamics effects grids aeromap controllers simulation pr
 ompl:        base scene dynamics effects grids aeromap controllers simulation problems search rivals
 planner:     base scene dynamics effects grids aeromap controllers simulation problems search rivals
 results:     base scene dynamics effects grids aeromap controllers simulation problems search planner
+judge:       base scene dynamics effects grids aeromap controllers simulation problems results
 fitting:     base effects
 exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
 report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
