@@ -14,9 +14,9 @@ namespace downwash::judge {
 
 /// The obstacles of a problem and a robot among them, for FCL. Made once, safe to share between threads.
 ///
-/// FCL measures between convex solids with libccd's version of GJK, told to go on until a step gains less than 1e-12:
-/// with its default of 1e-6 distances are off by up to a millimetre. Meshes are surfaces: a robot that is inside of a
-/// closed one without touching it is not noticed, and no flight gets there.
+/// FCL measures between convex solids by GJK. Each of its two solvers ends far from the minimum now and then, so that a
+/// distance counts only if a gap as wide proves it, or both solvers were asked. Meshes are surfaces: a robot that is
+/// inside of a closed one without touching it is not noticed, and no flight gets there.
 class Obstacles {
  public:
     /// @param robot its bodies and its arm   @param rotor_radius_m of discs

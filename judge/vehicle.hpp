@@ -29,9 +29,9 @@ struct Planar {
     return {rate_rad_s * r.z, -rate_rad_s * r.x};
 }
 /// A vector of the body frame in the plane, at a pitch (docs/model.md 1).
-[[nodiscard]] Planar from_body(Planar body, double pitch_rad) noexcept;
+[[nodiscard]] DOWNWASH_EXPORT Planar from_body(Planar body, double pitch_rad) noexcept;
 /// The direction of the arm: (cos a, -sin a) with a = pitch + arm.
-[[nodiscard]] Planar arm_direction(double pitch_rad, double arm_rad) noexcept;
+[[nodiscard]] DOWNWASH_EXPORT Planar arm_direction(double pitch_rad, double arm_rad) noexcept;
 
 /// Two bodies, a joint and rotors. Points are in the body frame, from the centre of mass of the multirotor.
 struct Vehicle {
