@@ -33,6 +33,7 @@ struct Part {
     Pose pose;
     fcl::AABBd box;  ///< in the same frame
 
+    // NOLINTNEXTLINE(modernize-pass-by-value): nothing to move in a matrix
     Part(Geometry shape, const Pose& at) : geometry(std::move(shape)), pose(at) {
         geometry->computeLocalAABB();
         box = fcl::CollisionObjectd(geometry, pose).getAABB();
