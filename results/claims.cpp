@@ -37,7 +37,7 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
     flight.cost = amount("cost");
     flight.goal_error_m = amount("goal_error_m");
     if (const auto world = JsonReader::member(*node, "world"); world && world->json->is_object()) {
-        flight.world.emplace();
+        flight.world = FlightClaims::WorldIndex{};
         reader.read_count(*world, "index", flight.world->index);
         reader.read_count(*world, "seed", flight.world->seed);
     }

@@ -103,7 +103,7 @@ TEST_CASE("It is in worlds as well, with lag, delay, drag, noise and gusts") {
 TEST_CASE("The fountain pushes the vehicle in a world as the planner says") {
     Problem problem = shipped("box_girder_bay");
     const Plan plan = plan_of(problem, 100);
-    problem.aero.ground.model = EffectModel::multirotor_body;
+    problem.aero.ground = EffectModel::multirotor_body;
     problem.uncertainty.emplace();
     const judge::PlanJudge judge(problem);
     for (std::uint64_t index = 0; index < 5; ++index) {

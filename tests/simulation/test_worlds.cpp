@@ -337,7 +337,7 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
 
 TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
     Problem problem = ceiling_problem();
-    problem.aero.ground.model = EffectModel::multirotor_body;
+    problem.aero.ground = EffectModel::multirotor_body;
     const auto model = make_flight_model(problem);
     REQUIRE(model->tick().plant.has_fountain);
     const CeilingPart ceiling{model->ceilings_only(), nullptr};
