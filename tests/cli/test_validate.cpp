@@ -97,6 +97,15 @@ TEST_CASE("A plan is validated by an independent flight") {
         CHECK(work.run("validate run/uncertain.yaml --plan there --json").json().at("disagreements").empty());
         check_rejected(work.run("validate", problem, "--plan there"), "was flown in world");
     }
+    SECTION("and in a world whose gusts blow as a moving vehicle starts") {
+        std::string text = replaced(work.text("run/effective.yaml"), "uncertainty: none", "uncertainty: {}");
+        text = replaced(replaced(text, "vx_m_s: 0", "vx_m_s: 0.3"), "linear_n_s_m: 0", "linear_n_s_m: 1");
+        write_file(work.in_run("run/moving.yaml"), text);
+        const Result flown = work.run("execute run/moving.yaml --plan run/solution.json --world 2 --out moving --json");
+        const auto found = work.run("validate run/moving.yaml --plan moving --world 2 --json").json();
+        CHECK(found.at("energy_j").get<double>() ==
+              Approx(flown.json().at("execution").at("energy_j").get<double>()).epsilon(1e-6));
+    }
     SECTION("and rejected where there is nothing to judge") {
         check_rejected(work.run("validate", problem, "--plan nowhere"), "nowhere");
         check_rejected(work.run("validate", problem, "--plan", problem), "not JSON");
