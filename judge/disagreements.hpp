@@ -12,6 +12,7 @@ namespace downwash::judge {
 
 /// Something in a solution file that is not as the judge finds it.
 struct Disagreement {
+    /// A figure or a name.
     using Value = std::variant<double, std::string>;
     std::string what;   ///< a key of the file, "execution.cost", or a part of the plan, "plan.reference[3] speed_m_s"
     Value file, judge;  ///< what the file says; what the judge finds, or the limit that the file breaks

@@ -14,6 +14,7 @@ namespace downwash {
 /// What a solution file says about the flight of its plan.
 struct FlightClaims {
     bool aero = true;
+    /// Which world of which seed.
     struct WorldIndex {
         std::uint64_t index = 0, seed = 0;
     };
