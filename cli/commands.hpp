@@ -15,6 +15,7 @@ using Action = std::function<ExitCode()>;
 void add_check(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
+void add_validate(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_init(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);

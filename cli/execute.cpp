@@ -80,7 +80,10 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
     const auto model = make_flight_model(problem);
     const CeilingPart ceiling{world ? model->ceilings_only() : nullptr, nullptr};
     const FlightWorld in{world ? &*world : nullptr, &ceiling, 0};
-    const FlightState believed = start_state(*model, problem.start);
+    FlightState believed = start_state(*model, problem.start);
+    if (world) {
+        believed.world = memory_at_start(*world, believed.plant);
+    }
     const auto start = world && is_at_rest(problem.start) ? hovering_start(*model, believed, aero, in) : believed;
     if (!start) {
         throw std::runtime_error("in this world the vehicle cannot hover at its start: its controller diverges there");

@@ -90,8 +90,8 @@ ExitCode run(int argc, char** argv) {
     program.footer(exit_codes);
     program.failure_message(usage_error);
     Action action;
-    for (const auto add : {add_init, add_check, add_explain, add_solve, add_execute, add_aeromap, add_bench, add_report,
-                           add_export, add_margins, add_planners, add_manual, add_completion}) {
+    for (const auto add : {add_init, add_check, add_explain, add_solve, add_execute, add_validate, add_aeromap,
+                           add_bench, add_report, add_export, add_margins, add_planners, add_manual, add_completion}) {
         add(program, action);
     }
     reject_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));

@@ -22,6 +22,7 @@ rivals:      base scene dynamics effects grids aeromap controllers simulation pr
 ompl:        base scene dynamics effects grids aeromap controllers simulation problems search rivals
 planner:     base scene dynamics effects grids aeromap controllers simulation problems search rivals
 results:     base scene dynamics effects grids aeromap controllers simulation problems search planner
+judge:       base scene dynamics effects grids aeromap controllers simulation problems results
 fitting:     base effects
 exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
 report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
@@ -34,6 +35,12 @@ examples:    *
 
 # These modules are parts of one library and share their private headers.
 one_library='search rivals planner ompl'
+
+# The judge looks at plans independently. Of what computes flights it may use parameters, types, the formulas of surface effects
+# and the random numbers of worlds, and nothing else.
+judge_may='controllers/plan.hpp controllers/configuration.hpp controllers/reference_point.hpp dynamics/plant.hpp
+dynamics/plant_model.hpp scene/planar_pose.hpp scene/plane_of_motion.hpp scene/shapes.hpp simulation/flight_model.hpp
+simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/uncertainty.hpp simulation/world.hpp results/claims.hpp'
 
 # The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
 private_headers() {
@@ -59,7 +66,7 @@ if [[ ${#files[@]} -eq 0 ]]; then
     exit 2
 fi
 
-awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private_headers)" '
+awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private_headers)" -v judge_may="$judge_may" '
     function error(text) { print FILENAME ":" FNR ": " text; ++errors }
     BEGIN {
         n = split(layers, lines, "\n")
@@ -71,6 +78,8 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
         }
         n = split(private_list, words, "\n")
         for (i = 1; i <= n; ++i) kept[words[i]] = 1
+        n = split(judge_may, words, " ")
+        for (i = 1; i <= n; ++i) shared[words[i]] = 1
         n = split(one_library, words, " ")
         for (i = 1; i <= n; ++i) together[words[i]] = 1
     }
@@ -92,6 +101,8 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
             sub(/\/.*/, "", used)
             if (used != module && !everything && !((module, used) in may))
                 error(module "/ may not use " used "/ (" header ")")
+            if (module == "judge" && used != "judge" && used != "base" && used != "problems" && !(target in shared))
+                error("the judge shares no " header " with what it judges")
             if (target in kept && used != module && module != "tests" && !(used in together && module in together))
                 error(header " is private to " used "/")
             if (shown && target in kept)

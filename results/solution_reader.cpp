@@ -1,81 +1,20 @@
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "downwash/base/text.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/problems/problem_reader.hpp"
-#include "downwash/results/json_place.hpp"
-#include "downwash/results/json_reader.hpp"
+#include "downwash/results/plan_reader.hpp"
+#include "downwash/results/solution_document.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash {
 namespace {
 
-using problems::Json;
 using problems::JsonReader;
 using problems::Node;
 
-constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
-constexpr std::size_t deepest_nesting = 32;
-constexpr std::int64_t max_ticks = 1'000'000;  // nearly three hours at 100 Hz
-constexpr double tolerance = 1e-9;             // of numbers that should be equal
-
-/// The control tick at which a knot stands; nothing when it stands between two.
-std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
-    const double ticks = std::round(t_s / tick_s);
-    if (!(ticks >= 0 && ticks <= static_cast<double>(max_ticks)) ||
-        std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
-        return std::nullopt;
-    }
-    return static_cast<std::int64_t>(ticks);
-}
-
-ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
-    ReferenceKnot knot;
-    const double t_s = reader.required_number(node, "t_s");
-    if (const auto tick = tick_of(t_s, tick_s)) {
-        knot.tick = *tick;
-    } else {
-        reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
-                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_ticks) + " of them");
-    }
-    constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
-                               std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        knot.point.position[axis] = reader.required_number(node, names[0][axis]);
-        knot.point.velocity[axis] = reader.required_number(node, names[1][axis]);
-        knot.point.acceleration[axis] = reader.required_number(node, names[2][axis]);
-    }
-    return knot;
-}
-
-void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
-    for (const Node& node : reader.groups(list)) {
-        if (reader.has_enough()) {
-            return;
-        }
-        const ReferenceKnot knot = read_knot(reader, node, plan.tick_s);
-        if (plan.reference.empty() ? knot.tick != 0 : knot.tick <= plan.reference.back().tick) {
-            reader.report(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
-                                                       : "t_s must be greater than that of the knot before");
-        }
-        plan.reference.push_back(knot);
-    }
-}
-
-std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list) {
-    std::vector<Configuration> waypoints;
-    for (const Node& node : reader.groups(list)) {
-        if (reader.has_enough()) {
-            break;
-        }
-        waypoints.push_back({reader.required_number(node, "x_m"), reader.required_number(node, "z_m"),
-                             reader.required_number(node, "arm_rad")});
-    }
-    return waypoints;
-}
+constexpr double tolerance = 1e-9;  // of numbers that should be equal
 
 bool is_near(double a, double b) {
     return std::abs(a - b) <= tolerance * std::max({1.0, std::abs(a), std::abs(b)});
@@ -111,32 +50,12 @@ void check_start(JsonReader& reader, const Node& reference, const Plan& plan, co
 }
 
 void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Solution& solution) {
-    const auto node = reader.required(root, "plan");
-    if (!node) {
-        return;
-    }
-    if (!node->json->is_object()) {
-        reader.report(*node, node->json->is_null() ? "the file holds no plan: the search found none"
-                                                   : "expected a group with `waypoints` and `reference`");
-        return;
-    }
-    const auto waypoints = reader.required(*node, "waypoints");
-    const auto reference = reader.required(*node, "reference");
-    Plan plan;
-    plan.tick_s = 1 / problem.robot.controller.rate_hz;
-    std::vector<Configuration> corners;
-    if (waypoints && reference) {
-        read_reference(reader, *reference, plan);
-        corners = read_waypoints(reader, *waypoints);
-    }
-    if (reader.errors().empty() && plan.reference.empty()) {
-        reader.report(*reference, "expected at least one knot");
-    }
+    problems::PlanText text = problems::read_plan(reader, root, 1 / problem.robot.controller.rate_hz);
     if (reader.errors().empty()) {
-        compare_waypoints(reader, *waypoints, corners, plan);
-        check_start(reader, *reference, plan, problem.start);
+        compare_waypoints(reader, *text.waypoints_node, text.waypoints, text.plan);
+        check_start(reader, *text.reference_node, text.plan, problem.start);
     }
-    solution.plan = std::move(plan);
+    solution.plan = std::move(text.plan);
 }
 
 void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
@@ -233,30 +152,12 @@ void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
     reader.report(*node, "expected " + std::string(names.size() > 1 ? "one of " : "") + joined_names(names));
 }
 
-/// A name, or a group of weights.
-void read_objective(JsonReader& reader, const Node& root, CostFunction& objective) {
-    const auto node = JsonReader::member(root, "objective");
-    if (!node || !node->json->is_object()) {
-        Objective single{};
-        reader.read_choice(root, "objective", all_objectives, single);
-        objective = node ? CostFunction(single) : objective;
-        return;
-    }
-    objective = CostFunction::of_nothing();
-    for (const Objective each : all_objectives) {
-        objective.weight(each) = reader.amount(*node, name_of(each).data(), 0);
-    }
-    if (objective == CostFunction::of_nothing()) {
-        reader.report(*node, "expected a weight above 0");
-    }
-}
-
 void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     reader.read_choice(root, "status", std::array{Status::none, Status::approximate, Status::solved}, solution.status);
     reader.read_flag(root, "interrupted", solution.interrupted);
     reader.read_choice(root, "variant", std::array{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada},
                        solution.variant);
-    read_objective(reader, root, solution.objective);
+    problems::read_objective(reader, root, solution.objective);
     read_algorithm(reader, root, solution);
     reader.read_count(root, "seed", solution.seed);
     reader.read_count(root, "threads", solution.threads);
@@ -274,68 +175,16 @@ Solution blank_solution(const Problem& problem) {
     return solution;
 }
 
-[[noreturn]] void throw_at(const std::string& path, problems::TextPlace place, const std::string& message) {
-    throw ProblemFileError({{path, place.line, place.column, message}});
-}
-
-std::string read_text(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::string text;
-    // A folder opens like a file and fails at the first byte.
-    if (!stream || (stream.peek(), stream.bad())) {
-        throw_at(path, {}, "cannot be read; expected a solution.json that `solve` wrote");
-    }
-    char block[65536];
-    while (stream.read(block, sizeof block), stream.gcount() > 0) {
-        text.append(block, static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > largest_file) {
-            throw_at(path, {}, "is larger than 256 MiB and hardly the file of a plan");
-        }
-    }
-    return text;
-}
-
-Json parse(const std::string& path, const std::string& text) {
-    if (problems::json_depth(text) > deepest_nesting) {
-        throw_at(path, {}, "nests deeper than the file of a plan does");
-    }
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        throw_at(path, problems::place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
-                 text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
-    } catch (const Json::exception&) {
-        throw_at(path, {}, "holds a number that is too large");
-    }
-}
-
 }  // namespace
 
 Solution read_solution(const std::string& path, const Problem& problem) {
-    const std::string text = read_text(path);
-    const Json document = parse(path, text);
-    const Node root{&document, ""};
-    JsonReader reader;
     Solution solution = blank_solution(problem);
-    if (!document.is_object()) {
-        reader.report(root, "expected a group of keys as `solve` writes it");
-    } else if (const auto schema = reader.required(root, "schema"); schema && *schema->json != solution_schema) {
-        reader.report(*schema, "unsupported schema; expected " + std::string(solution_schema));
-    } else if (schema) {
+    problems::read_document(path, [&](JsonReader& reader, const Node& root) {
         read_head(reader, root, solution);
         read_planning(reader, root, solution.planning);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
-    }
-    if (!reader.errors().empty()) {
-        std::vector<LocatedError> errors;
-        for (const KeyError& error : reader.errors()) {
-            const auto place = problems::json_place(text, error.key);
-            errors.push_back(
-                {path, place.line, place.column, error.key.empty() ? error.message : error.key + ": " + error.message});
-        }
-        throw ProblemFileError(std::move(errors));
-    }
+    });
     return solution;
 }
 

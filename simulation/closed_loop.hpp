@@ -86,7 +86,7 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
         by.u[1] = by.u[1] - sign * (by.u[2] * x);
     };
     shift(moving, motion.attitude, T(1));
-    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, ceiling);
+    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, ceiling, plant.body());
     next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), surroundings);
     shift(next.plant, dynamics::attitude(plant, next.plant.q[2], next.plant.q[3]), T(-1));
     next.world = later(world, state.plant, state.world, noise);

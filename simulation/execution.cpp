@@ -40,7 +40,8 @@ class Recorder {
         : model_(model),
           plant_(model.tick().plant),
           world_(world),
-          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor, ceiling),
+          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor, ceiling,
+                        plant_.body()),
           execution_(execution) {}
 
     /// Flown so far.

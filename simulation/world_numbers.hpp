@@ -106,17 +106,19 @@ WorldMemory<T> later(const WorldNumbers<T>& world, const dynamics::PlantState<T>
 template <class T, class Effect, class Ceiling>
 class WorldSurroundings {
  public:
+    /// @param body number of the body behind those of the rotors: its push comes from the ground alone
     WorldSurroundings(const WorldNumbers<T>& world, const dynamics::PlanePoint<T>& wind, Effect& effect,
-                      Ceiling& ceiling)
-        : world_(world), wind_(wind), effect_(effect), ceiling_(ceiling) {}
+                      Ceiling& ceiling, int body)
+        : world_(world), wind_(wind), effect_(effect), ceiling_(ceiling), body_(body) {}
 
     /// K at the hub of a rotor, or of the body, in the plane.
     T operator()(int rotor, T x_m, T z_m) const {
         const T x = x_m - world_.scene_x_m;
         const T z = z_m - world_.scene_z_m;
         const T factor = effect_(rotor, x, z);
-        return factor + (world_.ground_scale * (factor - T(1)) +
-                         (world_.ceiling_scale - world_.ground_scale) * (ceiling_(rotor, x, z) - T(1)));
+        const T above = rotor == body_ ? T(1) : ceiling_(rotor, x, z);
+        return factor +
+               (world_.ground_scale * (factor - T(1)) + (world_.ceiling_scale - world_.ground_scale) * (above - T(1)));
     }
     [[nodiscard]] int same_as(int rotor) const { return dynamics::rotor_with_factor_of(effect_, rotor); }
     [[nodiscard]] dynamics::PlanePoint<T> wind() const { return wind_; }
@@ -127,6 +129,7 @@ class WorldSurroundings {
     dynamics::PlanePoint<T> wind_;
     Effect& effect_;
     Ceiling& ceiling_;
+    int body_;
 };
 
 }  // namespace downwash::simulation

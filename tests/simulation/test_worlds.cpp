@@ -314,7 +314,7 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
     simulation::DirectFactor effect{*model};
     simulation::DirectFactor from_above{*ceiling.model};
     const simulation::WorldSurroundings<double, simulation::DirectFactor, simulation::DirectFactor> surroundings(
-        flown.numbers, {}, effect, from_above);
+        flown.numbers, {}, effect, from_above, model->tick().plant.body());
     Random random(8);
     double greatest = 0;
     for (int n = 0; n < 200; ++n) {
@@ -333,6 +333,28 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
     // What touches nothing where it is believed to be may touch where it is.
     CHECK(among_obstacles({1, 2, 0.1, 0.2}, &flown).x_m == Approx(0.97));
     CHECK(among_obstacles({1, 2, 0.1, 0.2}, &flown).z_m == Approx(2.04));
+}
+
+TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
+    Problem problem = ceiling_problem();
+    problem.aero.ground = EffectModel::multirotor_body;
+    const auto model = make_flight_model(problem);
+    REQUIRE(model->tick().plant.has_fountain);
+    const CeilingPart ceiling{model->ceilings_only(), nullptr};
+    World world;
+    world.ceiling_scale = 0.5;
+    world.ground_scale = -0.1;
+    const FlownWorld flown = make_world(problem.robot, world);
+    simulation::DirectFactor effect{*model};
+    simulation::DirectFactor from_above{*ceiling.model};
+    const int body = model->tick().plant.body();
+    const simulation::WorldSurroundings<double, simulation::DirectFactor, simulation::DirectFactor> surroundings(
+        flown.numbers, {}, effect, from_above, body);
+    for (const double z_m : {0.4, 1.0, 4.6}) {  // the last one close below the ceiling
+        const double push = model->direct_factor(body, 0, z_m) - 1;
+        CHECK(surroundings(body, 0, z_m) == Approx(1 + 0.9 * push).epsilon(1e-12));
+    }
+    CHECK(model->direct_factor(body, 0, 0.4) != 1);
 }
 
 TEST_CASE("Noise is standard normal, white, and the same for a tape and a tick") {

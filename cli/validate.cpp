@@ -1,0 +1,139 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/progress.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/cli/validation.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/results/claims.hpp"
+#include "downwash/simulation/uncertainty.hpp"
+
+namespace downwash::cli {
+namespace {
+
+constexpr std::uint64_t most_runs = 10'000'000;
+
+struct ValidateArguments {
+    std::string problem;
+    std::string plan;
+    std::optional<std::uint64_t> runs, seed, world;
+    int threads = default_threads();
+    bool as_json = false, is_quiet = false;
+};
+
+/// The file of a plan: itself, or solution.json of a folder.
+std::string plan_file(const std::string& given) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(given, ignored) ? (std::filesystem::path(given) / "solution.json").string()
+                                                         : given;
+}
+
+void check_options(const ValidateArguments& given, const Problem& problem) {
+    if (given.runs && given.world) {
+        throw UsageError("--runs flies many worlds and --world one: expected one of them");
+    }
+    if (given.seed && !given.runs && !given.world) {
+        throw UsageError("--seed says which worlds there are: expected --runs or --world too");
+    }
+    if (given.runs && (*given.runs < 1 || *given.runs > most_runs)) {
+        throw UsageError("--runs is {}: expected 1 to {}", *given.runs, most_runs);
+    }
+    if ((given.runs || given.world) && !problem.uncertainty) {
+        throw UsageError("{} needs to know what is uncertain: {} has no `uncertainty:`",
+                         given.runs ? "--runs" : "--world", given.problem);
+    }
+}
+
+World world_of(const Problem& problem, std::uint64_t seed, std::uint64_t index) {
+    return draw_world(*problem.uncertainty, problem.robot, seed, index);
+}
+
+/// Compares what the file says about its flight with the same flight of the judge.
+/// @param nominal the undisturbed flight with surface effects, if it was flown already
+std::vector<judge::Disagreement> compare_flight(const judge::PlanJudge& judge, const Claims& claims,
+                                                const judge::JudgedFlight* nominal) {
+    const FlightClaims& said = *claims.flight;
+    const double tick_s = claims.plan.tick_s;
+    if (nominal != nullptr && !said.world && said.aero == judge.problem().aero.enabled) {
+        return judge::disagreements_about_flight(said, claims.objective, *nominal, tick_s);
+    }
+    judge::FlightConditions conditions{said.aero, std::nullopt};
+    if (said.world) {
+        if (!judge.problem().uncertainty) {
+            throw UsageError(
+                "the plan's `execution` was flown in world {} of an uncertainty, but the problem has no "
+                "`uncertainty:`; is it the plan of another problem?",
+                said.world->index);
+        }
+        conditions.world = world_of(judge.problem(), said.world->seed, said.world->index);
+    }
+    return judge::disagreements_about_flight(said, claims.objective, judge.fly(claims.plan, conditions), tick_s);
+}
+
+ExitCode run(const ValidateArguments& given) {
+    const Interruption interruption;
+    const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
+    check_options(given, problem);
+    const Claims claims = read_claims(plan_file(given.plan), problem);
+    const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
+
+    const judge::PlanJudge judge(problem);
+    Validation validation;
+    judge::FlightConditions conditions;
+    if (given.world) {
+        conditions.world = world_of(problem, seed, *given.world);
+        validation.world = given.world;
+    }
+    validation.flight = judge.fly(claims.plan, conditions);
+    validation.disagreements = judge::disagreements_in_plan(claims, problem);
+    if (claims.flight) {
+        validation.has_flight_claims = true;
+        auto more = compare_flight(judge, claims, given.world ? nullptr : &validation.flight);
+        std::move(more.begin(), more.end(), std::back_inserter(validation.disagreements));
+    }
+    if (given.runs) {
+        ProgressDisplay display(given.is_quiet);
+        display.say(fmt::format("{}: flying the plan in {} worlds of seed {}", problem.name, *given.runs, seed));
+        validation.worlds = judge::fly_in_worlds(judge, claims.plan,
+                                                 {*given.runs, seed, given.threads, interruption.token(),
+                                                  [&](double share) { display.show("worlds", share); }});
+        if (!validation.worlds) {
+            display.say("interrupted before all worlds were flown: there are no statistics");
+        }
+    }
+    if (given.as_json) {
+        print_json(json_of(validation));
+    } else {
+        fmt::print("{}", text_of(validation, given.problem, given.plan));
+    }
+    if (interruption.code() != ExitCode::done) {
+        return interruption.code();
+    }
+    return validation.is_valid() ? ExitCode::done : ExitCode::flight_failed;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& program, Action& action) {
+    auto [command, given] =
+        add_command(program, action, "validate",
+                    "Fly a plan with an independent simulator and compare the flight with what the plan's file says; "
+                    "with --runs, fly it in many worlds of the problem's uncertainty and estimate how often it fails",
+                    run);
+    add_problem(command, given.problem);
+    add_value(command, "--plan FILE", given.plan, "solution.json that holds the plan, or its folder")->required();
+    add_value(command, "--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
+    add_value(command, "--world I", given.world,
+              "judge the flight in world I of the problem's uncertainty instead of the undisturbed one");
+    add_value(command, "--seed N", given.seed, "of the worlds; default: that of the problem");
+    add_threads(command, given.threads);
+    add_quiet(command, given.is_quiet);
+    add_json(command, given.as_json);
+}
+
+}  // namespace downwash::cli

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/output.hpp"
+#include "downwash/judge/disagreements.hpp"
+#include "downwash/judge/plan_judge.hpp"
+#include "downwash/judge/world_runs.hpp"
+
+namespace downwash::cli {
+
+/// What `validate` finds.
+struct Validation {
+    judge::JudgedFlight flight;
+    std::optional<std::uint64_t> world;  ///< of that flight; empty: the nominal one
+    bool has_flight_claims = false;      ///< the file says something about a flight
+    std::vector<judge::Disagreement> disagreements;
+    std::optional<judge::WorldRuns> worlds;
+
+    [[nodiscard]] bool is_valid() const noexcept {
+        return flight.outcome == judge::Outcome::ok && disagreements.empty();
+    }
+};
+
+/// For programs.
+[[nodiscard]] Json json_of(const Validation& validation);
+
+/// For people: a verdict, then a table. @param problem,plan files, for the commands that it suggests
+[[nodiscard]] std::string text_of(const Validation& validation, const std::string& problem, const std::string& plan);
+
+}  // namespace downwash::cli

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+
+#include "downwash/controllers/reference_point.hpp"
+#include "downwash/judge/plant.hpp"
+
+// The controller of docs/model.md 5, from its equations. Private: not installed.
+
+namespace downwash::judge {
+
+/// What the controller keeps between ticks.
+struct ControlMemory {
+    Planar position_integral;         ///< of the position error [m s]
+    double pitch_rate_integral = 0;   ///< of the pitch rate error [rad]
+    double arm_integral = 0;          ///< of the arm error [rad s]
+    double pitch_reference_rad = 0;   ///< q5_ref of the tick before
+    double pitch_reference_rate = 0;  ///< its filtered derivative [rad/s]
+    double rate_reference = 0;        ///< u5_ref of the tick before [rad/s]
+};
+
+/// The model-inversion controller of a robot.
+class ControlLaw {
+ public:
+    /// @pre robot_errors(robot) is empty
+    DOWNWASH_EXPORT explicit ControlLaw(const Robot& robot);
+
+    [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
+
+    /// The thrusts that carry the weight of the vehicle as it is believed, without a pitch torque [N].
+    [[nodiscard]] std::array<double, max_rotors> resting_thrust_n() const noexcept;
+
+    /// One tick. @param seen what the sensors tell, about the point that the robot file calls the centre of mass
+    /// @param rotor_n thrusts that the rotors' lag has reached [N]
+    /// @param[in,out] memory that of the tick before, then that of this one
+    [[nodiscard]] DOWNWASH_EXPORT Command command(const Motion& seen, const std::array<double, max_rotors>& rotor_n,
+                                                  const ReferencePoint& reference, ControlMemory& memory) const;
+
+ private:
+    struct Inversion;
+    struct Demand;
+
+    Demand demanded(const Inversion& inversion, const Motion& seen, const ReferencePoint& reference,
+                    ControlMemory& kept, ControlMemory& integrated) const;
+    bool limit(const Inversion& inversion, const Demand& demand, const std::array<double, max_rotors>& rotor_n,
+               Command& command) const;
+
+    Robot robot_;
+    Vehicle believed_;
+    double tick_s_;
+    std::array<std::array<double, 2>, max_rotors> share_{};  ///< of thrust and of pitch torque, pseudo-inverse
+};
+
+}  // namespace downwash::judge

@@ -1,0 +1,137 @@
+#include "downwash/judge/disagreements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "downwash/judge/goals.hpp"
+#include "downwash/judge/reference.hpp"
+
+namespace downwash::judge {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of coordinates that should be the same; files hold all digits.
+constexpr double rounding = 1e-9;
+
+bool is_same(double a, double b) {
+    return std::abs(a - b) <= rounding * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+class List {
+ public:
+    void compare(const std::string& what, const Configuration& file, const Configuration& judge) {
+        const auto add = [&](const char* name, double of_file, double of_judge) {
+            if (!is_same(of_file, of_judge)) {
+                found.push_back({what + name, of_file, of_judge});
+            }
+        };
+        add(".x_m", file.x_m, judge.x_m);
+        add(".z_m", file.z_m, judge.z_m);
+        add(".arm_rad", file.arm_rad, judge.arm_rad);
+    }
+    /// @param limit that the file should not exceed
+    void limit(const std::string& what, double file, double limit) {
+        if (!(file <= limit * (1 + limit_tolerance))) {
+            found.push_back({what, file, limit});
+        }
+    }
+    void compare(const char* what, double file, double judge, double tolerance) {
+        if (!(std::abs(file - judge) <= tolerance)) {
+            found.push_back({what, file, judge});
+        }
+    }
+
+    std::vector<Disagreement> found;
+};
+
+/// The greatest speeds and accelerations at the ticks of a piece of the reference.
+struct Peaks {
+    double speed = 0, acceleration = 0, arm_rate = 0, arm_acceleration = 0;
+
+    void see(const ReferencePoint& p) {
+        speed = std::max(speed, std::hypot(p.velocity[0], p.velocity[1]));
+        acceleration = std::max(acceleration, std::hypot(p.acceleration[0], p.acceleration[1]));
+        arm_rate = std::max(arm_rate, std::abs(p.velocity[2]));
+        arm_acceleration = std::max(arm_acceleration, std::abs(p.acceleration[2]));
+    }
+};
+
+void check_limits(const Plan& plan, const MotionLimits& limits, List& list) {
+    Reference reference(plan);
+    const std::vector<ReferenceKnot>& knots = plan.reference;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+        Peaks peaks;
+        for (std::int64_t tick = knots[i].tick; tick < knots[i + 1].tick; ++tick) {
+            peaks.see(reference.at(tick));
+        }
+        peaks.see(knots[i + 1].point);
+        const std::string piece = "plan.reference[" + std::to_string(i) + "] to [" + std::to_string(i + 1) + "]: ";
+        list.limit(piece + "speed_m_s", peaks.speed, limits.max_speed_m_s);
+        list.limit(piece + "acceleration_m_s2", peaks.acceleration, limits.max_acceleration_m_s2);
+        list.limit(piece + "arm_rate_rad_s", peaks.arm_rate, limits.max_arm_rate_rad_s);
+        list.limit(piece + "arm_acceleration_rad_s2", peaks.arm_acceleration, limits.max_arm_acceleration_rad_s2);
+    }
+}
+
+/// The plan visits all goals, and rests in the last one.
+void check_goals(const Plan& plan, const Problem& problem, List& list) {
+    const std::vector<Goal> goals = goals_of(problem);
+    const ReferencePoint& last = plan.reference.back().point;
+    const PlanarPose end{last.position[0], last.position[1], 0, last.position[2]};
+    const double share = goal_distance(goals.back(), problem.robot.arm, end).used_share;
+    if (!(share <= 1)) {
+        list.found.push_back({"plan.reference, its end: share of the goal's tolerance", share, 1.0});
+    }
+    const double speed = std::max({std::abs(last.velocity[0]), std::abs(last.velocity[1]), std::abs(last.velocity[2])});
+    if (speed > rounding) {
+        list.found.push_back({"plan.reference, its end: speed", speed, 0.0});
+    }
+    const std::size_t visits = hover_ends(plan, goals, problem.robot.arm).size();
+    if (visits < goals.size() && goals.size() > 1) {
+        list.found.push_back({"plan.reference: hovers at goals",
+                              static_cast<double>(std::min(visits, goals.size() - 1)),
+                              static_cast<double>(goals.size())});
+    }
+}
+
+}  // namespace
+
+std::vector<Disagreement> disagreements_in_plan(const Claims& claims, const Problem& problem) {
+    List list;
+    const std::vector<ReferenceKnot>& knots = claims.plan.reference;
+    if (claims.waypoints.size() != knots.size()) {
+        list.found.push_back({"plan.waypoints: their number", static_cast<double>(claims.waypoints.size()),
+                              static_cast<double>(knots.size())});
+    }
+    for (std::size_t i = 0; i < std::min(claims.waypoints.size(), knots.size()); ++i) {
+        list.compare("plan.waypoints[" + std::to_string(i) + "]", claims.waypoints[i],
+                     configuration_of(knots[i].point));
+    }
+    list.compare("plan.reference[0]", claims.plan.first(), problem.start.configuration());
+    check_limits(claims.plan, problem.motion, list);
+    check_goals(claims.plan, problem, list);
+    return std::move(list.found);
+}
+
+std::vector<Disagreement> disagreements_about_flight(const FlightClaims& claims, const CostFunction& objective,
+                                                     const JudgedFlight& flight, double tick_s) {
+    List list;
+    if (claims.outcome != name_of(flight.outcome)) {
+        list.found.push_back({"execution.outcome", claims.outcome, std::string(name_of(flight.outcome))});
+    }
+    // How deep a contact is means nothing; without obstacles both are infinite.
+    const double file_m = std::max(0.0, claims.min_clearance_m.value_or(infinity));
+    if (file_m != flight.min_clearance_m) {
+        list.compare("execution.min_clearance_m", file_m, flight.min_clearance_m, clearance_tolerance_m);
+    }
+    const double cost = flight.cost(objective);
+    list.compare("execution.energy_j", claims.energy_j, flight.energy_j, cost_tolerance * flight.energy_j);
+    list.compare("execution.duration_s", claims.duration_s, flight.duration_s, tick_s * (1 + rounding));
+    list.compare("execution.cost", claims.cost, cost, cost_tolerance * cost);
+    list.compare("execution.goal_error_m", claims.goal_error_m, flight.goal_error_m, goal_error_tolerance_m);
+    return std::move(list.found);
+}
+
+}  // namespace downwash::judge

@@ -1,0 +1,61 @@
+#include "downwash/judge/loop.hpp"
+
+namespace downwash::judge {
+namespace {
+
+/// Of the point that the robot file calls the centre of mass, which goals, sensors and obstacles refer to.
+Motion of_file_point(const Vehicle& vehicle, Motion motion) {
+    const Planar lever = from_body(vehicle.center_of_mass_m, motion.pitch_rad);
+    motion.position_m = motion.position_m - lever;
+    motion.velocity_m_s = motion.velocity_m_s - turned(motion.pitch_rate_rad_s, lever);
+    return motion;
+}
+
+/// The reverse: of the true centre of mass.
+Motion of_true_point(const Vehicle& vehicle, Motion motion) {
+    const Planar lever = from_body(vehicle.center_of_mass_m, motion.pitch_rad);
+    motion.position_m = motion.position_m + lever;
+    motion.velocity_m_s = motion.velocity_m_s + turned(motion.pitch_rate_rad_s, lever);
+    return motion;
+}
+
+}  // namespace
+
+Loop::Loop(const ControlLaw& law, const Plant& plant, const World& world, const Robot& robot, const PlantState& state,
+           const ControlMemory& memory)
+    : law_(law),
+      plant_(plant),
+      world_(world),
+      sensors_(world, robot, of_file_point(plant.vehicle(), state.motion)),
+      gusts_(world, law.tick_s()),
+      state_(state),
+      memory_(memory) {}
+
+Motion Loop::motion() const {
+    return of_file_point(plant_.vehicle(), state_.motion);
+}
+
+void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
+    const Tape tape = tape_at(world_, tick);
+    const Motion now = motion();
+    before_ = state_;
+    command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, memory_);
+    wind_ = gusts_.wind();
+    state_ = plant_.after(state_, command_, wind_, law_.tick_s());
+    sensors_.remember(now);
+    gusts_.next(tape);
+}
+
+Motion Loop::motion_within(double since_s) const {
+    return of_file_point(plant_.vehicle(), plant_.after(before_, command_, wind_, since_s).motion);
+}
+
+PlantState start_of(const Start& s, const ControlLaw& law, const Vehicle& vehicle) {
+    PlantState state;
+    state.motion = of_true_point(
+        vehicle, {{s.x_m, s.z_m}, {s.vx_m_s, s.vz_m_s}, s.pitch_rad, s.pitch_rate_rad_s, s.arm_rad, s.arm_rate_rad_s});
+    state.thrust_n = law.resting_thrust_n();
+    return state;
+}
+
+}  // namespace downwash::judge

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "downwash/judge/control_law.hpp"
+#include "downwash/judge/sensors.hpp"
+#include "downwash/problems/problem.hpp"
+
+// The vehicle in closed loop. Private: not installed.
+
+namespace downwash::judge {
+
+/// A vehicle in closed loop, tick by tick.
+class Loop {
+ public:
+    Loop(const ControlLaw& law, const Plant& plant, const World& world, const Robot& robot, const PlantState& state,
+         const ControlMemory& memory);
+
+    [[nodiscard]] const PlantState& state() const noexcept { return state_; }
+    [[nodiscard]] const ControlMemory& memory() const noexcept { return memory_; }
+    /// Of the point of the robot file.
+    [[nodiscard]] Motion motion() const;
+
+    /// Goes on by a tick. @param tick from the start of the flight
+    void next(std::int64_t tick, const ReferencePoint& reference);
+
+    /// The motion of the file's point so long after the beginning of the last tick.
+    [[nodiscard]] Motion motion_within(double since_s) const;
+
+ private:
+    const ControlLaw& law_;
+    const Plant& plant_;
+    const World& world_;
+    Sensors sensors_;
+    Gusts gusts_;
+    PlantState state_, before_;
+    ControlMemory memory_;
+    Command command_;
+    Planar wind_;
+};
+
+/// The vehicle at the start of a problem, its rotors carrying the weight.
+[[nodiscard]] PlantState start_of(const Start& start, const ControlLaw& law, const Vehicle& vehicle);
+
+}  // namespace downwash::judge

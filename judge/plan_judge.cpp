@@ -1,0 +1,99 @@
+#include "downwash/judge/plan_judge.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "downwash/judge/goals.hpp"
+#include "downwash/judge/loop.hpp"
+#include "downwash/judge/obstacles.hpp"
+#include "downwash/judge/reference.hpp"
+#include "downwash/judge/umpire.hpp"
+#include "downwash/problems/problem_model.hpp"
+
+namespace downwash::judge {
+namespace {
+
+constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
+
+/// Of a vehicle in a world, docs/model.md 9.
+constexpr double hover_before_start_s = 20;
+
+}  // namespace
+
+std::string_view name_of(Outcome outcome) noexcept {
+    return outcome_names[static_cast<std::size_t>(outcome)];
+}
+
+/// What all flights share.
+struct PlanJudge::Setting {
+    Problem problem;
+    SurfaceEffects effects;
+    Obstacles obstacles;
+    ControlLaw law;
+
+    explicit Setting(const Problem& of)
+        : problem(of), obstacles(of.obstacles, of.plane, of.robot.shape(), of.robot.rotors.radius_m), law(of.robot) {
+        if (of.aero.enabled) {
+            effects.all = make_flight_model(of);
+            effects.ceilings = effects.all->ceilings_only();
+            effects.has_fountain = !of.aero.map && of.aero.ground.model == EffectModel::multirotor_body;
+        }
+    }
+};
+
+PlanJudge::PlanJudge(const Problem& problem) : setting_(std::make_unique<const Setting>(problem)) {}
+PlanJudge::~PlanJudge() = default;
+
+const Problem& PlanJudge::problem() const noexcept {
+    return setting_->problem;
+}
+
+JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions) const {
+    const Setting& setting = *setting_;
+    const Problem& problem = setting.problem;
+    const World world = conditions.world.value_or(World{});
+    const SurfaceEffects* effects = conditions.aero && problem.aero.enabled ? &setting.effects : nullptr;
+    const Vehicle vehicle = vehicle_in(world, problem.robot);
+    const Surroundings surroundings(effects, world);
+    const Plant plant(vehicle, surroundings);
+    PlantState state = start_of(problem.start, setting.law, vehicle);
+    ControlMemory memory;
+    memory.pitch_reference_rad = problem.start.pitch_rad;
+    JudgedFlight flight;
+
+    // In a world a vehicle at rest has hovered at its start, in calm air and with quiet sensors.
+    if (conditions.world && is_at_rest(problem.start)) {
+        const World quiet = without_noise(world);
+        const ReferencePoint here = at_rest(problem.start.configuration());
+        Loop hover(setting.law, plant, quiet, problem.robot, state, memory);
+        const std::int64_t ticks = std::llround(hover_before_start_s / setting.law.tick_s());
+        for (std::int64_t tick = 0; tick < ticks; ++tick) {
+            hover.next(tick, here);
+            if (!is_stable(hover.motion(), here)) {
+                flight.outcome = Outcome::unstable;
+                break;
+            }
+        }
+        state = hover.state();
+        state.energy_j = 0;
+        memory = hover.memory();
+    }
+
+    Loop loop(setting.law, plant, world, problem.robot, state, memory);
+    Umpire umpire(problem, effects, setting.obstacles, world, flight);
+    Reference reference(plan);
+    const std::vector<Goal> goals = goals_of(problem);
+    const std::int64_t end = last_tick(plan, goals.back(), problem.robot.arm);
+    ReferencePoint now = reference.at(0);
+    bool goes_on = flight.outcome == Outcome::ok;
+    goes_on = umpire.sees(loop, now) && goes_on;
+    for (std::int64_t tick = 0; tick < end && goes_on; ++tick) {
+        loop.next(tick, now);
+        now = reference.at(tick + 1);
+        goes_on = umpire.sees(loop, now);
+    }
+    umpire.sees_goals(goals, hover_ends(plan, goals, problem.robot.arm));
+    return flight;
+}
+
+}  // namespace downwash::judge

@@ -1,0 +1,63 @@
+#include "downwash/results/claims.hpp"
+
+#include "downwash/results/plan_reader.hpp"
+#include "downwash/results/solution_document.hpp"
+
+namespace downwash {
+namespace {
+
+using problems::JsonReader;
+using problems::Node;
+
+void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
+    const auto node = JsonReader::member(root, "execution");
+    if (!node || node->json->is_null()) {
+        return;
+    }
+    if (!node->json->is_object()) {
+        reader.report(*node, "expected a group of keys or null");
+        return;
+    }
+    FlightClaims& flight = into.emplace();
+    reader.read_flag(*node, "aero", flight.aero);
+    if (const auto outcome = reader.required(*node, "outcome"); outcome && outcome->json->is_string()) {
+        flight.outcome = outcome->json->get<std::string>();
+    } else if (outcome) {
+        reader.report(*outcome, "expected a name");
+    }
+    if (const auto clearance = reader.required(*node, "min_clearance_m"); clearance && !clearance->json->is_null()) {
+        flight.min_clearance_m = reader.number(*clearance);
+    }
+    const auto amount = [&](const char* name) {
+        const auto member = reader.required(*node, name);
+        return member && !member->json->is_null() ? reader.amount(*node, name, 0) : 0;
+    };
+    flight.energy_j = amount("energy_j");
+    flight.duration_s = amount("duration_s");
+    flight.cost = amount("cost");
+    flight.goal_error_m = amount("goal_error_m");
+    if (const auto world = JsonReader::member(*node, "world"); world && world->json->is_object()) {
+        flight.world = FlightClaims::WorldIndex{};
+        reader.read_count(*world, "index", flight.world->index);
+        reader.read_count(*world, "seed", flight.world->seed);
+    }
+}
+
+}  // namespace
+
+Claims read_claims(const std::string& path, const Problem& problem) {
+    Claims claims;
+    claims.objective = problem.planner.objective;
+    claims.seed = problem.planner.seed;
+    problems::read_document(path, [&](JsonReader& reader, const Node& root) {
+        problems::read_objective(reader, root, claims.objective);
+        reader.read_count(root, "seed", claims.seed);
+        problems::PlanText text = problems::read_plan(reader, root, 1 / problem.robot.controller.rate_hz);
+        claims.plan = std::move(text.plan);
+        claims.waypoints = std::move(text.waypoints);
+        read_flight(reader, root, claims.flight);
+    });
+    return claims;
+}
+
+}  // namespace downwash

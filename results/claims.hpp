@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/problems/problem.hpp"
+
+namespace downwash {
+
+/// What a solution file says about the flight of its plan.
+struct FlightClaims {
+    bool aero = true;
+    /// Which world of which seed.
+    struct WorldIndex {
+        std::uint64_t index = 0, seed = 0;
+    };
+    std::optional<WorldIndex> world;  ///< empty: the nominal one
+    std::string outcome;
+    std::optional<double> min_clearance_m;  ///< empty without obstacles
+    double energy_j = 0, duration_s = 0, cost = 0, goal_error_m = 0;
+};
+
+/// What a solution file says, contradictions included: for those who judge it.
+struct Claims {
+    CostFunction objective;
+    std::uint64_t seed = 1;
+    Plan plan;  ///< the reference
+    std::vector<Configuration> waypoints;
+    std::optional<FlightClaims> flight;
+};
+
+/// Reads a solution file without comparing its parts. What a plan written by hand leaves out is taken from the
+/// problem's settings.
+/// @throws ProblemFileError with every error: no solution file, no plan in it, a reference off the grid of control
+/// ticks
+[[nodiscard]] DOWNWASH_EXPORT Claims read_claims(const std::string& path, const Problem& problem);
+
+}  // namespace downwash

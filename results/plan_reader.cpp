@@ -1,0 +1,93 @@
+#include "downwash/results/plan_reader.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace downwash::problems {
+namespace {
+
+constexpr std::int64_t max_ticks = 1'000'000;  // nearly three hours at 100 Hz
+constexpr double tolerance = 1e-9;             // of numbers that should be equal
+
+/// The control tick at which a knot stands; nothing when it stands between two.
+std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
+    const double ticks = std::round(t_s / tick_s);
+    if (!(ticks >= 0 && ticks <= static_cast<double>(max_ticks)) ||
+        std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
+        return std::nullopt;
+    }
+    return static_cast<std::int64_t>(ticks);
+}
+
+ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
+    ReferenceKnot knot;
+    const double t_s = reader.required_number(node, "t_s");
+    if (const auto tick = tick_of(t_s, tick_s)) {
+        knot.tick = *tick;
+    } else {
+        reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
+                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_ticks) + " of them");
+    }
+    constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
+                               std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        knot.point.position[axis] = reader.required_number(node, names[0][axis]);
+        knot.point.velocity[axis] = reader.required_number(node, names[1][axis]);
+        knot.point.acceleration[axis] = reader.required_number(node, names[2][axis]);
+    }
+    return knot;
+}
+
+void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
+    for (const Node& node : reader.groups(list)) {
+        if (reader.has_enough()) {
+            return;
+        }
+        const ReferenceKnot knot = read_knot(reader, node, plan.tick_s);
+        if (plan.reference.empty() ? knot.tick != 0 : knot.tick <= plan.reference.back().tick) {
+            reader.report(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
+                                                       : "t_s must be greater than that of the knot before");
+        }
+        plan.reference.push_back(knot);
+    }
+}
+
+std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list) {
+    std::vector<Configuration> waypoints;
+    for (const Node& node : reader.groups(list)) {
+        if (reader.has_enough()) {
+            break;
+        }
+        waypoints.push_back({reader.required_number(node, "x_m"), reader.required_number(node, "z_m"),
+                             reader.required_number(node, "arm_rad")});
+    }
+    return waypoints;
+}
+
+}  // namespace
+
+PlanText read_plan(JsonReader& reader, const Node& root, double tick_s) {
+    PlanText text;
+    text.plan.tick_s = tick_s;
+    const auto node = reader.required(root, "plan");
+    if (!node) {
+        return text;
+    }
+    if (!node->json->is_object()) {
+        reader.report(*node, node->json->is_null() ? "the file holds no plan: the search found none"
+                                                   : "expected a group with `waypoints` and `reference`");
+        return text;
+    }
+    text.waypoints_node = reader.required(*node, "waypoints");
+    text.reference_node = reader.required(*node, "reference");
+    if (text.waypoints_node && text.reference_node) {
+        read_reference(reader, *text.reference_node, text.plan);
+        text.waypoints = read_waypoints(reader, *text.waypoints_node);
+    }
+    if (reader.errors().empty() && text.plan.reference.empty()) {
+        reader.report(*text.reference_node, "expected at least one knot");
+    }
+    return text;
+}
+
+}  // namespace downwash::problems

@@ -1,0 +1,92 @@
+#include "downwash/results/solution_document.hpp"
+
+#include <fstream>
+
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/results/json_place.hpp"
+#include "downwash/results/solution_file.hpp"
+
+namespace downwash::problems {
+namespace {
+
+constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
+constexpr std::size_t deepest_nesting = 32;
+
+[[noreturn]] void throw_at(const std::string& path, TextPlace place, const std::string& message) {
+    throw ProblemFileError({{path, place.line, place.column, message}});
+}
+
+std::string read_text(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string text;
+    // A folder opens like a file and fails at the first byte.
+    if (!stream || (stream.peek(), stream.bad())) {
+        throw_at(path, {}, "cannot be read; expected a solution.json that `solve` wrote");
+    }
+    char block[65536];
+    while (stream.read(block, sizeof block), stream.gcount() > 0) {
+        text.append(block, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > largest_file) {
+            throw_at(path, {}, "is larger than 256 MiB and hardly the file of a plan");
+        }
+    }
+    return text;
+}
+
+Json parse(const std::string& path, const std::string& text) {
+    if (json_depth(text) > deepest_nesting) {
+        throw_at(path, {}, "nests deeper than the file of a plan does");
+    }
+    try {
+        return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+        throw_at(path, place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
+                 text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
+    } catch (const Json::exception&) {
+        throw_at(path, {}, "holds a number that is too large");
+    }
+}
+
+}  // namespace
+
+void read_document(const std::string& path, const std::function<void(JsonReader&, const Node&)>& read) {
+    const std::string text = read_text(path);
+    const Json document = parse(path, text);
+    const Node root{&document, ""};
+    JsonReader reader;
+    if (!document.is_object()) {
+        reader.report(root, "expected a group of keys as `solve` writes it");
+    } else if (const auto schema = reader.required(root, "schema"); schema && *schema->json != solution_schema) {
+        reader.report(*schema, "unsupported schema; expected " + std::string(solution_schema));
+    } else if (schema) {
+        read(reader, root);
+    }
+    if (!reader.errors().empty()) {
+        std::vector<LocatedError> errors;
+        for (const KeyError& error : reader.errors()) {
+            const auto place = json_place(text, error.key);
+            errors.push_back(
+                {path, place.line, place.column, error.key.empty() ? error.message : error.key + ": " + error.message});
+        }
+        throw ProblemFileError(std::move(errors));
+    }
+}
+
+void read_objective(JsonReader& reader, const Node& root, CostFunction& objective) {
+    const auto node = JsonReader::member(root, "objective");
+    if (!node || !node->json->is_object()) {
+        Objective single{};
+        reader.read_choice(root, "objective", all_objectives, single);
+        objective = node ? CostFunction(single) : objective;
+        return;
+    }
+    objective = CostFunction::of_nothing();
+    for (const Objective each : all_objectives) {
+        objective.weight(each) = reader.amount(*node, name_of(each).data(), 0);
+    }
+    if (objective == CostFunction::of_nothing()) {
+        reader.report(*node, "expected a weight above 0");
+    }
+}
+
+}  // namespace downwash::problems

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/test_problem.hpp"
+#include "downwash/judge/plan_judge.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/uncertainty.hpp"
+#include "shipped.hpp"
+
+// The judge's flights against the planner's.
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+Plan plan_of(Problem problem, std::uint64_t iterations) {
+    problem.planner.max_iterations = iterations;
+    problem.planner.time_limit_s.reset();
+    problem.uncertainty.reset();
+    const Solution solution = solve(problem);
+    REQUIRE(solution.plan);
+    return *solution.plan;
+}
+
+/// The flight of `downwash execute`, in a world if one is given.
+std::optional<Execution> executed(const Problem& problem, const Plan& plan, bool aero,
+                                  const std::optional<World>& world) {
+    const auto model = make_flight_model(problem);
+    const std::optional<FlownWorld> flown = world ? std::optional(make_world(problem.robot, *world)) : std::nullopt;
+    const CeilingPart ceiling{flown ? model->ceilings_only() : nullptr, nullptr};
+    const FlightWorld in{flown ? &*flown : nullptr, &ceiling, 0};
+    FlightState believed = start_state(*model, problem.start);
+    if (flown) {
+        believed.world = memory_at_start(*flown, believed.plant);
+    }
+    const auto start = flown && is_at_rest(problem.start) ? hovering_start(*model, believed, aero, in) : believed;
+    if (!start) {
+        return std::nullopt;
+    }
+    return execute(*model, *start, plan.reference, goals_of(problem), aero, in);
+}
+
+void compare(const judge::JudgedFlight& mine, const Execution& theirs) {
+    CHECK(name_of(mine.outcome) == name_of(theirs.outcome));
+    if (theirs.outcome != Outcome::collision && std::isfinite(theirs.min_clearance_m)) {
+        CHECK(mine.min_clearance_m == Approx(theirs.min_clearance_m).margin(1e-3));
+        CHECK(mine.clearance_integral == Approx(theirs.clearance_integral).epsilon(1e-3));
+    }
+    CHECK(mine.duration_s == Approx(theirs.duration_s).margin(1e-9));
+    CHECK(mine.energy_j == Approx(theirs.energy_j).epsilon(1e-3));
+    CHECK(mine.length_m == Approx(theirs.length_m).epsilon(1e-3));
+    CHECK(mine.goal_error_m == Approx(theirs.goal_error_m).margin(1e-3));
+    CHECK(mine.max_tracking_error_m == Approx(theirs.max_tracking_error_m).margin(1e-3));
+}
+
+/// Rotors that lag, drag, and sight that is late.
+void make_real(Robot& robot) {
+    robot.rotors.time_constant_s = 0.02;
+    robot.controller.delay_s = 0.006;
+    robot.multirotor.drag = {0.3, 0.1};
+    robot.arm.drag = {0.05, 0.05};
+}
+
+}  // namespace
+
+TEST_CASE("The judge's flight of a plan is the planner's on every shipped problem") {
+    for (const char* name : shipped_names) {
+        const Problem problem = shipped(name);
+        const Plan plan = plan_of(problem, 100);
+        const judge::PlanJudge judge(problem);
+        for (const bool aero : {true, false}) {
+            CAPTURE(name, aero);
+            compare(judge.fly(plan, {aero, std::nullopt}), *executed(problem, plan, aero, std::nullopt));
+        }
+    }
+}
+
+TEST_CASE("It is in worlds as well, with lag, delay, drag, noise and gusts") {
+    for (const char* name : {"bridge_inspection", "window", "culvert", "box_girder_bay"}) {
+        Problem problem = shipped(name);
+        const Plan plan = plan_of(problem, 100);
+        make_real(problem.robot);
+        problem.uncertainty.emplace();
+        const judge::PlanJudge judge(problem);
+        for (std::uint64_t index = 0; index < 5; ++index) {
+            CAPTURE(name, index);
+            const World world = draw_world(*problem.uncertainty, problem.robot, 7, index);
+            const auto theirs = executed(problem, plan, true, world);
+            const judge::JudgedFlight mine = judge.fly(plan, {true, world});
+            if (theirs) {
+                compare(mine, *theirs);
+            } else {
+                CHECK(mine.outcome == judge::Outcome::unstable);
+            }
+        }
+        CAPTURE(name);
+        // Without a world, lag, delay and drag act as the robot file says.
+        compare(judge.fly(plan, {true, std::nullopt}), *executed(problem, plan, true, std::nullopt));
+    }
+}
+
+TEST_CASE("A vehicle that starts in motion meets gusts from the first tick on") {
+    Problem problem = shipped("bridge_inspection");
+    const Plan plan = plan_of(problem, 100);
+    make_real(problem.robot);
+    problem.start.vx_m_s = 0.3;
+    problem.uncertainty.emplace();
+    const judge::PlanJudge judge(problem);
+    for (std::uint64_t index = 1; index < 4; ++index) {
+        CAPTURE(index);
+        const World world = draw_world(*problem.uncertainty, problem.robot, 3, index);
+        compare(judge.fly(plan, {true, world}), *executed(problem, plan, true, world));
+    }
+}
+
+TEST_CASE("The fountain pushes the vehicle in a world as the planner says") {
+    Problem problem = shipped("box_girder_bay");
+    const Plan plan = plan_of(problem, 100);
+    problem.aero.ground = EffectModel::multirotor_body;
+    problem.uncertainty.emplace();
+    const judge::PlanJudge judge(problem);
+    for (std::uint64_t index = 0; index < 5; ++index) {
+        CAPTURE(index);
+        const World world = draw_world(*problem.uncertainty, problem.robot, 1, index);
+        compare(judge.fly(plan, {true, world}), *executed(problem, plan, true, world));
+    }
+}
+
+TEST_CASE("Straight plans that end in trouble end the same way") {
+    Problem problem = ceiling_problem();
+    Plan plan;
+    plan.tick_s = 0.01;
+    plan.reference = {{0, at_rest({-4, 2, quarter_turn})}, {}};
+    const auto end = [&](const Configuration& at, std::int64_t tick, judge::Outcome outcome) {
+        plan.reference.back() = {tick, at_rest(at)};
+        const judge::PlanJudge judge(problem);
+        const judge::JudgedFlight mine = judge.fly(plan, {});
+        CHECK(name_of(mine.outcome) == name_of(outcome));
+        compare(mine, *executed(problem, plan, true, std::nullopt));
+    };
+    SECTION("in the ceiling") {
+        problem.aero.min_distance_radii = 0;
+
+        end({3, 5.5, quarter_turn}, 800, judge::Outcome::collision);
+    }
+    SECTION("with a rotor too close to the ground") {
+        problem.aero.min_distance_radii = 4;
+        end({3, 0.5, 0}, 800, judge::Outcome::left_flyable_area);
+    }
+    SECTION("somewhere else than in the goal") {
+        end({0, 2, 0}, 800, judge::Outcome::goal_missed);
+    }
+    SECTION("far behind a reference that nothing can follow") {
+        end({5, 4, 0}, 100, judge::Outcome::unstable);
+    }
+}
+
+TEST_CASE("Goals in a row and alternatives are met as the planner meets them") {
+    Problem problem = ceiling_problem();
+    problem.goal = configuration_goal(2, 2.5);
+    problem.stops = {configuration_goal(-2, 2)};
+    Goal either;
+    either.any_of = {tip_goal(5, 1), configuration_goal(2, 2.5)};
+    problem.goal = either;
+    Plan plan;
+    plan.tick_s = 0.01;
+    const ReferencePoint stop = at_rest({-2, 2, quarter_turn});
+    const bool stays = GENERATE(true, false);
+    plan.reference = {
+        {0, at_rest({-4, 2, quarter_turn})}, {500, stop}, {stays ? 1100 : 700, stop}, {2000, at_rest({2, 2.5, 0})}};
+    const judge::JudgedFlight mine = judge::PlanJudge(problem).fly(plan, {});
+    CHECK(mine.outcome == (stays ? judge::Outcome::ok : judge::Outcome::goal_missed));
+    compare(mine, *executed(problem, plan, true, std::nullopt));
+}
