@@ -88,8 +88,7 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
                              std::shared_ptr<const AeroMap> map, const SolveOptions& options)
     : problem_(problem),
       flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache),
-      threads_(options.threads),
-      stop_(options.stop) {}
+      threads_(options.threads) {}
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
@@ -141,14 +140,15 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
     });
 }
 
-Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt) {
+Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+                                   const std::function<bool()>& is_over) {
     const PlannerSettings& settings = problem_.planner;
     constexpr std::uint64_t worlds_per_attempt = 1'000'000;
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
     constexpr std::size_t flown_directly = 3;
     CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
     bool is_checked = false;
-    while (!stop_.stop_requested()) {
+    while (!is_over()) {
         const std::uint64_t wanted = record.worlds_wanted();
         if (wanted == 0) {
             // It passes, or fails too often. The map is not the last word where the flights came nearest.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <stop_token>
 
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/goal_sequence.hpp"
@@ -13,8 +13,7 @@ namespace downwash::planning {
 /// The worlds of a search and the certificates of its plans.
 class ProblemWorlds {
  public:
-    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps and stop
-    /// token
+    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps
     /// @pre problem outlives it, and has an uncertainty
     ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                   const SolveOptions& options);
@@ -23,10 +22,12 @@ class ProblemWorlds {
     /// @throws InputError when the vehicle cannot hover at its start in some of them
     [[nodiscard]] SearchWorlds for_search(const Course& before);
 
-    /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that the caller stops in
-    /// the middle of that has not passed.
+    /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that is_over ends in the
+    /// middle of that has not passed.
     /// @param whole through the first `visits` goals of the problem   @param attempt from 1
-    [[nodiscard]] Certificate certify(const Plan& whole, std::size_t visits, std::uint64_t attempt);
+    /// @param is_over asked every tenth of a second or so
+    [[nodiscard]] Certificate certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+                                      const std::function<bool()>& is_over);
 
  private:
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
@@ -36,7 +37,6 @@ class ProblemWorlds {
     const Problem& problem_;
     WorldFlights flights_;
     int threads_;
-    std::stop_token stop_;
 };
 
 }  // namespace downwash::planning

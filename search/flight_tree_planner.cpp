@@ -170,9 +170,12 @@ ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
 
 /// The work that tree and refiner do in a round beside a plan that is flown directly.
 double FlightTreePlanner::work_beside(const Candidate& candidate) const {
+    const double most = std::max(parameters_.round_work, parameters_.max_round_work);
+    if (task_.worlds != nullptr) {
+        return most;  // a certificate takes longer than any execution
+    }
     const auto ticks = static_cast<double>(candidate.moments.back().ticks);
-    return std::clamp(parameters_.execution_tick_work * ticks, parameters_.round_work,
-                      std::max(parameters_.round_work, parameters_.max_round_work));
+    return std::clamp(parameters_.execution_tick_work * ticks, parameters_.round_work, most);
 }
 
 /// A round. Variants without direct flights have rounds of the same length, so that all search the same way.

@@ -38,8 +38,10 @@ inline constexpr double unstable_error_m = 3.0;
     return std::max(2 * margin_m, 0.005);
 }
 
-/// A FlightPool may miss a lower clearance by this [m].
-inline constexpr double min_clearance_error_m = 0.001;
+/// By how much a FlightPool may overestimate the least clearance [m]: 5 %, and 5 mm where that is more.
+[[nodiscard]] constexpr double min_clearance_error_m(double clearance_m) noexcept {
+    return std::max(0.005, 0.05 * clearance_m);
+}
 
 /// The rules of a planned flight.
 struct FlightRules {

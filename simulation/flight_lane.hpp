@@ -200,7 +200,7 @@ class FlightLane {
             }
         }
         if (setting_->rules.finds_min_clearance) {
-            limit_free_motion(std::max(clearance_m - min_clearance_m_, min_clearance_error_m));
+            limit_free_motion(std::max(clearance_m - min_clearance_m_, min_clearance_error_m(clearance_m)));
         }
         if (setting_->rules.measures_clearance) {
             SegmentFlight& flight = job_->legs[leg_].flight;
