@@ -17,6 +17,7 @@ sys.dont_write_bytecode = True
 
 import page_test
 from campaign_tests import *
+from certificate_tests import *
 from looks_tests import *
 from moving_tests import *
 from opening_tests import *

@@ -1,5 +1,6 @@
 // Puts the page together.
 
+import {make_certificate} from "./certificate.js";
 import {make_clock} from "./clock.js";
 import {Trouble} from "./decode.js";
 import {h} from "./dom.js";
@@ -43,7 +44,7 @@ function assemble(page, model, theme) {
                 clock ? "; a finger along a plot moves the vehicle." : "."),
               make_obstacle_table(model)),
             plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time", plots.moment), plots.element) : null),
-          make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
+          make_certificate(model), make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
         make_foot(model.report));
     document.title = `${model.solution.problem?.name ?? "Run"} · Downwash`;
     if (clock && model.is_cut_short) {
