@@ -1,7 +1,4 @@
-// What is needed to get the same run again, the obstacles as a table, and the licences.
-
-import d3_licence from "../licences/d3.txt";
-import three_licence from "../licences/three.txt";
+// What is needed to get the same run again, and the obstacles as a table.
 
 import {make_command} from "./command.js";
 import {foreign, h} from "./dom.js";
@@ -50,13 +47,4 @@ export function make_repeat(model) {
               h("pre", {tabindex: "0", role: "region", "aria-label": "Effective parameters"},
                 h("code", null, foreign(report.effective_yaml)))) :
             null);
-}
-
-export function make_foot(report) {
-    return h(
-        "footer", {class: "foot"},
-        h("p", null,
-          `Made by Downwash ${report?.version ?? ""}. The page needs no network and sends nothing anywhere.`),
-        h("details", {class: "licences screen-only"}, h("summary", null, "Licences of the libraries in this page"),
-          [d3_licence, three_licence].map((text) => h("pre", {tabindex: "0"}, text))));
 }
