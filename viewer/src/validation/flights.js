@@ -44,8 +44,11 @@ function make_player(model, note, signal) {
 export function make_flights(report) {
     const stage = h("div", {class: "flight-stage"});
     let clock = null, shown = null, leaving = new AbortController();
+    const inputs = report.flights.map(
+        (_, index) => h("input", {type: "radio", name: "flight", value: index, onchange: () => show(index)}));
     const show = async (index) => {
         shown = index;
+        inputs[index].checked = true;
         const flight = report.flights[index];
         const model = await flight_model(report, flight);
         if (shown !== index) {
@@ -59,9 +62,7 @@ export function make_flights(report) {
     };
     const choices = report.flights.map(
         (flight, index) =>
-            h("label", {class: "choice"},
-              h("input", {type: "radio", name: "flight", value: index, checked: index === 0, onchange: () => show(index)}),
-              h("span", null, name_of(flight))));
+            h("label", {class: "choice"}, inputs[index], h("span", null, name_of(flight))));
     const element = h(
         "section", {class: "flights", id: "flights", "aria-labelledby": "flights-title"},
         h("h2", {id: "flights-title"}, report.flights.length > 1 ? "Flights" : "Flight"),
