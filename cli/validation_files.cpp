@@ -10,6 +10,7 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/cli/run_report.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 #include "downwash/report/validation_page.hpp"
 #include "downwash/simulation/uncertainty.hpp"

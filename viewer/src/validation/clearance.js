@@ -23,8 +23,8 @@ function draw_fan(fan, margin_m, frame) {
     const limit = margin_m > 0 ?
         [
             s("path", {class: "limit", d: `M${frame.left} ${frame.y(margin_m)}H${frame.right}`}),
-            s("text", {class: "limit-name", x: frame.left + 5, y: frame.y(margin_m) - 4},
-              `safety margin of the plan ${meters(margin_m)}`)
+            s("text", {class: "limit-name", x: frame.right - 4, y: frame.y(margin_m) - 4, "text-anchor": "end"},
+              `safety margin ${meters(margin_m)}`)
         ] :
         [];
     return [
