@@ -36,8 +36,12 @@ void print_outdated(const LocatedError& key) noexcept {
     print_error(to_text(key) + "\n");
 }
 
+std::string text_of(const Json& document) {
+    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 void print_json(const Json& document) {
-    fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}", text_of(document));
 }
 
 Json json_of(const std::optional<double>& value) {

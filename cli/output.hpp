@@ -20,7 +20,10 @@ void print_error(std::string_view text) noexcept;
 /// Reports on standard error a key that a file calls by a former name.
 void print_outdated(const LocatedError& key) noexcept;
 
-/// Prints a document as commands do with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
+/// A document as commands print it with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
+[[nodiscard]] std::string text_of(const Json& document);
+
+/// Prints that text.
 void print_json(const Json& document);
 
 /// The number, or null without one.

@@ -21,14 +21,21 @@ constexpr char page_name[] = "report.html";
 ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
                    bool is_quiet) {
     ShownRun run{std::move(record), nullptr, std::move(map)};
-    const Problem& problem = run.record.problem;
-    run.model = make_flight_model(problem);
-    if (run.map == nullptr && problem.aero.enabled) {
-        ProgressDisplay display(is_quiet);
-        run.map = run.model->make_map(
-            problem.bounds, default_threads(), [&display](double share) { display.show("aero map", share); }, cache);
+    run.model = make_flight_model(run.record.problem);
+    if (run.map == nullptr) {
+        run.map = map_for_page(run.record.problem, *run.model, cache, is_quiet);
     }
     return run;
+}
+
+std::shared_ptr<const AeroMap> map_for_page(const Problem& problem, const FlightModel& model,
+                                            const std::filesystem::path& cache, bool is_quiet) {
+    if (!problem.aero.enabled) {
+        return nullptr;
+    }
+    ProgressDisplay display(is_quiet);
+    return model.make_map(
+        problem.bounds, default_threads(), [&display](double share) { display.show("aero map", share); }, cache);
 }
 
 void require_pages() {

@@ -23,6 +23,10 @@ struct ShownRun {
 [[nodiscard]] ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map,
                                  const std::filesystem::path& cache, bool is_quiet = false);
 
+/// The aero map of a problem for its page: from the cache, or built. Empty without surface effects.
+[[nodiscard]] std::shared_ptr<const AeroMap> map_for_page(const Problem& problem, const FlightModel& model,
+                                                          const std::filesystem::path& cache, bool is_quiet);
+
 /// @throws UsageError unless this build contains pages
 void require_pages();
 

@@ -9,6 +9,7 @@
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/cli/validation.hpp"
+#include "downwash/cli/validation_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/claims.hpp"
 #include "downwash/simulation/uncertainty.hpp"
@@ -22,8 +23,9 @@ struct ValidateArguments {
     std::string problem;
     std::string plan;
     std::optional<std::uint64_t> runs, seed, world;
+    std::optional<std::string> out;
     int threads = default_threads();
-    bool as_json = false, is_quiet = false;
+    bool as_json = false, is_quiet = false, no_cache = false;
 };
 
 /// The file of a plan: itself, or solution.json of a folder.
@@ -81,6 +83,7 @@ ExitCode run(const ValidateArguments& given) {
     check_options(given, problem);
     const Claims claims = read_claims(plan_file(given.plan), problem);
     const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
+    const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
     const judge::PlanJudge judge(problem);
     Validation validation;
@@ -99,12 +102,18 @@ ExitCode run(const ValidateArguments& given) {
     if (given.runs) {
         ProgressDisplay display(given.is_quiet);
         display.say(fmt::format("{}: flying the plan in {} worlds of seed {}", problem.name, *given.runs, seed));
-        validation.worlds = judge::fly_in_worlds(judge, claims.plan,
-                                                 {*given.runs, seed, given.threads, interruption.token(),
-                                                  [&](double share) { display.show("worlds", share); }});
+        validation.worlds =
+            judge::fly_in_worlds(judge, claims.plan,
+                                 {*given.runs, seed, given.threads, folder ? shown_clearance_step_s : 0,
+                                  interruption.token(), [&](double share) { display.show("worlds", share); }});
         if (!validation.worlds) {
             display.say("interrupted before all worlds were flown: there are no statistics");
         }
+    }
+    if (folder) {
+        write_validation(
+            *folder, validation, judge, claims.plan,
+            {given.problem, given.plan, plan_file(given.plan), seed, cache_folder(given.no_cache), given.is_quiet});
     }
     if (given.as_json) {
         print_json(json_of(validation));
@@ -131,7 +140,10 @@ void add_validate(CLI::App& program, Action& action) {
     add_value(command, "--world I", given.world,
               "judge the flight in world I of the problem's uncertainty instead of the undisturbed one");
     add_value(command, "--seed N", given.seed, "of the worlds; default: that of the problem");
+    add_value(command, "--out DIR", given.out,
+              "folder for validation.json, what --json prints, and the page validation.html; default: no files");
     add_threads(command, given.threads);
+    add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
     add_json(command, given.as_json);
 }

@@ -81,6 +81,7 @@ std::optional<WorldRuns> fly_in_worlds(const PlanJudge& judge, const Plan& plan,
         worlds.push_back(draw_world(*problem.uncertainty, problem.robot, options.seed, i));
     }
     std::vector<WorldRun> runs(worlds.size());
+    std::vector<ClearanceTrace> traces(options.fan_step_s > 0 ? worlds.size() : 0);
     run_parallel(
         worlds.size(), options.threads,
         [&](std::size_t i) {
@@ -89,12 +90,19 @@ std::optional<WorldRuns> fly_in_worlds(const PlanJudge& judge, const Plan& plan,
             }
             const JudgedFlight flight = judge.fly(plan, {true, worlds[i]});
             runs[i] = {i + 1, flight.outcome, flight.min_clearance_m, flight.max_tracking_error_m, flight.energy_j};
+            if (!traces.empty()) {
+                traces[i] = clearance_trace(flight, options.fan_step_s);
+            }
         },
         options.on_progress);
     if (options.stop.stop_requested()) {
         return std::nullopt;
     }
-    return statistics_of(std::move(runs), worlds, problem);
+    WorldRuns result = statistics_of(std::move(runs), worlds, problem);
+    if (!traces.empty()) {
+        result.fan = clearance_fan(traces, options.fan_step_s);
+    }
+    return result;
 }
 
 }  // namespace downwash::judge

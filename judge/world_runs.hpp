@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/judge/clearance_fan.hpp"
 #include "downwash/judge/plan_judge.hpp"
 #include "downwash/judge/statistics.hpp"
 
@@ -19,6 +20,7 @@ struct WorldRunOptions {
     std::uint64_t runs = 1000;  ///< worlds 1 to this number, > 0
     std::uint64_t seed = 1;     ///< of the worlds
     int threads = 1;
+    double fan_step_s = 0;  ///< > 0: WorldRuns has a fan with steps of this length; it keeps four bytes for each
     std::stop_token stop;
     std::function<void(double)> on_progress;  ///< called from the calling thread with the share that is done
 };
@@ -49,6 +51,7 @@ struct WorldRuns {
     std::array<double, 3> tracking_error_m{}, energy_j{};
     std::vector<Sensitivity> sensitivity;  ///< of every parameter that worlds draw
     std::vector<WorldRun> worst;           ///< failed flights first, then by clearance; ten at most
+    std::optional<ClearanceFan> fan;       ///< if it was asked for
 };
 
 /// Flies a plan in worlds of the problem's uncertainty. The result does not depend on the number of threads.

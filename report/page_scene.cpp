@@ -132,8 +132,7 @@ Json goal_json(const Goal& goal) {
     return json;
 }
 
-}  // namespace
-
+/// Bounds and obstacles: the section of each with the plane, its projection on the plane, and its solid.
 Json scene_json(const Problem& problem, const Scene& scene) {
     const auto cuts = obstacle_outlines(scene, problem.plane, 0);
     const auto projections = projected_outlines(scene, problem.plane);
@@ -153,6 +152,7 @@ Json scene_json(const Problem& problem, const Scene& scene) {
             {"obstacles", std::move(obstacles)}};
 }
 
+/// Bodies, rotors and arm, in the body frame.
 Json robot_json(const Robot& robot) {
     const PlaneOfMotion body_plane;
     const auto outlines = body_outlines(robot.body);
@@ -184,10 +184,12 @@ Json goals_json(const Problem& problem) {
     return goals;
 }
 
+/// Whether goals are visited in turn or are alternatives.
 std::string_view goal_order(const Problem& problem) {
     return !problem.stops.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
 }
 
+/// The thrust ratio K of the first rotor over the bounds, in 255 steps from minimum to maximum.
 Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& map) {
     constexpr double max_points = 120'000;
     constexpr std::uint8_t not_flyable = 255;
@@ -230,6 +232,25 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
             {"factor_low", low},
             {"factor_high", high},
             {"levels", packed.text()}};
+}
+
+}  // namespace
+
+void add_problem(Json& page, const Problem& problem, const FlightModel& model, const AeroMap* map) {
+    page["description"] = problem.description;
+    page["scene"] = scene_json(problem, model.effect(0).scene());
+    page["robot"] = robot_json(problem.robot);
+    page["start"] = {{"x_m", problem.start.x_m},
+                     {"z_m", problem.start.z_m},
+                     {"pitch_rad", problem.start.pitch_rad},
+                     {"arm_rad", problem.start.arm_rad}};
+    page["goals"] = goals_json(problem);
+    page["goal_order"] = goal_order(problem);
+    page["limits"] = {
+        {"safety_margin_m", problem.planner.safety_margin_m},
+        {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
+        {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}};
+    page["map"] = map != nullptr ? map_json(problem, model, *map) : Json();
 }
 
 }  // namespace downwash

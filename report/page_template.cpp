@@ -10,6 +10,7 @@
 
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
+DOWNWASH_EMBED_FILE(downwash_validation_page, DOWNWASH_PAGES "/validation.html");
 #else
 #define DOWNWASH_EMBEDDED_FILE(NAME) std::string_view()
 #endif
@@ -22,6 +23,10 @@ std::string_view run_page_template() noexcept {
 
 std::string_view campaign_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_campaign_page);
+}
+
+std::string_view validation_page_template() noexcept {
+    return DOWNWASH_EMBEDDED_FILE(downwash_validation_page);
 }
 
 std::string page_data(const nlohmann::ordered_json& data) {

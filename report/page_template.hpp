@@ -8,9 +8,11 @@
 
 namespace downwash {
 
-/// The pages of a run and of a campaign without their data, as viewer/ builds them; empty if it was not built.
+/// The pages of a run, a campaign and a validation without their data, as viewer/ builds them; empty if it was not
+/// built.
 [[nodiscard]] std::string_view run_page_template() noexcept;
 [[nodiscard]] std::string_view campaign_page_template() noexcept;
+[[nodiscard]] std::string_view validation_page_template() noexcept;
 
 /// Data in a form that a page can contain: ASCII without `<`, `>` and `&`.
 [[nodiscard]] std::string page_data(const nlohmann::ordered_json& data);

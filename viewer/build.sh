@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the pages, each an HTML file without data, DIR/run.html and DIR/campaign.html: viewer/build.sh DIR
+# Builds the pages, each an HTML file without data: DIR/run.html, campaign.html and validation.html. Usage: viewer/build.sh DIR
 # Needs esbuild ($ESBUILD, or the one on the path), node-d3 and libjs-three of Debian; the same sources and packages give
 # the same bytes.
 set -euo pipefail
@@ -42,6 +42,7 @@ page() {
 mkdir -p "$out"
 : >"$parts/extra"
 page campaign 'Downwash campaign' src/campaign/main.js src/campaign/page.css
+page validation 'Downwash validation' src/validation/main.js src/validation/page.css
 
 bundle src/view3d_app.js --global-name=DownwashView3d --outfile="$parts/view3d.js" \
     --alias:three="$three/build/three.module.js" \

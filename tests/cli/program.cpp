@@ -54,12 +54,21 @@ void words_of::add(Words& all, const char* blank_separated) {
     all.insert(all.end(), std::istream_iterator<std::string>(text), {});
 }
 
-std::string problem_file(const std::string& name) {
+std::string shipped_file(const std::string& name) {
     return std::string(DOWNWASH_PROBLEMS) + "/" + name + ".yaml";
 }
 
+std::string problem_file(const std::string& name) {
+    static const ScratchFolder folder;
+    const fs::path file = folder / (name + ".yaml");
+    write_file(file, problem_text(name));
+    return file.string();
+}
+
 std::string problem_text(const std::string& name) {
-    return replaced(read_file(problem_file(name)), "robots/", std::string(DOWNWASH_PROBLEMS) + "/robots/");
+    const std::string of_ideal_robot = replaced(read_file(shipped_file(name)), "robots/ars_lrm",
+                                                std::string(DOWNWASH_PROBLEMS) + "/robots/ars_lrm_ideal");
+    return replaced(of_ideal_robot, "uncertainty: {}", "uncertainty: none");
 }
 
 std::string replaced(std::string text, const std::string& part, const std::string& by) {

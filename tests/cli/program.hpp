@@ -20,6 +20,8 @@ template <class... Parts>
 [[nodiscard]] Words words(const Parts&... parts);
 
 /// The shipped problem of that name.
+[[nodiscard]] std::string shipped_file(const std::string& name);
+/// The same for the ideal robot and with everything as believed, in a file of its own.
 [[nodiscard]] std::string problem_file(const std::string& name);
 /// Its text for a file elsewhere: the robot is named by its absolute path.
 [[nodiscard]] std::string problem_text(const std::string& name);

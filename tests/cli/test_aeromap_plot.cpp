@@ -70,7 +70,7 @@ TEST_CASE("Force and torque on the whole vehicle are drawn at a pitch, with what
         return plotted(work, "a.svg", problem_file("bridge_inspection"), "--width 600 --what", options);
     };
     const std::string level = picture_of("force");
-    CHECK_THAT(level, Contains("bridge_inspection, ars_lrm, level"));
+    CHECK_THAT(level, Contains("bridge_inspection, ars_lrm_ideal, level"));
     const std::string tilted = picture_of("force --pitch-deg -20");
     CHECK_THAT(tilted, Contains("pitched 20 degrees nose up"));
     // What is drawn differs, not only what is written over it.

@@ -123,3 +123,33 @@ TEST_CASE("Flights in worlds are the same on any number of threads, and each alo
     options.stop = stopped.get_token();
     CHECK_FALSE(judge::fly_in_worlds(judge, plan, options));
 }
+
+TEST_CASE("A clearance over time has the least value of each step, and flights keep their last one") {
+    judge::JudgedFlight whole, broken;
+    for (int tick = 0; tick <= 40; ++tick) {
+        judge::JudgedRow row;
+        row.t_s = 0.01 * tick;
+        row.clearance_m = 1 - 0.01 * tick;
+        whole.rows.push_back(row);
+        if (tick <= 15) {
+            row.clearance_m = 0.5;
+            broken.rows.push_back(row);
+        }
+    }
+    broken.outcome = judge::Outcome::collision;  // between two ticks
+    const judge::ClearanceTrace first = judge::clearance_trace(whole, 0.1);
+    REQUIRE(first.size() == 5);
+    CHECK(first[0] == Approx(0.91));
+    CHECK(first[3] == Approx(0.61));
+    CHECK(first[4] == Approx(0.6));
+    const judge::ClearanceTrace second = judge::clearance_trace(broken, 0.1);
+    CHECK(second == judge::ClearanceTrace{0.5F, 0});
+    const judge::ClearanceFan fan = judge::clearance_fan({first, second}, 0.1);
+    CHECK(fan.step_s == 0.1);
+    REQUIRE(fan.minimum.size() == 5);
+    CHECK(fan.minimum[0] == Approx(0.5));
+    CHECK(fan.p50[0] == Approx((0.91 + 0.5) / 2));
+    CHECK(fan.p10[4] == Approx(0.06));
+    CHECK(fan.p01[4] == Approx(0.006));
+    CHECK(fan.minimum[4] == 0);
+}

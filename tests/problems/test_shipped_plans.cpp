@@ -25,6 +25,7 @@ Problem shipped(const std::string& name, std::uint64_t iterations) {
 TEST_CASE("Twelve plans of four shipped problems end where hover is stable") {
     for (const char* name : {"bridge_inspection", "box_girder_bay", "culvert", "pipe_rack"}) {
         Problem problem = shipped(name, 300);
+        problem.uncertainty.reset();
         const auto model = make_flight_model(problem);
         SolveOptions options;
         options.map = model->make_map(problem.bounds);

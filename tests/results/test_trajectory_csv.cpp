@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../support/csv_rows.hpp"
+#include "../support/test_robot.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/trajectory_csv.hpp"
@@ -76,7 +77,10 @@ Execution flight_to_deck(const Problem& problem) {
 }
 
 Problem bridge() {
-    return read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
+    Problem problem = read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
+    problem.robot = test::test_robot();  // without drag, which the integration here does not know
+    problem.uncertainty.reset();
+    return problem;
 }
 
 }  // namespace

@@ -257,8 +257,40 @@ def solids_report():
     return report
 
 
+def certificate_json(given, worlds, failures, interval, causes):
+    worst = [{"world": 17 + 40 * i, "outcome": cause, "min_clearance_m": 0.0 if cause == "collision" else 0.041}
+             for i, cause in enumerate(c for c, count in causes.items() for _ in range(count))]
+    worst += [{"world": 300 + i, "outcome": "ok", "min_clearance_m": 0.012 + 0.001 * i} for i in range(10 - len(worst))]
+    return {"given": given, "worlds": worlds, "failures": failures,
+            "failure_probability": dict(zip(("estimate", "low", "high"), interval)), "max_failure_probability": 0.01,
+            "confidence": 0.95, "attempts": 2, "clearance_m": {"p01": 0.021, "p10": 0.064, "p50": 0.091},
+            "causes": causes, "worst": worst}
+
+
+def certified_report():
+    """A certificate that is given, and the flight in a world."""
+    report = solved_report()
+    report["solution"]["certificate"] = certificate_json(True, 1016, 1, (1 / 1016, 0.000025, 0.00547), {"collision": 1})
+    report["solution"]["planning"]["first_certified_wall_s"] = 1.731
+    report["solution"]["execution"]["world"] = {"index": 17, "seed": 1}
+    return report
+
+
+def uncertified_report():
+    """A plan that reaches the goal but fails too often."""
+    report = solved_report()
+    report["solution"]["status"] = "approximate"
+    report["solution"]["certificate"] = certificate_json(False, 37, 4, (4 / 37, 0.03, 0.254),
+                                                         {"collision": 3, "goal_missed": 1})
+    report["solution"]["planning"]["first_certified_wall_s"] = None
+    report["solution"]["planning"]["obstruction"] = {"cause": "certificate", "x_m": 1.2, "z_m": 9.4, "arm_rad": -0.4,
+                                                     "goal_distance_m": 0}
+    return report
+
+
 CASES = {"solved": solved_report, "collision": failed_report, "unsolved": unsolved_report, "hostile": hostile_report,
-         "large": large_report, "open-air": open_air_report, "solids": solids_report}
+         "large": large_report, "open-air": open_air_report, "solids": solids_report,
+         "certified": certified_report, "uncertified": uncertified_report}
 
 
 def run_report(folder):

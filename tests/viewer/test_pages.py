@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What the pages of runs and campaigns must do, in a browser.
+"""What the pages of runs, campaigns and validations must do, in a browser.
 
-test_pages.py TEMPLATES [--run FOLDER] [--campaign FOLDER] [--expect DIR] [unittest's arguments]
+test_pages.py TEMPLATES [--run FOLDER] [--campaign FOLDER] [--validation FOLDER] [--expect DIR] [unittest's arguments]
 
-TEMPLATES is the folder with run.html and campaign.html as viewer/build.sh makes them. With --run and --campaign pages that
-the program wrote are held against the files beside them as well.
+TEMPLATES is the folder with run.html, campaign.html and validation.html as viewer/build.sh makes them. With --run,
+--campaign and --validation pages that the program wrote are held against the files beside them as well.
 UPDATE_EXPECTED=1 writes the expected pictures anew: look at them before they are committed.
 """
 
@@ -17,9 +17,11 @@ sys.dont_write_bytecode = True
 
 import page_test
 from campaign_tests import *
+from certificate_tests import *
 from looks_tests import *
 from moving_tests import *
 from opening_tests import *
+from validation_tests import *
 
 
 def main():
@@ -27,10 +29,12 @@ def main():
     parser.add_argument("templates")
     parser.add_argument("--run")
     parser.add_argument("--campaign")
+    parser.add_argument("--validation")
     parser.add_argument("--expect", default=os.path.join(page_test.HERE, "expected"))
     page_test.arguments, rest = parser.parse_known_args()
     page_test.arguments.template = os.path.join(page_test.arguments.templates, "run.html")
     page_test.arguments.campaign_template = os.path.join(page_test.arguments.templates, "campaign.html")
+    page_test.arguments.validation_template = os.path.join(page_test.arguments.templates, "validation.html")
     unittest.main(argv=[sys.argv[0], *rest])
 
 

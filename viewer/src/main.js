@@ -1,27 +1,31 @@
 // Puts the page together.
 
+import d3_licence from "../licences/d3.txt";
+import three_licence from "../licences/three.txt";
+
+import {make_certificate} from "./certificate.js";
 import {make_clock} from "./clock.js";
-import {Trouble} from "./decode.js";
 import {h} from "./dom.js";
+import {make_foot} from "./foot.js";
 import {build_model, read_report} from "./model.js";
 import {make_playback} from "./playback.js";
 import {make_plots} from "./plots.js";
 import {make_readout} from "./readout.js";
-import {make_foot, make_obstacle_table, make_repeat} from "./repeat.js";
+import {make_obstacle_table, make_repeat} from "./repeat.js";
 import {make_scene} from "./scene.js";
 import {make_search} from "./search.js";
 import {make_theme_switch} from "./theme.js";
+import {make_trouble} from "./trouble.js";
 import {make_head, make_verdict} from "./verdict.js";
 import {make_view3d} from "./view3d.js";
 
+const licences = [d3_licence, three_licence];
+
 function show_trouble(page, error, theme) {
-    const text = error instanceof Trouble ?
-        error.message :
-        `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
     page.replaceChildren(
         h("header", {class: "head"},
           h("div", {class: "head-line"}, h("div", {class: "brand"}, "Downwash"), theme.element)),
-        h("main", null, h("p", {class: "page-trouble", role: "alert"}, text)), make_foot(null));
+        h("main", null, make_trouble(error)), make_foot(null, licences));
 }
 
 function assemble(page, model, theme) {
@@ -43,8 +47,8 @@ function assemble(page, model, theme) {
                 clock ? "; a finger along a plot moves the vehicle." : "."),
               make_obstacle_table(model)),
             plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time", plots.moment), plots.element) : null),
-          make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
-        make_foot(model.report));
+          make_certificate(model), make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
+        make_foot(model.report.version, licences));
     document.title = `${model.solution.problem?.name ?? "Run"} · Downwash`;
     if (clock && model.is_cut_short) {
         clock.set(clock.rows - 1);

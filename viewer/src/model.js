@@ -22,7 +22,6 @@ const needed_columns = [
     "clearance_m",
     "ee_x_m",
     "ee_z_m",
-    "power_w",
     "energy_j",
 ];
 

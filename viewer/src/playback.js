@@ -22,7 +22,8 @@ function has_own_use(target, key) {
         (key.startsWith("Arrow") && target.closest("input[type=radio]") !== null);
 }
 
-export function make_playback(model, clock) {
+/** @param {AbortSignal} [signal] ends what keys do on the page */
+export function make_playback(model, clock, signal) {
     const slider = h("input", {
         type: "range",
         class: "time",
@@ -98,7 +99,8 @@ export function make_playback(model, clock) {
             pressed.preventDefault();
             acts[pressed.key]();
         }
-    });
+    }, {signal});
+    signal?.addEventListener("abort", pause);
     clock.follow((row) => {
         slider.value = String(row);
         slider.setAttribute("aria-valuetext", `${seconds(clock.time_s)} of ${seconds(model.end_s)}`);

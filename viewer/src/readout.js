@@ -32,10 +32,11 @@ export function make_readout(model, clock) {
           h("tbody", null, row_of("tracking error", cell((row) => meters(error_at(row)))),
             row_of("clearance", of("clearance_m", meters)),
             row_of("speed", cell((row) => quantity(Math.hypot(data.vx_m_s?.[row], data.vz_m_s?.[row]), ".2f", "m/s"))),
-            row_of("power", of("power_w", (v) => quantity(v, ".0f", "W"))),
+            data.power_w ? row_of("power", of("power_w", (v) => quantity(v, ".0f", "W"))) : null,
             row_of("energy so far", of("energy_j", (v) => quantity(v, ",.0f", "J")))));
     const count = robot.rotors.positions_m.length;
-    const rotors =
+    const rotors = model.commands.length === 0 ?
+        null :
         h("table", {class: "numbers"}, h("caption", null, "Rotors"),
           h("thead", null,
             h("tr", null, h("th", {scope: "col"}, "no."), h("th", {scope: "col"}, "command"),

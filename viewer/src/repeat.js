@@ -1,44 +1,11 @@
-// What is needed to get the same run again, the obstacles as a table, and the licences.
+// What is needed to get the same run again, and the obstacles as a table.
 
-import d3_licence from "../licences/d3.txt";
-import three_licence from "../licences/three.txt";
-
+import {make_command} from "./command.js";
 import {foreign, h} from "./dom.js";
 import {place} from "./format.js";
 import {extent_of} from "./numbers.js";
 import {is_cut} from "./surroundings.js";
 import {variants} from "./words.js";
-
-/** Copying by the clipboard where a page from a file may, else by a selection. */
-async function copy(text, source) {
-    try {
-        await navigator.clipboard.writeText(text);
-        return true;
-    } catch {
-        const range = document.createRange();
-        range.selectNodeContents(source);
-        getSelection().removeAllRanges();
-        getSelection().addRange(range);
-        return document.execCommand("copy");
-    }
-}
-
-function make_command(command) {
-    const code = h("code", null, foreign(command));
-    const status = h("span", {class: "muted", role: "status"});
-    const button =
-        h("button", {
-            type: "button",
-            class: "screen-only",
-            onclick: async () => {
-                status.textContent = (await copy(command, code)) ? "Copied." : "Selected: copy it with the keyboard.";
-            }
-        },
-          "Copy");
-    return h(
-        "div", {class: "command"}, h("pre", {tabindex: "0", role: "region", "aria-label": "Command"}, code), button,
-        status);
-}
 
 function range_text([low, high]) { return `${place(low)} to ${place(high)}`; }
 
@@ -80,13 +47,4 @@ export function make_repeat(model) {
               h("pre", {tabindex: "0", role: "region", "aria-label": "Effective parameters"},
                 h("code", null, foreign(report.effective_yaml)))) :
             null);
-}
-
-export function make_foot(report) {
-    return h(
-        "footer", {class: "foot"},
-        h("p", null,
-          `Made by Downwash ${report?.version ?? ""}. The page needs no network and sends nothing anywhere.`),
-        h("details", {class: "licences screen-only"}, h("summary", null, "Licences of the libraries in this page"),
-          [d3_licence, three_licence].map((text) => h("pre", {tabindex: "0"}, text))));
 }

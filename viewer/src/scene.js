@@ -104,8 +104,10 @@ export function make_scene(model, clock, playback) {
         layer("flown", "Flown", "flown", true, () => draw_flown(model));
         layer("tip", "End effector", "tip", true, () => draw_tip(model));
         layer("snapshots", "Snapshots", "snapshots", true, () => draw_snapshots(model, rows));
-        forces = make_forces(model, clock, view);
-        layer("forces", "Thrust", "forces", true, () => forces.element, moving_words);
+        if (model.commands.length > 0) {
+            forces = make_forces(model, clock, view);
+            layer("forces", "Thrust", "forces", true, () => forces.element, moving_words);
+        }
     }
     if (scene.obstacles.length > 0) {
         layer("names", "Names", "names", true, () => s("g"), words);

@@ -94,7 +94,7 @@ export function plots_of(model) {
             title: "Power",
             unit: "W",
             text: (v) => quantity(v, ".0f", "W"),
-            lines: [{name: "", values: data.power_w, style: "flown"}]
+            lines: data.power_w ? [{name: "", values: data.power_w, style: "flown"}] : []
         },
         {
             id: "energy",

@@ -1,5 +1,6 @@
 // The head of the page: the result and the key figures.
 
+import {certificate_sentence} from "./certificate.js";
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
 import {cause_text, knowledge, outcome_text, variants} from "./words.js";
@@ -29,9 +30,12 @@ function failure_lines(model, how) {
     return lines;
 }
 
+/** The world of the flight, unless it is the nominal one. */
+function world_text({world}) { return world ? `, in world ${world.index} of seed ${world.seed}` : ""; }
+
 /** What blocked a search without a plan. */
 function blocked_lines({solution, outcome}) {
-    const {execution, planning, status, interrupted} = solution;
+    const {certificate, execution, planning, status, interrupted} = solution;
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
     const lines = [];
     if (interrupted) {
@@ -40,7 +44,9 @@ function blocked_lines({solution, outcome}) {
     if (status === "approximate") {
         const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
         lines.push(
-            `The page shows an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
+            certificate ?
+                `The page shows a plan that reaches the goal without a certificate, which counts as no solution.${flight}` :
+                `The page shows an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
     }
     if (Number.isFinite(nearest)) {
         lines.push(`The vehicle came within ${meters(nearest)} of the goal region.`);
@@ -50,6 +56,9 @@ function blocked_lines({solution, outcome}) {
             "The planner discarded every plan: executed with direct aerodynamics, the last one failed or came nearer to an " +
             "obstacle than the margin, " +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
+    } else if (stop?.cause === "certificate") {
+        lines.push(
+            "The planner discarded every plan: in worlds that the search had not seen, each failed too often.");
     } else if (stop) {
         lines.push(
             `The planner rejected the nearest path into the goal region because it ${cause_text(stop.cause)}, ` +
@@ -71,14 +80,18 @@ export function verdict_of(model) {
     const {solution, outcome} = model;
     const {execution} = solution;
     if (solution.status !== "solved") {
-        return {kind: "none", mark: "∅", title: "No plan within the limits", lines: blocked_lines(model)};
+        const title = solution.status === "approximate" && solution.certificate ?
+            "A plan was found, but it is not certified" :
+            "No plan within the limits";
+        return {kind: "none", mark: "∅", title, lines: blocked_lines(model)};
     }
     const stopped = solution.interrupted ? "Interrupted; the best so far. " : "";
     if (!execution) {
         const lines = stopped ? [stopped] : [];
         return {kind: "none", mark: "?", title: "A plan was found, but it was not executed", lines};
     }
-    const air = execution.aero === false ? "in free air" : "with aerodynamics evaluated directly";
+    const medium = execution.aero === false ? "in free air" : "with aerodynamics evaluated directly";
+    const air = medium + world_text(execution);
     if (outcome === "ok") {
         const line = `${stopped}Executed ${air}, the plan ${outcome_text(outcome)}.`;
         return {kind: "good", mark: "✓", title: "Solved, and the plan flies", lines: [line]};
@@ -126,6 +139,9 @@ function figures_of(model) {
     const first = planning?.first_solution_wall_s;
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
         `search ${seconds(planning?.wall_s)}`);
+    if (Number.isFinite(planning?.first_certified_wall_s)) {
+        add("First certified plan after", quantity(planning.first_certified_wall_s, ".3f", "s"));
+    }
     add("Iterations", number(planning?.iterations, ",d"),
         planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges simulated` : "");
     return list;
@@ -167,10 +183,12 @@ export function make_head(model, theme_switch) {
 
 export function make_verdict(model) {
     const {kind, mark, title, lines} = verdict_of(model);
+    const certificate = certificate_sentence(model.solution);
     return h(
         "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
+            certificate ? h("p", {class: "certificate-line"}, certificate) : null,
             goals_list(model))),
         h("dl", {class: "figures"},
           figures_of(model).map(

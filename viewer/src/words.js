@@ -2,6 +2,7 @@
 
 export const causes = {
     bounds: "leaves the bounds",
+    certificate: "fails too often in worlds that the search has not seen",
     collision: "touches an obstacle",
     direct_flight: "fails when executed with direct aerodynamics",
     flyable_area: "leaves the flyable area",
@@ -22,7 +23,11 @@ export const outcomes = {
     goal_missed: "misses the goal",
 };
 
-export const outcome_text = (outcome) => outcomes[outcome] ?? String(outcome).replace(/_/g, " ");
+/** The name of an outcome as words: "goal missed". */
+export const outcome_name = (outcome) => String(outcome).replace(/_/g, " ");
+
+/** What a flight with that outcome does. */
+export const outcome_text = (outcome) => outcomes[outcome] ?? outcome_name(outcome);
 
 /** What the search considers. */
 export const knowledge = {

@@ -2,7 +2,7 @@
 
 import {s} from "../dom.js";
 import {shown_cells} from "./model.js";
-import {around, make_figure, make_panel, plain} from "./panel.js";
+import {around, make_figure, make_panel, plain} from "../panel.js";
 
 function points(curve, quantile) {
     return curve.filter(({cost}) => Number.isFinite(cost[quantile])).map(({time_s, cost}) => [time_s, cost[quantile]]);

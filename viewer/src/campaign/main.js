@@ -1,9 +1,10 @@
 // Puts the page of a campaign together.
 
 import d3_licence from "../../licences/d3.txt";
-import {Trouble} from "../decode.js";
 import {foreign, h} from "../dom.js";
+import {make_foot} from "../foot.js";
 import {make_theme_switch} from "../theme.js";
+import {make_trouble} from "../trouble.js";
 import {make_costs} from "./costs.js";
 import {make_margins} from "./margins.js";
 import {build_model, read_figures} from "./model.js";
@@ -11,14 +12,6 @@ import {make_first_solutions, make_flown_costs, make_pairs} from "./rows.js";
 import {make_cost_shares, make_success} from "./success.js";
 import {make_settings, make_tables} from "./tables.js";
 import {make_head, make_verdict} from "./verdict.js";
-
-function make_foot(version) {
-    return h(
-        "footer", {class: "foot"},
-        h("p", null, `Made by Downwash ${version ?? ""}. The page needs no network and sends nothing anywhere.`),
-        h("details", {class: "licences screen-only"}, h("summary", null, "Licences of the libraries in this page"),
-          h("pre", {tabindex: "0"}, d3_licence)));
-}
 
 /** Which line is whose; switching a planner off takes it out of all figures. */
 function make_legend({planners, shown}) {
@@ -39,7 +32,7 @@ function assemble(page, model, theme) {
         h("main", null, make_verdict(model), make_margins(model), make_legend(model), make_success(model), make_costs(model),
           make_flown_costs(model), make_cost_shares(model), make_first_solutions(model), make_pairs(model),
           make_tables(model), make_settings(model)),
-        make_foot(model.figures.settings.version));
+        make_foot(model.figures.settings.version, [d3_licence]));
     document.title = `${model.figures.settings.campaign ?? "Campaign"} · Downwash`;
 }
 
@@ -53,11 +46,7 @@ function run() {
         performance.mark("downwash-ready");
         return model.figures;
     } catch (error) {
-        const text = error instanceof Trouble ?
-            error.message :
-            `The data of this page cannot be shown: it does not have the expected shape (${error.message}).`;
-        page.replaceChildren(
-            h("main", null, h("p", {class: "page-trouble", role: "alert"}, text)), make_foot(null));
+        page.replaceChildren(h("main", null, make_trouble(error)), make_foot(null, [d3_licence]));
         return null;
     }
 }

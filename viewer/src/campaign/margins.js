@@ -2,7 +2,7 @@
 
 import {h, s} from "../dom.js";
 import {number} from "../format.js";
-import {make_figure, make_panel, plain} from "./panel.js";
+import {make_figure, make_panel, plain} from "../panel.js";
 
 function curve(cells, share_name, frame, style) {
     const {x, y} = frame;

@@ -3,7 +3,7 @@
 import {isolated, s} from "../dom.js";
 import {number} from "../format.js";
 import {shown_cells} from "./model.js";
-import {around, make_figure, make_panel, plain} from "./panel.js";
+import {around, make_figure, make_panel, plain} from "../panel.js";
 
 const row_height = 40;
 const pair_height = 54;

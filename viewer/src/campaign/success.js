@@ -3,7 +3,7 @@
 import {s} from "../dom.js";
 import {number, quantity} from "../format.js";
 import {shown_cells} from "./model.js";
-import {around, make_figure, make_panel, plain} from "./panel.js";
+import {around, make_figure, make_panel, plain} from "../panel.js";
 
 const percent = (share) => number(share, ".0%");
 const share_axis = {

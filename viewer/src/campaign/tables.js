@@ -2,7 +2,7 @@
 
 import {foreign, h} from "../dom.js";
 import {meters, number} from "../format.js";
-import {plain} from "./panel.js";
+import {plain} from "../panel.js";
 
 const share = ({hits, attempts, low, high}) =>
     `${hits}/${attempts} [${number(100 * low, ".1f")}, ${number(100 * high, ".1f")} %]`;

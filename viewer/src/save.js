@@ -1,6 +1,6 @@
 // Saves a drawing as an SVG file of its own, with the colours that it has at the moment.
 
-import {h} from "../dom.js";
+import {h} from "./dom.js";
 
 const carried = [
     "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "opacity", "font-family",

@@ -2,9 +2,9 @@
 
 import {scaleLinear, scaleLog} from "d3-scale";
 
-import {foreign, h, s} from "../dom.js";
-import {number} from "../format.js";
-import {keep_sized} from "../sizing.js";
+import {foreign, h, s} from "./dom.js";
+import {number} from "./format.js";
+import {keep_sized} from "./sizing.js";
 import {make_save_button} from "./save.js";
 
 const paper_width = 330;
@@ -57,7 +57,10 @@ function draw_axes(drawing, frame, width, height) {
     ].flat();
 }
 
-/** `drawing_of` is asked anew for whatever is shown; null: there is nothing to draw. */
+/**
+ * `drawing_of` is asked anew for whatever is shown; a text instead of a drawing says why there is none.
+ * @param {{shown?: {follow: (changed: () => void) => void}}} model `shown`: what the reader may switch on and off
+ */
 export function make_panel(model, title, drawing_of) {
     const svg = s("svg", {class: "plot-svg panel-svg", role: "img"});
     const nothing = h("p", {class: "muted", hidden: true});
@@ -79,7 +82,7 @@ export function make_panel(model, title, drawing_of) {
         svg.setAttribute("aria-label", drawing.label);
         svg.replaceChildren(...draw_axes(drawing, frame, width, height), ...drawing.draw(frame).flat(Infinity));
     };
-    model.shown.follow(() => {
+    model.shown?.follow(() => {
         if (last_width > 0) {
             draw(last_width);
         }

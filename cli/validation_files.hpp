@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/validation.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/judge/plan_judge.hpp"
+
+namespace downwash::cli {
+
+/// How finely validation.html shows the clearance over time [s].
+inline constexpr double shown_clearance_step_s = 0.1;
+
+/// What was validated, and how.
+struct ValidationSource {
+    std::string problem_file;     ///< as the user gave it
+    std::string plan;             ///< as the user gave it: solution.json or its folder
+    std::string plan_file;        ///< solution.json itself
+    std::uint64_t seed = 1;       ///< of the worlds
+    std::filesystem::path cache;  ///< of aero maps; empty: none
+    bool is_quiet = false;
+};
+
+/// Writes validation.json and, if this build contains pages, validation.html. The page plays the flight that was judged
+/// and the worst flights of the worlds, which the judge flies again.
+void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
+                      const Plan& plan, const ValidationSource& source);
+
+}  // namespace downwash::cli
