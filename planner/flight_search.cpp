@@ -98,8 +98,8 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
-    certificate_ = worlds_->certify(before_.continued_by(plan), goals_.size(), ++attempts_,
-                                     [this] { return clock_.is_over(); });
+    certificate_ =
+        worlds_->certify(before_.continued_by(plan), goals_.size(), ++attempts_, [this] { return clock_.is_over(); });
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;

@@ -64,8 +64,8 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         const auto flown_map =
             problem.aero.enabled ? model->make_map(problem.bounds, options.threads, {}, options.map_cache) : nullptr;
         planning::ProblemWorlds fresh(problem, model, flown_map, options);
-        solution.certificate = fresh.certify(*solution.plan, goals_of(problem).size(), 1,
-                                             [&] { return options.stop.stop_requested(); });
+        solution.certificate =
+            fresh.certify(*solution.plan, goals_of(problem).size(), 1, [&] { return options.stop.stop_requested(); });
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {

@@ -5,7 +5,13 @@ set -euo pipefail
 
 downwash=$(realpath "${1:-build/downwash}")
 cd -P "$(dirname "${BASH_SOURCE[0]}")"
-bridge=../../problems/bridge_inspection.yaml
+problems=$(realpath ../../problems)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+# The bridge as the ideal robot flies it, with everything as believed: what the variants know makes the difference there.
+bridge=$work/bridge_inspection.yaml
+sed "s#robots/ars_lrm#$problems/robots/ars_lrm_ideal#; s/^uncertainty: {}/uncertainty: none/" \
+    "$problems/bridge_inspection.yaml" >"$bridge"
 data=../../effects/measurements/surface_effect_measurements.csv
 
 plot() { # FILE arguments...
@@ -31,9 +37,6 @@ plot figure_c_5.svg "$bridge"
 plot hold_bridge.svg "$bridge" --what hold --arm-deg 90
 plot force_bridge.svg "$bridge" --what force
 plot torque_bridge.svg "$bridge" --what torque
-
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 # Concepts, on the problem that `downwash init` writes.
 "$downwash" init "$work/my_problem.yaml" >/dev/null

@@ -67,10 +67,10 @@ TEST_CASE("Where a vehicle can hover is drawn with the bounds of its problem, wh
 TEST_CASE("Force and torque on the whole vehicle are drawn at a pitch, with what a torque is divided by") {
     const Workspace work;
     const auto picture_of = [&](const char* options) {
-        return plotted(work, "a.svg", problem_file("bridge_inspection"), "--width 600 --what", options);
+        return plotted(work, "a.svg", shipped_file("bridge_inspection"), "--width 600 --what", options);
     };
     const std::string level = picture_of("force");
-    CHECK_THAT(level, Contains("bridge_inspection, ars_lrm_ideal, level"));
+    CHECK_THAT(level, Contains("bridge_inspection, ars_lrm, level"));
     const std::string tilted = picture_of("force --pitch-deg -20");
     CHECK_THAT(tilted, Contains("pitched 20 degrees nose up"));
     // What is drawn differs, not only what is written over it.

@@ -4,7 +4,7 @@
 #   A fence that begins with "$ build/downwash" is run. Its lines have to appear in the output in their order; "..." stands for any lines.
 #   Lines of a fence "yaml" go into my.yaml: "- {name: N" replaces that obstacle or is added after the fence's line before,
 #   "key: value" replaces the line of that key. Those of a fence "yaml once" hold for the next command only.
-#   A row "| `VARIANT` | first line | planned | executed | exit code |" is compared with that variant's solution of the bridge.
+#   A row "| `VARIANT` | first line | planned | executed | exit code |" is compared with what the page's command for that variant prints.
 set -euo pipefail
 
 program=$(realpath "$1")
@@ -68,7 +68,9 @@ run() { # COMMAND-LINE QUOTED
 variant() { # VARIANT FIRST-LINE PLANNED EXECUTED EXIT-CODE
     local output code=0
     checked=$((checked + 1))
-    output=$(build/downwash solve problems/bridge_inspection.yaml --variant "$1" --max-iterations 3000 2>&1) || code=$?
+    local solve
+    solve=$(grep -xE "build/downwash solve problems/bridge_inspection.yaml --variant $1 .*" "$page")
+    output=$(bash -c "$solve" 2>&1) || code=$?
     compare "$1" "$output" "$2"
     [[ $code == "$5" ]] || complain "$1 ends with $code, not $5"
     grep -qE "^  cost +${3%% J*} J planned, ${4%% J*} J " <<<"$output" || complain "$1 costs" "$(grep '^  cost' <<<"$output")"
@@ -94,7 +96,7 @@ while IFS= read -r line; do
         session,*) quoted+=$line$'\n' ;;
         ,'| `mp-arm'*'` | '*' J'*)
             row=${line#"| "}
-            IFS='|' read -r name first planned executed code <<<"${row//" | "/|}"
+            IFS='|' read -r name first planned executed code _ <<<"${row//" | "/|}"
             code=${code%% *}
             variant "${name//\`/}" "$first" "$planned" "$executed" "$code"
             ;;

@@ -137,7 +137,8 @@ TEST_CASE("The clearances of a certificate are those of flights with direct aero
         REQUIRE(start);
         const Execution flight = execute(*model, *start, solution.plan->reference, goals_of(problem), true, in);
         CHECK(flight.outcome == sample.outcome);
-        CHECK(sample.min_clearance_m == Approx(flight.min_clearance_m).margin(1e-3 + min_clearance_error_m(flight.min_clearance_m)));
+        CHECK(sample.min_clearance_m ==
+              Approx(flight.min_clearance_m).margin(1e-3 + min_clearance_error_m(flight.min_clearance_m)));
     }
 }
 
