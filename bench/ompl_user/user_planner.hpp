@@ -18,10 +18,10 @@ namespace downwash::bench {
 /// saturation or tracking; the tip at the goal is enough, neither at rest nor held; goals sampled by inverse
 /// kinematics.
 ///
-/// With worlds it is RandUP-RRT (Lew, Janson, Bonalli and Pavone 2021, "A Simple and Efficient Sampling-based Algorithm
-/// for General Reachability Analysis"; Wu, Lew, Solovey, Schmerling and Pavone 2022, "Robust-RRT"): a state holds one
-/// particle for each world. An edge moves all of them by the same control, and is valid if all are; the goal is reached
-/// when all are in it. Distances are those of the first particle.
+/// With worlds it is an RRT over RandUP (T. Lew and M. Pavone 2020, "Sampling-based Reachability Analysis: A Random Set
+/// Theory Approach with Adversarial Sampling"), without its padding: a state holds one particle for each world. An edge
+/// moves all of them by the same control, and is valid if all are; the goal is reached when all are in it. Distances
+/// are those of the first particle.
 class UserPlanner {
  public:
     /// @pre obstacles are boxes, cylinders and spheres   @param map as for ClosedLoopOde

@@ -12,14 +12,14 @@ constexpr const char* camp_setting = "CAMP's";
 Uncertainty no_uncertainty() {
     Uncertainty none;
     for (const WorldParameter& parameter : world_parameters()) {
-        none.*parameter.spread = Spread();
+        none.*parameter.spread = downwash::Spread();
     }
-    none.position_noise_m = none.velocity_noise_m_s = none.gyro_noise_rad_s = none.gust_m_s = Spread();
+    none.position_noise_m = none.velocity_noise_m_s = none.gyro_noise_rad_s = none.gust_m_s = downwash::Spread();
     return none;
 }
 
-Spread exactly(double difference) {
-    return Spread::over(difference, difference);
+downwash::Spread exactly(double difference) {
+    return downwash::Spread::over(difference, difference);
 }
 
 /// The problems of a study with something else uncertain.
@@ -90,9 +90,9 @@ std::vector<StudyPart> camp_parts(const StudySettings& settings) {
 
 Uncertainty camp_uncertainty() {
     Uncertainty camp = no_uncertainty();
-    camp.mass_scale = Spread::of_sd(0.07);
-    camp.center_of_mass_x_m = camp.center_of_mass_z_m = Spread::of_sd(0.03);
-    camp.inertia_scale = Spread::of_sd(0.1);
+    camp.mass_scale = downwash::Spread::of_sd(0.07);
+    camp.center_of_mass_x_m = camp.center_of_mass_z_m = downwash::Spread::of_sd(0.03);
+    camp.inertia_scale = downwash::Spread::of_sd(0.1);
     return camp;
 }
 
@@ -100,7 +100,7 @@ Uncertainty pessimistic_world() {
     Uncertainty world = no_uncertainty();
     world.ceiling_scale = exactly(0.4);
     world.scene_z_m = exactly(-0.04);
-    world.rotor_time_constant_s = Spread::of_factor(1.5, 1.5);
+    world.rotor_time_constant_s = downwash::Spread::of_factor(1.5, 1.5);
     return world;
 }
 
