@@ -10,8 +10,8 @@ namespace downwash::cli {
 /// What a parsed command line asks for.
 using Action = std::function<ExitCode()>;
 
-// Each adds its command to the program, to `aeromap`, `bench` or `study`; a command that is given stores what it does in
-// `action`.
+// Each adds its command to the program, to `aeromap`, `bench` or `study`; a command that is given stores what it does
+// in `action`.
 void add_check(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
