@@ -8,15 +8,16 @@ using Catch::StartsWith;
 
 TEST_CASE("A study is run into a folder, reported, and continued") {
     const Workspace work;
-    const std::string command = "study uncertainty --problem " + problem_file("open_air") +
-                                " --seeds 1 --time-limit 0.05 --worlds 2 --out out --quiet";
-    const Result first = work.succeed(command);
+    const std::string problem = problem_file("open_air");
+    const char* const rest = "--seeds 1 --time-limit 0.05 --worlds 2 --out out --quiet";
+    const Result first = work.succeed("study uncertainty --problem", problem, rest);
     CHECK_THAT(first.out, StartsWith("# Study: uncertainty\n") && Contains("22 of 22 runs done."));
     CHECK(work.text("out/study.md") == first.out);
-    const auto json = work.json(command + " --json");
+    const auto json = work.json("study uncertainty --problem", problem, rest);
     CHECK(json.at("study") == "uncertainty");
     CHECK(json.at("findings").size() == 7);
-    const Result other = work.run(replaced(command, "--worlds 2", "--worlds 3"));
+    const Result other =
+        work.run("study uncertainty --problem", problem, "--seeds 1 --time-limit 0.05 --worlds 3 --out out");
     CHECK(other.code == 2);
     CHECK_THAT(other.err, Contains("was begun with evaluation_worlds 2, not 3"));
 }
