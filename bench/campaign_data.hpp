@@ -48,6 +48,7 @@ struct CampaignPlan {
     std::vector<std::string> left_out;   ///< combinations that do not exist, and why
     std::optional<double> time_limit_s;  ///< of one search; empty: none
     bool stop_at_first_solution = false;
+    std::uint64_t evaluation_worlds = 0;  ///< in which each reported plan is flown
 
     [[nodiscard]] std::size_t run_count() const { return experiments.size() * planners.size() * seeds.size(); }
 };
@@ -76,6 +77,33 @@ struct FlightFigures {
     double goal_error_m = 0;
 };
 
+/// How a plan flies with one parameter of the worlds alone at either end of its spread, all else as believed.
+struct ParameterFlights {
+    std::string parameter;  ///< name of a WorldParameter
+    bool fails_low = false, fails_high = false;
+
+    bool operator==(const ParameterFlights&) const = default;
+};
+
+/// The flights of a reported plan in the evaluation worlds.
+struct WorldFigures {
+    std::uint64_t worlds = 0;
+    std::uint64_t failures = 0;
+    std::vector<ParameterFlights> alone;  ///< of every parameter that is not exact
+
+    bool operator==(const WorldFigures&) const = default;
+};
+
+/// The certificate of a plan: see Certificate.
+struct CertificateFigures {
+    bool is_given = false;
+    std::uint64_t worlds = 0;
+    std::uint64_t failures = 0;
+    std::uint64_t attempts = 0;
+
+    bool operator==(const CertificateFigures&) const = default;
+};
+
 /// One search and the flight of its plan.
 struct Run {
     std::size_t experiment = 0;  ///< in the campaign's plan
@@ -93,9 +121,12 @@ struct Run {
     double simulated_s = 0;
     std::uint64_t discarded = 0;            ///< aware plans whose direct flight failed and that were not reported
     std::vector<Improvement> improvements;  ///< their times are from the parsed problem on, too
-    std::map<std::string, std::uint64_t> rejections;  ///< edges by cause
-    std::optional<FlightFigures> flight;              ///< of a solved run
-    std::string error;                                ///< why it is impossible or failed
+    std::map<std::string, std::uint64_t> rejections;     ///< edges by cause
+    std::optional<FlightFigures> flight;                 ///< of a solved run
+    std::string error;                                   ///< why it is impossible or failed
+    std::optional<CertificateFigures> certificate = {};  ///< of its plan, where the problem has an uncertainty
+    std::optional<double> first_certified_s = {};        ///< from the parsed problem; of a planner that asks for them
+    std::optional<WorldFigures> in_worlds = {};          ///< of a solved run, if the campaign evaluates plans
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;

@@ -106,7 +106,10 @@ std::vector<SeedFigures> seeds_of(const Row& row) {
     std::vector<SeedFigures> seeds;
     for (const Run* run : row) {
         if (run != nullptr) {
-            seeds.push_back({run->seed, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)});
+            SeedFigures of{run->seed, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)};
+            of.is_certified = run->certificate ? std::optional(run->certificate->is_given) : std::nullopt;
+            of.failures_in_worlds = run->in_worlds ? std::optional(run->in_worlds->failures) : std::nullopt;
+            seeds.push_back(std::move(of));
         }
     }
     return seeds;
@@ -132,23 +135,28 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
     cell.cost_over_time = cost_over_time(plan, row);
     cell.cost_curve = cost_curve(plan, row);
     cell.solved_over_time = solved_over_time(row);
+    cell.in_worlds = worlds_of(row);
     cell.seeds = seeds_of(row);
     return cell;
 }
 
-void add_up(CampaignReport& report) {
+void add_up(const std::vector<Row>& rows, CampaignReport& report) {
     const auto sum = [](const Share& a, const Share& b) { return share_of(a.hits + b.hits, a.attempts + b.attempts); };
     for (std::size_t planner = 0; planner < report.plan.planners.size(); ++planner) {
-        PlannerTotals totals{planner, share_of(0, 0), share_of(0, 0), share_of(0, 0), 0};
-        for (const CellFigures& cell : report.cells) {
+        PlannerTotals totals{planner, share_of(0, 0), share_of(0, 0), share_of(0, 0), 0, {}};
+        Row all;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const CellFigures& cell = report.cells[i];
             if (cell.planner == planner) {
+                all.insert(all.end(), rows[i].begin(), rows[i].end());
                 totals.solved = sum(totals.solved, cell.solved);
                 totals.failed_flights = sum(totals.failed_flights, cell.failed_flights);
                 totals.held = sum(totals.held, cell.held);
                 totals.discarded += cell.discarded;
             }
         }
-        report.totals.push_back(totals);
+        totals.in_worlds = worlds_of(all);
+        report.totals.push_back(std::move(totals));
     }
 }
 
@@ -274,6 +282,10 @@ void find_margins(CampaignReport& report) {
 
 }  // namespace
 
+bool CampaignReport::has_worlds() const {
+    return std::any_of(cells.begin(), cells.end(), [](const CellFigures& cell) { return cell.in_worlds.has_any(); });
+}
+
 bool CampaignReport::meets_its_targets() const {
     return std::all_of(targets.begin(), targets.end(), [](const TargetResult& target) { return target.is_met; });
 }
@@ -296,7 +308,7 @@ CampaignReport report_of(const CampaignResults& results) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         report.cells.push_back(cell_of(report.plan, i / planners, i % planners, rows[i]));
     }
-    add_up(report);
+    add_up(rows, report);
     compare_planners(rows, report);
     list_failures(rows, report);
     find_margins(report);

@@ -34,6 +34,28 @@ struct SeedFigures {
     double first_solution_s = 0;  ///< infinite without a solution, as is flown_cost without a flight that held
     double answer_s = 0;
     double flown_cost = 0;
+    std::optional<bool> is_certified = {};                 ///< empty: its plan was not tested
+    std::optional<std::uint64_t> failures_in_worlds = {};  ///< empty: its plan was not flown in other worlds
+};
+
+/// How many plans fail with one parameter of the worlds alone at its 2 % or 98 % quantile, of those whose flight held
+/// when all was as believed.
+struct ParameterFigures {
+    std::string parameter;
+    std::size_t plans = 0;
+    std::size_t failed_low = 0, failed_high = 0;
+};
+
+/// Plans where not everything is as believed.
+struct WorldsFigures {
+    std::size_t tested = 0;    ///< seeds whose plan was tested for a certificate
+    Share certified;           ///< of the attempted seeds
+    Spread first_certified_s;  ///< of planners that ask for certificates while they search
+    std::size_t flown = 0;     ///< seeds whose reported plan was flown in the evaluation worlds
+    Share failed;              ///< of all these flights; interval of Clopper and Pearson (1934)
+    std::vector<ParameterFigures> alone;
+
+    [[nodiscard]] bool has_any() const { return tested > 0 || flown > 0; }
 };
 
 /// One planner on one experiment, over every seed that was attempted.
@@ -53,7 +75,8 @@ struct CellFigures {
     std::vector<CostAt> cost_over_time;      ///< at cost_moments_s; empty where searches stop at the first solution
     std::vector<CostAt> cost_curve;          ///< the same at moments close enough to draw
     std::vector<SolvedAt> solved_over_time;  ///< a step for every first solution, in the order of time
-    std::vector<SeedFigures> seeds;          ///< that were attempted
+    WorldsFigures in_worlds;
+    std::vector<SeedFigures> seeds;  ///< that were attempted
 };
 
 /// One planner on all experiments together.
@@ -61,6 +84,7 @@ struct PlannerTotals {
     std::size_t planner = 0;
     Share solved, failed_flights, held;  ///< as in CellFigures
     std::uint64_t discarded = 0;
+    WorldsFigures in_worlds;
 };
 
 /// Two planners on equal seeds.
@@ -115,6 +139,8 @@ struct CampaignReport {
     std::vector<FailureGroup> failures;
     std::vector<TargetResult> targets;
 
+    /// Whether plans were tested for certificates or flown in worlds.
+    [[nodiscard]] bool has_worlds() const;
     /// Whether every target is met; false too while runs are missing and there is a target.
     [[nodiscard]] bool meets_its_targets() const;
 };

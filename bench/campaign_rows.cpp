@@ -28,6 +28,10 @@ double flown_cost(const Run& run) {
     return run.holds() ? run.flight->cost : infinite;
 }
 
+double first_certified_s(const Run& run) {
+    return run.first_certified_s.value_or(infinite);
+}
+
 Spread spread_of(const std::vector<double>& values) {
     return {quantile(values, 0), quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75),
             quantile(values, 0.95)};

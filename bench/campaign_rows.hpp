@@ -16,6 +16,7 @@ using Row = std::vector<const Run*>;
 [[nodiscard]] double first_solution_s(const Run& run);
 [[nodiscard]] double verified_s(const Run& run);
 [[nodiscard]] double flown_cost(const Run& run);
+[[nodiscard]] double first_certified_s(const Run& run);
 
 /// A figure of every attempted seed.
 template <class Figure>
@@ -33,6 +34,9 @@ std::vector<double> figures_of(const Row& row, const Figure& figure) {
 
 /// The costs of the best plans so far at a moment of the searches.
 [[nodiscard]] CostAt costs_at(const Row& row, double time_s);
+
+/// How the plans of some runs do in worlds.
+[[nodiscard]] WorldsFigures worlds_of(const Row& row);
 
 /// Checks the cells of a report against the targets of its plan, and stores the results in the report.
 /// @param rows of all cells, in their order

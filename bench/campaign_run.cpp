@@ -11,6 +11,7 @@
 #include "downwash/base/version.hpp"
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/bench/machine.hpp"
+#include "downwash/bench/plan_evaluation.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
@@ -47,6 +48,9 @@ std::string target_text(const CampaignExpectation& target) {
     add("cost_to_best", target.cost_to_best);
     text += target.cheaper_than ? " cheaper_than " + *target.cheaper_than : "";
     add("cheaper_than_after_s", target.cheaper_than_after_s);
+    add("max_failure_share", target.max_failure_share);
+    add("certified_ratio", target.certified_ratio);
+    add("first_certified_median_s", target.first_certified_median_s);
     return text;
 }
 
@@ -73,6 +77,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"time_limit_s", number_or_none(time_limit_of(c))},
         {"max_iterations", c.max_iterations ? std::to_string(*c.max_iterations) : "none"},
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
+        {"evaluation_worlds", std::to_string(c.evaluation_worlds)},
         {"variants", listed(c.variants, [](Variant v) { return downwash::name_of(v); })},
         {"algorithms", listed(c.algorithms, [](const std::string& a) { return a; })},
         {"objectives",
@@ -82,6 +87,9 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"seeds", seeds_text(c.seeds.all())}};
     for (const Problem& problem : read.problems) {
         settings.emplace_back("problem " + problem.name, problem_sha256(problem));
+    }
+    for (const Problem& problem : read.evaluated_in) {
+        settings.emplace_back("evaluated in " + problem.name, problem_sha256(problem));
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
         settings.emplace_back("expectation " + std::to_string(i + 1), target_text(c.expect[i]));
@@ -167,6 +175,13 @@ void fill(Run& run, const Solution& solution) {
     if (const auto discarded = record.rejected.find("direct_flight"); discarded != record.rejected.end()) {
         run.discarded = discarded->second;
     }
+    if (solution.certificate) {
+        const Certificate& certificate = *solution.certificate;
+        run.certificate = {certificate.is_given, certificate.worlds, certificate.failures, certificate.attempts};
+    }
+    if (record.first_certified_wall_s) {
+        run.first_certified_s = record.setup_wall_s + *record.first_certified_wall_s;
+    }
     if (solution.status != Status::solved) {
         run.nearest_approach_m = record.nearest_approach_m;
         return;
@@ -179,14 +194,19 @@ void fill(Run& run, const Solution& solution) {
 
 /// One run: the search and the flight of its plan. An error is in the result, never thrown.
 /// @param how the map to use, the stop token, and whether to stop at the first solution
-Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how) {
+/// @param evaluation flies the plan after the clock has stopped; nullptr: it is not flown in other worlds
+Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how,
+            PlanEvaluation* evaluation) {
     apply(planner, problem);
     problem.planner.seed = seed;
     Run run;
     run.seed = seed;
+    std::optional<Plan> solved;
     const auto begin = std::chrono::steady_clock::now();
     try {
-        fill(run, solve(problem, how));
+        Solution solution = solve(problem, how);
+        fill(run, solution);
+        solved = solution.status == Status::solved ? std::move(solution.plan) : std::nullopt;
     } catch (const InputError& error) {
         run.status = RunStatus::impossible;
         run.error = error.what();
@@ -195,6 +215,9 @@ Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, co
         run.error = error.what();
     }
     run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (evaluation != nullptr && solved && !how.stop.stop_requested()) {
+        run.in_worlds = evaluation->evaluate(*solved);
+    }
     return run;
 }
 
@@ -252,6 +275,7 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     plan.expectations = c.expect;
     plan.time_limit_s = time_limit_of(c);
     plan.stop_at_first_solution = c.stop_at_first_solution;
+    plan.evaluation_worlds = c.evaluation_worlds;
     return plan;
 }
 
@@ -263,11 +287,15 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
 
     std::vector<Problem> problems;                     // one for each experiment
     std::vector<std::shared_ptr<const AeroMap>> maps;  // empty where each run reads it from the cache, as programs do
-    const bool needs_maps =
+    std::vector<std::shared_ptr<PlanEvaluation>> evaluations;  // empty where plans are not flown in other worlds
+    const bool plans_need_maps =
         !tasks.empty() && std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
             return planner.variant == Variant::mp_arm_ada;
         });
-    for (Problem problem : read.problems) {
+    for (std::size_t p = 0; p < read.problems.size(); ++p) {
+        Problem problem = read.problems[p];
+        const Problem& judging = read.evaluated_in.empty() ? problem : read.evaluated_in.at(p);
+        const bool is_evaluated = !tasks.empty() && plan.evaluation_worlds > 0 && judging.uncertainty.has_value();
         problem.planner.time_limit_s = plan.time_limit_s;
         problem.planner.max_iterations = read.campaign.max_iterations;
         const auto on_map_progress = [&](double share) {
@@ -275,9 +303,13 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                 options.on_map_progress(problem.name, share);
             }
         };
-        auto map = needs_maps && problem.aero.enabled && !options.stop.stop_requested()
+        auto map = (plans_need_maps || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
                        ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
                        : nullptr;
+        const auto evaluation =
+            is_evaluated && !options.stop.stop_requested()
+                ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map, options.map_cache)
+                : nullptr;
         if (map && is_in_cache(problem, options.map_cache)) {
             map.reset();
         }
@@ -285,6 +317,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
             problem.planner.objective = objective;
             problems.push_back(problem);
             maps.push_back(map);
+            evaluations.push_back(evaluation);
         }
     }
 
@@ -299,7 +332,8 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
         how.stop_at_first_solution = plan.stop_at_first_solution;
         how.map = maps[task.experiment];
         how.map_cache = options.map_cache;
-        Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how);
+        Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how,
+                          evaluations[task.experiment].get());
         run.experiment = task.experiment;
         run.planner = task.planner;
         const std::scoped_lock lock(writing);

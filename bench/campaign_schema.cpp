@@ -7,7 +7,7 @@ namespace {
 
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 4;
+constexpr std::uint64_t layout_version = 5;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -40,6 +40,16 @@ CREATE TABLE flights (
   runid INTEGER PRIMARY KEY, outcome TEXT NOT NULL, cost REAL, energy_j REAL, duration_s REAL, length_m REAL,
   min_clearance_m REAL, goal_error_m REAL,
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
+CREATE TABLE certificates (
+  runid INTEGER PRIMARY KEY, given BOOLEAN NOT NULL, worlds INTEGER NOT NULL, failures INTEGER NOT NULL,
+  attempts INTEGER NOT NULL, first_certified_s REAL,
+  FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
+CREATE TABLE world_flights (
+  runid INTEGER PRIMARY KEY, worlds INTEGER NOT NULL, failures INTEGER NOT NULL,
+  FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
+CREATE TABLE parameter_flights (
+  runid INTEGER, parameter TEXT, fails_low BOOLEAN NOT NULL, fails_high BOOLEAN NOT NULL, PRIMARY KEY (runid, parameter),
+  FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
 CREATE TABLE rejections (
   runid INTEGER, cause TEXT, edges INTEGER NOT NULL, PRIMARY KEY (runid, cause),
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
@@ -47,19 +57,22 @@ CREATE TABLE errors (
   runid INTEGER PRIMARY KEY, message TEXT NOT NULL,
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
 CREATE TABLE campaign (place INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
-CREATE TABLE campaign_limits (time_limit_s REAL, stop_at_first_solution INTEGER NOT NULL);
+CREATE TABLE campaign_limits (
+  time_limit_s REAL, stop_at_first_solution INTEGER NOT NULL, evaluation_worlds INTEGER NOT NULL);
 CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE);
 CREATE TABLE left_out (place INTEGER PRIMARY KEY, what TEXT NOT NULL);
 CREATE TABLE expectations (
   place INTEGER PRIMARY KEY, variant TEXT NOT NULL, algorithm TEXT, solved_ratio REAL, failed_flights INTEGER,
   first_solution_median_s REAL, first_solution_95_s REAL, verified_median_s REAL, cost_after_s REAL, cost_to_best REAL,
-  cheaper_than TEXT, cheaper_than_after_s REAL);
+  cheaper_than TEXT, cheaper_than_after_s REAL, max_failure_share REAL, certified_ratio REAL,
+  first_certified_median_s REAL);
 )";
 
 /// In the order of CampaignExpectation.
 constexpr const char* expectation_columns =
     "variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, first_solution_95_s, "
-    "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s";
+    "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s, "
+    "max_failure_share, certified_ratio, first_certified_median_s";
 
 Variant variant_of(const std::string& name) {
     return named(name, {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada});
@@ -119,7 +132,8 @@ void write_plan(const Database& database, const CampaignPlan& plan) {
         database.insert("expectations (" + std::string(expectation_columns) + ")", downwash::name_of(target.variant),
                         target.algorithm, target.solved_ratio, target.failed_flights, target.first_solution_median_s,
                         target.first_solution_95_s, target.verified_median_s, target.cost_after_s, target.cost_to_best,
-                        target.cheaper_than, target.cheaper_than_after_s);
+                        target.cheaper_than, target.cheaper_than_after_s, target.max_failure_share,
+                        target.certified_ratio, target.first_certified_median_s);
     }
     for (const auto& [name, value] : plan.settings) {
         database.insert("campaign (name, value)", name, value);
@@ -130,7 +144,8 @@ void write_plan(const Database& database, const CampaignPlan& plan) {
     for (const std::string& what : plan.left_out) {
         database.insert("left_out (what)", what);
     }
-    database.insert("campaign_limits", plan.time_limit_s, std::uint64_t{plan.stop_at_first_solution ? 1U : 0U});
+    database.insert("campaign_limits", plan.time_limit_s, std::uint64_t{plan.stop_at_first_solution ? 1U : 0U},
+                    plan.evaluation_worlds);
 }
 
 CampaignPlan read_plan(const Database& database) {
@@ -156,20 +171,22 @@ CampaignPlan read_plan(const Database& database) {
     database.for_each<std::uint64_t>("SELECT seed FROM campaign_seeds ORDER BY place", [&](std::uint64_t seed) {
         plan.seeds.push_back(static_cast<std::uint32_t>(seed));
     });
-    database
-        .for_each<Text, std::optional<Text>, OptionalNumber, std::optional<std::uint64_t>, OptionalNumber,
-                  OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber, std::optional<Text>, OptionalNumber>(
-            "SELECT " + std::string(expectation_columns) + " FROM expectations ORDER BY place",
-            [&](const Text& variant, const auto&... rest) {
-                plan.expectations.push_back({variant_of(variant), rest...});
-            });
+    database.for_each<Text, std::optional<Text>, OptionalNumber, std::optional<std::uint64_t>, OptionalNumber,
+                      OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber, std::optional<Text>,
+                      OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber>(
+        "SELECT " + std::string(expectation_columns) + " FROM expectations ORDER BY place",
+        [&](const Text& variant, const auto&... rest) {
+            plan.expectations.push_back({variant_of(variant), rest...});
+        });
     database.for_each<Text>("SELECT what FROM left_out ORDER BY place",
                             [&](const Text& what) { plan.left_out.push_back(what); });
-    database.for_each<OptionalNumber, std::uint64_t>("SELECT time_limit_s, stop_at_first_solution FROM campaign_limits",
-                                                     [&](const OptionalNumber& time_limit_s, std::uint64_t stops) {
-                                                         plan.time_limit_s = time_limit_s;
-                                                         plan.stop_at_first_solution = stops != 0;
-                                                     });
+    database.for_each<OptionalNumber, std::uint64_t, std::uint64_t>(
+        "SELECT time_limit_s, stop_at_first_solution, evaluation_worlds FROM campaign_limits",
+        [&](const OptionalNumber& time_limit_s, std::uint64_t stops, std::uint64_t worlds) {
+            plan.time_limit_s = time_limit_s;
+            plan.stop_at_first_solution = stops != 0;
+            plan.evaluation_worlds = worlds;
+        });
     return plan;
 }
 

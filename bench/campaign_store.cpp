@@ -112,6 +112,18 @@ void CampaignStore::add(const Run& run) {
         database_.insert("flights", key, downwash::name_of(flight.outcome), flight.cost, flight.energy_j,
                          flight.duration_s, flight.length_m, flight.min_clearance_m, flight.goal_error_m);
     }
+    if (run.certificate) {
+        const CertificateFigures& certificate = *run.certificate;
+        database_.insert("certificates", key, number(certificate.is_given), certificate.worlds, certificate.failures,
+                         certificate.attempts, run.first_certified_s);
+    }
+    if (run.in_worlds) {
+        database_.insert("world_flights", key, run.in_worlds->worlds, run.in_worlds->failures);
+        for (const ParameterFlights& flights : run.in_worlds->alone) {
+            database_.insert("parameter_flights", key, flights.parameter, number(flights.fails_low),
+                             number(flights.fails_high));
+        }
+    }
     if (!run.error.empty()) {
         database_.insert("errors", key, run.error);
     }
@@ -180,6 +192,23 @@ CampaignResults read_results(const std::filesystem::path& folder) {
             run.flight = {named(outcome, {Outcome::ok, Outcome::collision, Outcome::unstable,
                                           Outcome::left_flyable_area, Outcome::goal_missed}),
                           figures...};
+        });
+    of_runs.operator()<Count, Count, Count, Count, OptionalNumber>(
+        "SELECT runid, given, worlds, failures, attempts, first_certified_s FROM certificates",
+        [](Run& run, Count is_given, Count worlds, Count failures, Count attempts, const OptionalNumber& first_s) {
+            run.certificate = {is_given != 0, worlds, failures, attempts};
+            run.first_certified_s = first_s;
+        });
+    of_runs.operator()<Count, Count>("SELECT runid, worlds, failures FROM world_flights",
+                                     [](Run& run, Count worlds, Count failures) {
+                                         run.in_worlds = WorldFigures{worlds, failures, {}};
+                                     });
+    of_runs.operator()<Text, Count, Count>(
+        "SELECT runid, parameter, fails_low, fails_high FROM parameter_flights ORDER BY runid, rowid",
+        [](Run& run, const Text& parameter, Count fails_low, Count fails_high) {
+            if (run.in_worlds) {
+                run.in_worlds->alone.push_back({parameter, fails_low != 0, fails_high != 0});
+            }
         });
     of_runs.operator()<double, Count, double, OptionalNumber>(
         "SELECT runid, time, iterations, best_cost, flown_cost FROM progress ORDER BY runid, time",

@@ -30,6 +30,7 @@ class TargetCheck {
         const CellFigures& figures = report_.cells[cell];
         check_success(figures);
         check_times(figures);
+        check_worlds(figures);
         if (target_.cost_to_best) {
             compare_with_best(cell);
         }
@@ -64,6 +65,24 @@ class TargetCheck {
         within("median first solution within ", target_.first_solution_median_s, cell.first_solution_s.median);
         within("95 % of first solutions within ", target_.first_solution_95_s, cell.first_solution_s.quantile_95);
         within("median first verified plan within ", target_.verified_median_s, cell.verified_s.median);
+        within("median first certified plan within ", target_.first_certified_median_s,
+               cell.in_worlds.first_certified_s.median);
+    }
+
+    void check_worlds(const CellFigures& cell) {
+        if (target_.max_failure_share) {
+            const Share& failed = cell.in_worlds.failed;
+            add(cell, "failed flights in worlds at most " + to_text(*target_.max_failure_share), count_text(failed),
+                failed.attempts > 0 && static_cast<double>(failed.hits) <= *target_.max_failure_share *
+                                                                               static_cast<double>(failed.attempts) *
+                                                                               (1 + 1e-12));
+        }
+        if (target_.certified_ratio) {
+            const Share& certified = cell.in_worlds.certified;
+            const auto min_hits = *target_.certified_ratio * static_cast<double>(certified.attempts);
+            add(cell, "certified share at least " + to_text(*target_.certified_ratio), count_text(certified),
+                static_cast<double>(certified.hits) >= min_hits * (1 - 1e-12));
+        }
     }
 
     void compare_with_best(std::size_t cell) {

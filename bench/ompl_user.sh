@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Times first solutions of a typical OMPL set-up beside ours, and writes bench/results/ompl_user.md. A quarter of an
+# Times first solutions of a typical OMPL set-up beside ours, and writes bench/results/ompl_user.md. Half an
 # hour; close everything else first.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."

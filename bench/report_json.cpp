@@ -12,6 +12,11 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
+template <class T>
+Json optional_json(const std::optional<T>& value) {
+    return value ? Json(*value) : Json();
+}
+
 Json share_json(const Share& share) {
     return {{"hits", share.hits}, {"attempts", share.attempts}, {"low", share.low}, {"high", share.high}};
 }
@@ -46,10 +51,29 @@ Json steps_json(const std::vector<SolvedAt>& steps) {
     });
 }
 
+/// Null where no plan was tested or flown in worlds.
+Json worlds_json(const WorldsFigures& figures) {
+    if (!figures.has_any()) {
+        return nullptr;
+    }
+    return {{"tested", figures.tested},
+            {"certified", share_json(figures.certified)},
+            {"first_certified_s", spread_json(figures.first_certified_s)},
+            {"flown", figures.flown},
+            {"failed", share_json(figures.failed)},
+            {"alone", list_json(figures.alone, [](const ParameterFigures& of) -> Json {
+                 return {{"parameter", of.parameter},
+                         {"plans", of.plans},
+                         {"failed_low", of.failed_low},
+                         {"failed_high", of.failed_high}};
+             })}};
+}
+
 /// By column.
 Json seeds_json(const std::vector<SeedFigures>& seeds) {
     Json columns;
-    for (const char* name : {"seed", "cause", "first_solution_s", "whole_run_s", "flown_cost"}) {
+    for (const char* name :
+         {"seed", "cause", "first_solution_s", "whole_run_s", "flown_cost", "certified", "failures_in_worlds"}) {
         columns[name] = Json::array();
     }
     for (const SeedFigures& of : seeds) {
@@ -58,13 +82,10 @@ Json seeds_json(const std::vector<SeedFigures>& seeds) {
         columns["first_solution_s"].push_back(number(of.first_solution_s));
         columns["whole_run_s"].push_back(number(of.answer_s));
         columns["flown_cost"].push_back(number(of.flown_cost));
+        columns["certified"].push_back(optional_json(of.is_certified));
+        columns["failures_in_worlds"].push_back(optional_json(of.failures_in_worlds));
     }
     return columns;
-}
-
-template <class T>
-Json optional_json(const std::optional<T>& value) {
-    return value ? Json(*value) : Json();
 }
 
 Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
@@ -95,6 +116,7 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
             {"cost_over_time", costs_json(cell.cost_over_time)},
             {"cost_curve", costs_json(cell.cost_curve)},
             {"solved_over_time", steps_json(cell.solved_over_time)},
+            {"in_worlds", worlds_json(cell.in_worlds)},
             {"seeds", seeds_json(cell.seeds)}};
 }
 
@@ -108,7 +130,8 @@ Json totals_json(const CampaignPlan& plan, const PlannerTotals& totals) {
             {"solved", share_json(totals.solved)},
             {"failed_flights", share_json(totals.failed_flights)},
             {"held", share_json(totals.held)},
-            {"discarded", totals.discarded}};
+            {"discarded", totals.discarded},
+            {"in_worlds", worlds_json(totals.in_worlds)}};
 }
 
 Json comparison_json(const CampaignPlan& plan, const PlannerComparison& comparison) {
@@ -155,6 +178,7 @@ std::string json_of(const CampaignReport& report) {
     document["runs_done"] = report.done;
     document["time_limit_s"] = optional_json(plan.time_limit_s);
     document["stop_at_first_solution"] = plan.stop_at_first_solution;
+    document["evaluation_worlds"] = plan.evaluation_worlds;
     document["left_out"] = plan.left_out;
     document["totals"] = list_json(report.totals, [&](const auto& totals) { return totals_json(plan, totals); });
     document["cells"] = list_json(report.cells, [&](const auto& cell) { return cell_json(plan, cell); });

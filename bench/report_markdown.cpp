@@ -80,6 +80,7 @@ class Document {
         margins();
         flights();
         totals();
+        worlds();
         first_solutions();
         costs();
         comparisons();
@@ -179,6 +180,57 @@ class Document {
         for (const PlannerTotals& all : report_.totals) {
             row(planner(all.planner), share_text(all.solved), share_text(all.failed_flights), share_text(all.held),
                 all.discarded);
+        }
+        add("\n");
+    }
+
+    void worlds() {
+        if (!report_.has_worlds()) {
+            return;
+        }
+        add("## In other worlds\n\n`failed`: flights of the reported plans in {} worlds of their problem's "
+            "uncertainty, "
+            "the same for all plans of a problem, which no search has seen;\npooled over the seeds, with the 95 % "
+            "interval of Clopper and Pearson (1934) as if all flights were independent. `certified`: seeds whose plan "
+            "passed\nthe test for a certificate. `first certified`: the time to the first such plan of a planner that "
+            "asks for certificates while it searches.\n\n",
+            plan_.evaluation_worlds);
+        heads({"problem", "planner", "plans flown", "failed", "certified", "first certified, median", "95 %"});
+        for (const CellFigures& cell : report_.cells) {
+            worlds_row(experiment(cell.experiment), cell.planner, cell.in_worlds);
+        }
+        if (plan_.experiments.size() > 1) {
+            for (const PlannerTotals& all : report_.totals) {
+                worlds_row("all", all.planner, all.in_worlds);
+            }
+        }
+        add("\n");
+        parameters();
+    }
+
+    void worlds_row(const std::string& problem, std::size_t planner_number, const WorldsFigures& figures) {
+        row(problem, planner(planner_number), figures.flown, figures.flown > 0 ? share_text(figures.failed) : "none",
+            figures.tested > 0 ? share_text(figures.certified) : "not tested",
+            seconds_text(figures.first_certified_s.median), seconds_text(figures.first_certified_s.quantile_95));
+    }
+
+    /// The parameters that make plans fail alone.
+    void parameters() {
+        if (plan_.evaluation_worlds == 0) {
+            return;
+        }
+        add("One parameter alone at its 2 % or 98 % quantile, all else as believed, without noise and gusts: plans "
+            "that "
+            "fail, of those whose flight held when all was\nas believed. Parameters that let no plan fail are left "
+            "out.\n\n");
+        heads({"problem", "planner", "parameter", "at 2 %", "at 98 %"});
+        for (const CellFigures& cell : report_.cells) {
+            for (const ParameterFigures& of : cell.in_worlds.alone) {
+                if (of.failed_low + of.failed_high > 0) {
+                    row(experiment(cell.experiment), planner(cell.planner), of.parameter,
+                        fmt::format("{}/{}", of.failed_low, of.plans), fmt::format("{}/{}", of.failed_high, of.plans));
+                }
+            }
         }
         add("\n");
     }

@@ -48,6 +48,13 @@ std::string latex_spread(const Spread& spread) {
                        latex_number(spread.high_quartile));
 }
 
+/// The cells of what becomes of plans in worlds.
+std::string latex_worlds(const WorldsFigures& figures) {
+    return fmt::format(" & {} & {} & {}", figures.flown > 0 ? latex_share(figures.failed) : "--",
+                       figures.tested > 0 ? latex_share(figures.certified) : "--",
+                       latex_spread(figures.first_certified_s));
+}
+
 std::string in_csv(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) {
         return text;
@@ -72,17 +79,28 @@ std::string csv_spread(const Spread& spread) {
                        csv_number(spread.median), csv_number(spread.high_quartile), csv_number(spread.quantile_95));
 }
 
+/// The cells of what becomes of plans in worlds, empty for what nobody has tried.
+std::string csv_worlds(const WorldsFigures& figures) {
+    return (figures.tested > 0 ? csv_share(figures.certified) : ",,") + "," +
+           csv_number(figures.first_certified_s.median) + "," +
+           (figures.flown > 0 ? fmt::format("{},{}", figures.failed.attempts, csv_share(figures.failed)) : ",,,");
+}
+
 }  // namespace
 
 std::string latex_of(const CampaignReport& report) {
     const CampaignPlan& plan = report.plan;
+    const bool has_worlds = report.has_worlds();
     std::string text = fmt::format(
         "% Campaign {}, Downwash {} at commit {}, {} of {} runs; needs \\usepackage{{booktabs}}.\n"
-        "% Shares with 95 % Wilson intervals; medians with quartiles over all attempted seeds.\n"
-        "\\begin{{tabular}}{{llrrrr}}\n\\toprule\n"
-        "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Executed cost \\\\\n",
+        "% Shares with 95 % Wilson intervals, of flights in worlds with those of Clopper and Pearson; medians with "
+        "quartiles over all attempted seeds.\n"
+        "\\begin{{tabular}}{{llrrrr{}}}\n\\toprule\n"
+        "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Executed cost{} "
+        "\\\\\n",
         in_latex(setting(plan, "campaign")), in_latex(setting(plan, "version")), in_latex(setting(plan, "commit")),
-        report.done, plan.run_count());
+        report.done, plan.run_count(), has_worlds ? "rrr" : "",
+        has_worlds ? " & Failed in worlds [\\%] & Certified [\\%] & First certified [s]" : "");
     std::size_t experiment = plan.experiments.size();
     for (const CellFigures& cell : report.cells) {
         const bool is_first = cell.experiment != experiment;
@@ -90,10 +108,11 @@ std::string latex_of(const CampaignReport& report) {
             text += experiment == plan.experiments.size() ? "\\midrule\n" : "\\addlinespace\n";
             experiment = cell.experiment;
         }
-        text += fmt::format(
-            "{} & {} & {} & {} & {} & {} \\\\\n", is_first ? in_latex(plan.experiments[experiment].name()) : "",
-            in_latex(plan.planners[cell.planner].name()), latex_share(cell.held), latex_share(cell.failed_flights),
-            latex_spread(cell.first_solution_s), latex_spread(cell.flown_cost));
+        text += fmt::format("{} & {} & {} & {} & {} & {}{} \\\\\n",
+                            is_first ? in_latex(plan.experiments[experiment].name()) : "",
+                            in_latex(plan.planners[cell.planner].name()), latex_share(cell.held),
+                            latex_share(cell.failed_flights), latex_spread(cell.first_solution_s),
+                            latex_spread(cell.flown_cost), has_worlds ? latex_worlds(cell.in_worlds) : "");
     }
     return text + "\\bottomrule\n\\end{tabular}\n";
 }
@@ -109,17 +128,19 @@ std::string csv_of(const CampaignReport& report) {
             text += fmt::format(",{}_{}", spread, quantile);
         }
     }
-    text += "\r\n";
+    text +=
+        ",certified,certified_low,certified_high,first_certified_s_50,flights_in_worlds,failed_in_worlds,"
+        "failed_in_worlds_low,failed_in_worlds_high\r\n";
     for (const CellFigures& cell : report.cells) {
         const Experiment& experiment = plan.experiments[cell.experiment];
         const PlannerSetup& planner = plan.planners[cell.planner];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
                             in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
                             in_csv(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
                             cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
                             csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m),
                             csv_spread(cell.first_solution_s), csv_spread(cell.verified_s), csv_spread(cell.answer_s),
-                            csv_spread(cell.flown_cost));
+                            csv_spread(cell.flown_cost), csv_worlds(cell.in_worlds));
     }
     return text;
 }

@@ -10,8 +10,8 @@ namespace downwash::cli {
 /// What a parsed command line asks for.
 using Action = std::function<ExitCode()>;
 
-// Each adds its command to the program, to `aeromap` or to `bench`; a command that is given stores what it does in
-// `action`.
+// Each adds its command to the program, to `aeromap`, `bench` or `study`; a command that is given stores what it does
+// in `action`.
 void add_check(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 void add_execute(CLI::App& program, Action& action);
@@ -33,5 +33,6 @@ void add_aeromap_hold(CLI::App& aeromap, Action& action);
 void add_aeromap_plot(CLI::App& aeromap, Action& action);
 void add_bench_run(CLI::App& bench, Action& action);
 void add_bench_report(CLI::App& bench, Action& action);
+void add_study_uncertainty(CLI::App& study, Action& action);
 
 }  // namespace downwash::cli

@@ -75,6 +75,12 @@ void add_bench(CLI::App& program, Action& action) {
     add_bench_report(*bench, action);
 }
 
+void add_study(CLI::App& program, Action& action) {
+    CLI::App* study = program.add_subcommand("study", "Check claims by runs of our own");
+    study->require_subcommand(1);
+    add_study_uncertainty(*study, action);
+}
+
 /// Results that do not reach standard output are an error.
 ExitCode checked_output(ExitCode code) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -90,8 +96,9 @@ ExitCode run(int argc, char** argv) {
     program.footer(exit_codes);
     program.failure_message(usage_error);
     Action action;
-    for (const auto add : {add_init, add_check, add_explain, add_solve, add_execute, add_validate, add_aeromap,
-                           add_bench, add_report, add_export, add_margins, add_planners, add_manual, add_completion}) {
+    for (const auto add :
+         {add_init, add_check, add_explain, add_solve, add_execute, add_validate, add_aeromap, add_bench, add_study,
+          add_report, add_export, add_margins, add_planners, add_manual, add_completion}) {
         add(program, action);
     }
     reject_unknown_command(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));

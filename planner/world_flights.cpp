@@ -46,13 +46,18 @@ FlightRules rules_of_execution() {
 }
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache)
+                           std::shared_ptr<const AeroMap> map, CeilingPart ceiling, int threads)
     : problem_(problem),
       model_(std::move(model)),
       map_(std::move(map)),
+      ceiling_(std::move(ceiling)),
       goals_(goals_of(problem)),
       threads_(threads),
-      pools_(goals_.size()) {
+      pools_(goals_.size()) {}
+
+WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
+                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache)
+    : WorldFlights(problem, std::move(model), std::move(map), CeilingPart(), threads) {
     if (map_ != nullptr) {
         ceiling_.model = model_->ceilings_only();
         if (ceiling_.model != nullptr) {

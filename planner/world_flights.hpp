@@ -29,6 +29,9 @@ class DOWNWASH_EXPORT WorldFlights {
     /// @pre problem outlives it
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                  int threads = 1, const std::filesystem::path& map_cache = {});
+    /// The same with maps that are there already. @param ceiling that of another WorldFlights of the same problem
+    WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
+                 CeilingPart ceiling, int threads);
 
     /// Vehicles that have hovered at the problem's start, or that start there moving; nothing for those that do not
     /// stay there.

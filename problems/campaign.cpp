@@ -110,6 +110,13 @@ void add_limits(Rows& rows) {
         "stop_at_first_solution", "end a search with the first plan that is accepted",
         [](auto& c) -> auto& { return c.stop_at_first_solution; }));
     rows.push_back(parameters::integer<Campaign>(
+                       "evaluation_worlds",
+                       "worlds of its problem's uncertainty in which every reported plan is flown; no "
+                       "search has seen them, and they are the same for all plans of a problem",
+                       [](auto& c) -> auto& { return c.evaluation_worlds; })
+                       .at_least(0)
+                       .at_most(1e6));
+    rows.push_back(parameters::integer<Campaign>(
                        "jobs", "searches that run at a time, one thread each; null: one per processor",
                        [](auto& c) -> auto& { return c.jobs; })
                        .at_least(1)
@@ -166,6 +173,20 @@ void add_expectations(Rows& rows) {
     rows.push_back(parameters::number<Campaign>(
                        "expect[].cheaper_than_after_s", "time of its search at which that one is looked at",
                        [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).cheaper_than_after_s; })
+                       .above(0));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].max_failure_share", "greatest share of failed flights in the evaluation worlds",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).max_failure_share; })
+                       .at_least(0)
+                       .at_most(1));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].certified_ratio", "least share of seeds whose plan has a certificate",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).certified_ratio; })
+                       .at_least(0)
+                       .at_most(1));
+    rows.push_back(parameters::number<Campaign>(
+                       "expect[].first_certified_median_s", "longest median time to a first plan with a certificate",
+                       [bar](auto& c, std::size_t i) -> auto& { return bar(c, i).first_certified_median_s; })
                        .above(0));
 }
 

@@ -37,6 +37,10 @@ struct CampaignExpectation {
     std::optional<double> cost_to_best;
     std::optional<std::string> cheaper_than;
     std::optional<double> cheaper_than_after_s;
+    // On problems with an uncertainty:
+    std::optional<double> max_failure_share;         ///< at most, of the flights in the evaluation worlds
+    std::optional<double> certified_ratio;           ///< at least, of the attempted seeds
+    std::optional<double> first_certified_median_s;  ///< at most
 };
 
 /// Problems x objectives x variants x algorithms x parameters x margins x seeds, each of which is one run.
@@ -55,6 +59,8 @@ struct Campaign {
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;
     bool stop_at_first_solution = false;
+    /// Worlds of the problem's uncertainty in which every reported plan is flown, the same for all plans of a problem.
+    std::uint64_t evaluation_worlds = 0;
     std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor
     std::vector<CampaignExpectation> expect;
 };

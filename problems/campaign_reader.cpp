@@ -44,6 +44,10 @@ void add_errors_of_target(const Campaign& c, std::size_t i, std::vector<KeyError
         errors.push_back({path + (bar.cheaper_than ? "cheaper_than" : "cheaper_than_after_s"),
                           "is half of a comparison: expected cheaper_than and cheaper_than_after_s together"});
     }
+    if (bar.max_failure_share && c.evaluation_worlds == 0) {
+        errors.push_back({path + "max_failure_share",
+                          "asks for flights in worlds, but none are flown: expected evaluation_worlds of at least 1"});
+    }
     if (bar.cost_after_s && c.stop_at_first_solution) {
         errors.push_back({path + "cost_after_s",
                           "asks for costs, but searches stop at their first solution: expected stop_at_first_solution: "

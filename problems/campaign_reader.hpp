@@ -14,6 +14,9 @@ namespace downwash {
 struct ReadCampaign {
     Campaign campaign;
     std::vector<Problem> problems;
+    /// In whose worlds the plans for `problems` are flown, one for each: problems that differ from them in their
+    /// uncertainty alone. Empty: `problems` themselves. Not in files.
+    std::vector<Problem> evaluated_in = {};
 };
 
 /// Reads a campaign file and its problems, whose paths are relative to it. The result is sound: problems have names of

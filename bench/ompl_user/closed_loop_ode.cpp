@@ -13,7 +13,7 @@ struct Bodies {
 };
 
 /// Mass matrix and bias of the two bodies (docs/model.md 2).
-Bodies bodies(const PlantModel& p, const double q[4], const double u[4]) {
+Bodies bodies(const PlantNumbers<double>& p, const double q[4], const double u[4]) {
     const Eigen::Vector2d r(std::cos(q[2]) * p.joint_x_m + std::sin(q[2]) * p.joint_z_m,
                             -std::sin(q[2]) * p.joint_x_m + std::cos(q[2]) * p.joint_z_m);
     const double a = q[2] + q[3];
@@ -45,13 +45,13 @@ double limited(double value, double limit) {
 
 }  // namespace
 
-void ClosedLoopOde::operator()(const std::vector<double>& s, const double velocity[3],
-                               std::vector<double>& rates) const {
+void ClosedLoopOde::operator()(const double* s, const double velocity[3], double* rates) const {
     const PlantModel& p = model_.tick().plant;
     const auto& g = std::get<ModelInversion>(model_.tick().law);
     const double* q = &s[x];
     const double* u = &s[vx];
     const Bodies b = bodies(p, q, u);
+    const PlantNumbers<double>& real = world_ != nullptr ? world_->numbers.plant : p;
 
     // Position and arm (docs/model.md 5.1, 5.2): the accelerations to impose.
     const double error[3] = {s[reference_x] - q[0], s[reference_z] - q[1], s[reference_arm] - q[3]};
@@ -59,7 +59,7 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     for (int i = 0; i < 2; ++i) {
         const ModelInversion::AxisGains gains = g.axis_gains(i);
         wanted[i] = gains.kd * (velocity[i] - u[i]) + gains.kp * error[i] +
-                    limited(gains.ki * s[integral_x + static_cast<std::size_t>(i)], g.position_integral_limit_m_s2);
+                    limited(gains.ki * s[integral_x + i], g.position_integral_limit_m_s2);
     }
     wanted[3] = g.arm_kd * (velocity[2] - u[3]) + g.arm_kp * error[2] +
                 limited(g.arm_ki * s[integral_arm], g.arm_integral_limit_rad_s2);
@@ -87,19 +87,20 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
     for (int i = 0; i < p.rotor_count; ++i) {
         const double command =
             std::clamp(p.force_share[i] * thrust + p.torque_share_1_m[i] * demand[2], p.min_thrust_n, p.max_thrust_n);
-        const double hub_x = q[0] + std::cos(q[2]) * p.rotor_x_m[i] + std::sin(q[2]) * p.rotor_z_m[i];
-        const double hub_z = q[1] - std::sin(q[2]) * p.rotor_x_m[i] + std::cos(q[2]) * p.rotor_z_m[i];
-        const double factor = map_ != nullptr ? map_->factor(model_.rotor_layer(i), hub_x, hub_z) : 1;
-        acting_thrust += factor * command;
-        acting_torque -= p.rotor_x_m[i] * factor * command;
+        const double given_n = command * (world_ != nullptr ? world_->numbers.rotor_thrust_scale[i] : 1);
+        const double hub_x = q[0] + std::cos(q[2]) * real.rotor_x_m[i] + std::sin(q[2]) * real.rotor_z_m[i];
+        const double hub_z = q[1] - std::sin(q[2]) * real.rotor_x_m[i] + std::cos(q[2]) * real.rotor_z_m[i];
+        const double factor = factor_at(i, hub_x, hub_z);
+        acting_thrust += factor * given_n;
+        acting_torque -= real.rotor_x_m[i] * factor * given_n;
         power += p.power_coefficient_w_n1p5 * std::pow(command, 1.5);
     }
     const double joint_torque = limited(demand[3], p.max_joint_torque_nm);
     const Eigen::Vector4d acting(acting_thrust * std::sin(q[2]), acting_thrust * std::cos(q[2]), acting_torque,
                                  joint_torque);
-    const Eigen::Vector4d acceleration = b.mass.ldlt().solve(acting - b.bias);
+    const Bodies flying = world_ != nullptr ? bodies(real, q, u) : b;
+    const Eigen::Vector4d acceleration = flying.mass.ldlt().solve(acting - flying.bias);
 
-    rates.resize(size);
     for (std::size_t i = 0; i < 4; ++i) {
         rates[x + i] = u[i];
         rates[vx + i] = acceleration[static_cast<Eigen::Index>(i)];
@@ -113,6 +114,40 @@ void ClosedLoopOde::operator()(const std::vector<double>& s, const double veloci
         rates[reference_x + i] = velocity[i];
     }
     rates[energy] = power + std::abs(joint_torque * u[3]);
+}
+
+double ClosedLoopOde::factor_at(int rotor, double x_m, double z_m) const {
+    if (map_ == nullptr) {
+        return 1;
+    }
+    if (world_ == nullptr) {
+        return map_->factor(model_.rotor_layer(rotor), x_m, z_m);
+    }
+    const World& world = world_->world;
+    const double believed = map_->factor(model_.rotor_layer(rotor), x_m - world.scene_x_m, z_m - world.scene_z_m);
+    return 1 + (1 + world.ceiling_scale) * (believed - 1);
+}
+
+std::vector<double> ClosedLoopOde::hovered(std::vector<double> state, double seconds) const {
+    constexpr double step_s = 0.01;
+    const double still[3] = {};
+    std::vector<double> k[4];
+    std::vector<double> at;
+    for (double time_s = 0; time_s < seconds; time_s += step_s) {
+        at = state;
+        for (int stage = 0; stage < 4; ++stage) {
+            (*this)(at, still, k[stage]);
+            const double way_s = stage < 2 ? 0.5 * step_s : step_s;
+            for (std::size_t i = 0; i < size; ++i) {
+                at[i] = state[i] + way_s * k[stage][i];
+            }
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            state[i] += step_s / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+        }
+    }
+    state[energy] = 0;
+    return state;
 }
 
 std::vector<double> ClosedLoopOde::resting_at(double x_m, double z_m, double arm_rad) {

@@ -34,18 +34,33 @@ class ClosedLoopOde {
     };
 
     /// @param map surface effects; nullptr for none. Both outlive this object.
-    ClosedLoopOde(const FlightModel& model, const AeroMap* map) : model_(model), map_(map) {}
+    /// @param world what the plant has otherwise than the controller believes: masses, inertias, centre of mass, thrust
+    /// of all rotors and of each, K - 1 (its change below surfaces, for the whole map), place of the scene. Lag, delay,
+    /// drag with its wind, bias and noise are unknown to this model. nullptr: nothing; it outlives this object
+    ClosedLoopOde(const FlightModel& model, const AeroMap* map, const FlownWorld* world = nullptr)
+        : model_(model), map_(map), world_(world) {}
 
     /// The time derivative of a state.
     /// @param velocity of the reference, (x, z, arm)   @param rates resized to the state
-    void operator()(const std::vector<double>& state, const double velocity[3], std::vector<double>& rates) const;
+    void operator()(const std::vector<double>& state, const double velocity[3], std::vector<double>& rates) const {
+        rates.resize(size);
+        (*this)(state.data(), velocity, rates.data());
+    }
+    void operator()(const double* state, const double velocity[3], double* rates) const;
+
+    /// A state after a hover of so many seconds, no energy spent: classical Runge-Kutta steps of 10 ms.
+    [[nodiscard]] std::vector<double> hovered(std::vector<double> state, double seconds) const;
 
     /// Level and at rest at a configuration, the reference with it.
     [[nodiscard]] static std::vector<double> resting_at(double x_m, double z_m, double arm_rad);
 
  private:
+    /// K at a hub in the plane.
+    [[nodiscard]] double factor_at(int rotor, double x_m, double z_m) const;
+
     const FlightModel& model_;
     const AeroMap* map_;
+    const FlownWorld* world_;
 };
 
 }  // namespace downwash::bench

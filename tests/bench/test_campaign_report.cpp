@@ -313,7 +313,7 @@ TEST_CASE("the same table is there as CSV, with what is infinite left empty") {
     const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
     CHECK(csv.substr(first).starts_with("\"a \"\"bridge\"\", old\",energy,mp-arm-ada,rrt-star,,,4,0,4,"));
     CHECK(commas(csv.substr(first, second - first)) == commas(csv.substr(0, first)) + 1);
-    CHECK(csv.ends_with(",91,96.25,,,\r\n"));  // flown: 91, 98 and two infinite ones
+    CHECK(csv.ends_with(",91,96.25,,,,,,,,,,,\r\n"));  // flown: 91, 98 and two infinite ones
 }
 
 TEST_CASE("the report is the same in JSON, null for what is infinite") {
@@ -331,4 +331,48 @@ TEST_CASE("seeds that follow each other are told as a range") {
     CHECK(seeds_text({1, 2, 3, 7}) == "1-3 7");
     CHECK(seeds_text({5}) == "5");
     CHECK(seeds_text({4294967295U, 0}) == "4294967295 0");
+}
+
+TEST_CASE("flights in worlds are pooled over the seeds, with the interval of Clopper and Pearson") {
+    CampaignResults results = some_results();
+    CHECK(nlohmann::json::parse(json_of(report_of(results)))["cells"][0]["in_worlds"].is_null());
+    CHECK_THAT(markdown_of(report_of(results)), !Contains("In other worlds"));
+    for (std::size_t i = 0; i < 4; ++i) {
+        Run& run = results.runs[i];
+        run.certificate = CertificateFigures{i != 0, 300, i, 1};
+        run.first_certified_s = i != 0 ? std::optional(0.1 * static_cast<double>(i)) : std::nullopt;
+        run.in_worlds = WorldFigures{100, i, {{"aero.ceiling_scale", false, i == 3}}};
+    }
+    results.runs[6].in_worlds = WorldFigures{100, 90, {{"aero.ceiling_scale", true, true}}};  // collides anyway
+    results.plan.evaluation_worlds = 100;
+    CampaignExpectation target;
+    target.max_failure_share = 0.015;
+    target.certified_ratio = 0.75;
+    target.first_certified_median_s = 0.25;
+    results.plan.expectations = {target};
+    const CampaignReport report = report_of(results);
+    const WorldsFigures& figures = report.cells[0].in_worlds;
+    CHECK(figures.tested == 4);
+    CHECK(figures.certified.hits == 3);
+    CHECK(figures.certified.attempts == 4);
+    CHECK(figures.first_certified_s.median == Approx(0.25));  // 0.1, 0.2, 0.3, none
+    CHECK(figures.failed.hits == 6);
+    CHECK(figures.failed.attempts == 400);
+    CHECK(figures.failed.low == Approx(0.00552411));  // worked out by bisection of the binomial sums, apart from us
+    CHECK(figures.failed.high == Approx(0.0323613));
+    REQUIRE(figures.alone.size() == 1);
+    CHECK(figures.alone[0].failed_low == 0);
+    CHECK(figures.alone[0].failed_high == 1);
+    CHECK(report.cells[1].in_worlds.alone.empty());
+    CHECK(report.totals[1].in_worlds.failed.hits == 90);
+    CHECK(report.meets_its_targets());
+    results.plan.expectations[0].max_failure_share = 0.0149;
+    CHECK_FALSE(report_of(results).meets_its_targets());
+    results.runs[0].in_worlds.reset();
+    results.plan.expectations[0].certified_ratio = 0.76;
+    CHECK_FALSE(report_of(results).meets_its_targets());
+    CHECK_THAT(markdown_of(report),
+               Contains("| bridge, energy | mp-arm-ada rrt-star | aero.ceiling_scale | 0/4 | 1/4 |"));
+    CHECK_THAT(csv_of(report), Contains(",400,6,"));
+    CHECK_THAT(latex_of(report), Contains("6/400 [0.6, 3.2]"));
 }

@@ -58,7 +58,7 @@ std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> r
 auto figures_of(const Run& run) {
     return std::tie(run.experiment, run.planner, run.seed, run.status, run.wall_s, run.first_solution_s, run.cost,
                     run.nearest_approach_m, run.iterations, run.edges_simulated, run.states_checked, run.simulated_s,
-                    run.discarded, run.rejections, run.error);
+                    run.discarded, run.rejections, run.error, run.certificate, run.first_certified_s, run.in_worlds);
 }
 
 /// The first value of the first row that SQLite answers.
@@ -122,6 +122,9 @@ TEST_CASE("what is read from a file of results is what was written, by one progr
     written.rejections = {{"collision", 11}, {"bounds", 12}};
     written.flight = FlightFigures{Outcome::left_flyable_area, 1, 2, 3, 4, HUGE_VAL, 0.1};
     written.error = "a 'quoted'; error";
+    written.certificate = CertificateFigures{true, 437, 1, 3};
+    written.first_certified_s = 0.7;
+    written.in_worlds = WorldFigures{200, 7, {{"aero.ceiling_scale", false, true}, {"wind.steady_m_s.x", true, false}}};
     {
         CampaignStore store(folder / "results", plan, false);
         store.add(written);
@@ -144,6 +147,56 @@ TEST_CASE("what is read from a file of results is what was written, by one progr
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->outcome == Outcome::left_flyable_area);
     CHECK(read.flight->min_clearance_m == HUGE_VAL);
+}
+
+TEST_CASE("plans are flown in worlds that do not depend on threads, and certificates are kept") {
+    const ScratchFolder alone, together;
+    ReadCampaign read = small_campaign(2);
+    read.problems[0].uncertainty = Uncertainty();
+    read.problems[0].planner.worlds = 2;
+    read.campaign.variants = {Variant::mp_arm, Variant::mp_arm_ada};
+    read.campaign.evaluation_worlds = 9;
+    read.campaign.jobs = 1;
+    run_into(alone, read);
+    read.campaign.jobs = 2;
+    run_into(together, read);
+    CampaignResults results = results_in(alone);
+    CHECK(results.plan.evaluation_worlds == 9);
+    const auto flights_of = [](CampaignResults of) {
+        std::sort(of.runs.begin(), of.runs.end(),
+                  [](const Run& a, const Run& b) { return std::tie(a.planner, a.seed) < std::tie(b.planner, b.seed); });
+        std::vector<std::tuple<std::optional<WorldFigures>, std::optional<CertificateFigures>>> flights;
+        for (const Run& run : of.runs) {
+            flights.emplace_back(run.in_worlds, run.certificate);
+        }
+        return flights;
+    };
+    CHECK(flights_of(results) == flights_of(results_in(together)));
+    for (const Run& run : results.runs) {
+        CHECK(run.in_worlds.has_value() == (run.status == RunStatus::solved));
+        if (run.in_worlds) {
+            CHECK(run.in_worlds->worlds == 9);
+            CHECK(run.in_worlds->alone.size() >= 10);
+            CHECK(run.certificate.has_value());
+        }
+    }
+    CHECK(std::count_if(results.runs.begin(), results.runs.end(), [](const Run& run) { return run.in_worlds; }) >= 2);
+}
+
+TEST_CASE("plans made for one uncertainty are flown in the worlds of another") {
+    const ScratchFolder folder;
+    ReadCampaign read = small_campaign(1);
+    read.campaign.evaluation_worlds = 4;
+    read.evaluated_in = read.problems;
+    read.evaluated_in[0].uncertainty = Uncertainty();
+    run_into(folder, read);
+    for (const Run& run : results_in(folder).runs) {
+        CHECK_FALSE(run.certificate.has_value());
+        REQUIRE(run.in_worlds.has_value());
+        CHECK(run.in_worlds->worlds == 4);
+    }
+    read.evaluated_in[0].uncertainty->mass_scale = Spread::of_sd(0.1);
+    CHECK_THROWS_WITH(run_into(folder, read, true), Catch::Contains("evaluated in ceiling"));
 }
 
 TEST_CASE("a campaign varies the parameters of its algorithms") {

@@ -92,6 +92,34 @@ TEST_CASE("a user's closed loop flies as ours does, but for the controller's tic
     CHECK(factor > 1.05);
 }
 
+TEST_CASE("a user's particle in the nominal world moves as without worlds, and hovers with what it really weighs") {
+    const Problem problem = test::ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const auto map = model->make_map(problem.bounds);
+    const double velocity[3] = {0.3, -0.05, 0.2};
+    std::vector<double> plain, nominal;
+    const FlownWorld believed = make_world(problem.robot, {});
+    const std::vector<double> state = Ode::resting_at(-2, 4.7, 1);
+    ClosedLoopOde(*model, map.get())(state, velocity, plain);
+    ClosedLoopOde(*model, map.get(), &believed)(state, velocity, nominal);
+    for (std::size_t i = 0; i < Ode::size; ++i) {
+        CHECK(nominal[i] == Approx(plain[i]).margin(1e-12));
+    }
+
+    World heavy;
+    heavy.mass_scale = 0.1;
+    heavy.thrust_scale = -0.05;
+    const FlownWorld world = make_world(problem.robot, heavy);
+    const ClosedLoopOde ode(*model, nullptr, &world);
+    const std::vector<double> settled = ode.hovered(Ode::resting_at(1, 2, pi / 2), 20);
+    CHECK(settled[Ode::z] == Approx(2).margin(0.01));
+    std::vector<double> rates;
+    const double still[3] = {};
+    ode(settled, still, rates);
+    // 4.5 kg and 10 % of that more, an arm of 0.45 kg; rotors have to be asked for 1 / 0.95 of the weight.
+    CHECK(rates[Ode::energy] == Approx(4 * 2.9 * std::pow(5.4 * 9.80665 / 0.95 / 4, 1.5)).epsilon(1e-3));
+}
+
 TEST_CASE("a user's collisions are ours without a margin") {
     Problem problem = test::walled_problem();
     problem.obstacles.push_back({"pipe", Cylinder{0.3, 6, {0.2, 1, 0}}, {2, 0, 3}, {0.1, 0.2, 0.3}});

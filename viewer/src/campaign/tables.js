@@ -53,6 +53,30 @@ function flights_table(model) {
                  causes(cell.failures_by_cause)]));
 }
 
+/** What becomes of plans where not everything is as believed; null where nobody has tried. */
+function worlds_table(model) {
+    const rows = cells_of(model).filter(({cell}) => cell.in_worlds);
+    return rows.length === 0 ? null : table(
+        "In other worlds",
+        ["problem", "planner", "plans flown", "failed", "certified", "first certified, median", "95 %"], 2,
+        rows.map(({cell: {in_worlds: figures}, place}) =>
+                     [...place, String(figures.flown), figures.flown > 0 ? share(figures.failed) : "none",
+                      figures.tested > 0 ? share(figures.certified) : "not tested",
+                      seconds(figures.first_certified_s["50"]), seconds(figures.first_certified_s["95"])]));
+}
+
+/** The parameters that make plans fail alone. */
+function parameters_table(model) {
+    const rows = cells_of(model).flatMap(
+        ({cell, place}) => (cell.in_worlds?.alone ?? [])
+                               .filter((of) => of.failed_low + of.failed_high > 0)
+                               .map((of) => [...place, of.parameter, `${of.failed_low}/${of.plans}`,
+                                             `${of.failed_high}/${of.plans}`]));
+    return rows.length === 0 ? null : table(
+        "One parameter alone at the ends of its spread: plans that fail",
+        ["problem", "planner", "parameter", "at 2 %", "at 98 %"], 3, rows);
+}
+
 const quantiles = (spread, text) => ["25", "50", "75", "95"].map((q) => text(spread[q]));
 
 function times_table(model) {
@@ -146,6 +170,9 @@ export function make_tables(model) {
               "margin, and were not reported. Verified is the time to the first plan that may be reported; MP-ARM-ADA " +
               "has executed it with direct aerodynamics by then."),
         flights_table(model), figures.bars.length > 0 ? folded(`Targets (${figures.bars.length})`, bars_table(model)) : null,
+        ...[["In other worlds", worlds_table(model)], ["Parameters that decide alone", parameters_table(model)]]
+            .filter(([, content]) => content !== null)
+            .map(([title, content]) => folded(title, content)),
         folded("Time to the first solution", times_table(model)), folded("Costs", costs_table(model)),
         figures.comparisons.length > 0 ? folded("Paired comparisons", pairs_table(model)) : null,
         figures.margins.length > 0 ? folded("Margins", margins_tables(model).flat()) : null,

@@ -1,0 +1,78 @@
+#include "downwash/bench/plan_evaluation.hpp"
+
+#include <string>
+#include <utility>
+
+#include "downwash/problems/problem_model.hpp"
+
+namespace downwash::bench {
+namespace {
+
+/// The world in which one parameter is at a quantile of its spread and all else is as believed, noise included.
+World world_of(const WorldParameter& parameter, const Uncertainty& uncertainty, const Robot& robot, double at) {
+    const bool is_of_robot = parameter.believed != nullptr;
+    const double value =
+        (uncertainty.*parameter.spread).difference(at, is_of_robot ? parameter.believed(robot) : 0, is_of_robot);
+    World world;
+    (parameter.value != nullptr ? world.*parameter.value : world.rotor_thrust_scale[parameter.rotor]) = value;
+    return world;
+}
+
+}  // namespace
+
+PlanEvaluation::PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map,
+                               const std::filesystem::path& map_cache)
+    : problem_(std::move(problem)), world_count_(worlds), model_(make_flight_model(problem_)), map_(std::move(map)) {
+    free_.push_back(std::make_unique<WorldFlights>(problem_, model_, map_, 1, map_cache));
+    ceiling_ = free_.back()->ceiling();
+    const Robot& robot = problem_.robot;
+    const Uncertainty& uncertainty = problem_.uncertainty.value();
+    for (std::uint64_t i = 1; i <= worlds; ++i) {
+        worlds_.push_back(make_world(robot, draw_world(uncertainty, robot, evaluation_seed, i)));
+    }
+    const int rotors = model_->tick().plant.rotor_count;
+    for (const WorldParameter& parameter : world_parameters()) {
+        if ((uncertainty.*parameter.spread).form != Spread::Form::exact && parameter.rotor < rotors) {
+            parameters_.emplace_back(parameter.name);
+            for (const double at : {low_quantile, high_quantile}) {
+                worlds_.push_back(make_world(robot, world_of(parameter, uncertainty, robot, at)));
+            }
+        }
+    }
+}
+
+std::unique_ptr<WorldFlights> PlanEvaluation::take() {
+    {
+        const std::scoped_lock lock(free_mutex_);
+        if (!free_.empty()) {
+            std::unique_ptr<WorldFlights> flights = std::move(free_.back());
+            free_.pop_back();
+            return flights;
+        }
+    }
+    return std::make_unique<WorldFlights>(problem_, model_, map_, ceiling_, 1);
+}
+
+void PlanEvaluation::give_back(std::unique_ptr<WorldFlights> flights) {
+    const std::scoped_lock lock(free_mutex_);
+    free_.push_back(std::move(flights));
+}
+
+WorldFigures PlanEvaluation::evaluate(const Plan& plan) {
+    std::unique_ptr<WorldFlights> flights = take();
+    const std::vector<WorldFlight> flown = flights->fly(plan, flights->goals().size(), worlds_);
+    give_back(std::move(flights));
+    const auto fails = [&](std::size_t world) { return flown[world].rejection != Rejection::none; };
+    WorldFigures figures;
+    figures.worlds = world_count_;
+    for (std::size_t i = 0; i < world_count_; ++i) {
+        figures.failures += fails(i) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        const std::size_t low = world_count_ + 2 * i;
+        figures.alone.push_back({parameters_[i], fails(low), fails(low + 1)});
+    }
+    return figures;
+}
+
+}  // namespace downwash::bench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "downwash/bench/campaign_data.hpp"
+#include "downwash/planner/world_flights.hpp"
+
+namespace downwash::bench {
+
+/// Seed of the worlds in which campaigns fly plans. Searches have seeds below 2^32: none of them has seen these worlds.
+inline constexpr std::uint64_t evaluation_seed = std::uint64_t{1} << 32U;
+
+/// The quantiles at which a parameter is tried alone: the planner's own dangerous worlds have them too.
+inline constexpr double low_quantile = 0.02, high_quantile = 0.98;
+
+/// Flies plans of one problem in the same worlds, through the aero map. Safe to share between threads.
+class PlanEvaluation {
+ public:
+    /// @param problem has an uncertainty   @param worlds how many: indices 1 to `worlds` of evaluation_seed
+    /// @param map of the problem; nullptr for none   @param map_cache see FlightModel::make_map
+    PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map,
+                   const std::filesystem::path& map_cache);
+
+    /// @param plan through all goals of the problem
+    [[nodiscard]] WorldFigures evaluate(const Plan& plan);
+
+ private:
+    /// Flights that no other thread uses; given back when their owner is done.
+    std::unique_ptr<WorldFlights> take();
+    void give_back(std::unique_ptr<WorldFlights> flights);
+
+    Problem problem_;
+    std::uint64_t world_count_;
+    std::shared_ptr<const FlightModel> model_;
+    std::shared_ptr<const AeroMap> map_;
+    CeilingPart ceiling_;
+    std::vector<std::string> parameters_;  ///< that are not exact
+    std::vector<FlownWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
+
+    std::mutex free_mutex_;
+    std::vector<std::unique_ptr<WorldFlights>> free_;
+};
+
+}  // namespace downwash::bench

@@ -1,0 +1,109 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/progress.hpp"
+#include "downwash/cli/usage_error.hpp"
+
+namespace downwash::cli {
+namespace {
+
+struct StudyUncertaintyArguments {
+    std::vector<std::string> problems;
+    std::string out = "downwash-out/study-uncertainty";
+    bench::StudySettings settings;
+    bool no_cache = false, is_quiet = false, as_json = false;
+};
+
+/// The problems in the folder problems/, in the order of their names.
+std::vector<std::string> shipped_problems() {
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator("problems", error)) {
+        if (entry.path().extension() == ".yaml") {
+            files.push_back(entry.path().string());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    if (files.empty()) {
+        throw UsageError("there is no problem in the folder problems/: expected --problem FILE...");
+    }
+    return files;
+}
+
+bench::StudySettings settings_of(const StudyUncertaintyArguments& given) {
+    bench::StudySettings settings = given.settings;
+    for (const std::string& file : given.problems.empty() ? shipped_problems() : given.problems) {
+        Problem problem = read_problem(file, {}, given.is_quiet ? nullptr : print_outdated);
+        if (!problem.uncertainty) {
+            throw UsageError("{}: has no uncertainty to study: expected `uncertainty: {{}}` or more in it", file);
+        }
+        if (std::any_of(settings.problems.begin(), settings.problems.end(),
+                        [&](const Problem& other) { return other.name == problem.name; })) {
+            throw UsageError("--problem: two problems have the name {}", problem.name);
+        }
+        settings.problems.push_back(std::move(problem));
+    }
+    return settings;
+}
+
+ExitCode run(const StudyUncertaintyArguments& given) {
+    const Interruption interruption;
+    const std::vector<bench::StudyPart> parts = bench::parts_of(settings_of(given));
+    const OutputFolder folder(given.out);
+    {
+        bench::CampaignRunOptions options;
+        options.out = folder.path();
+        options.map_cache = cache_folder(given.no_cache);
+        options.stop = interruption.token();
+        ProgressDisplay display(given.is_quiet);
+        display.say(fmt::format("study uncertainty: writing results to {}", given.out));
+        options.on_progress = [&](double share) { display.show("study uncertainty", share); };
+        options.on_map_progress = [&](const std::string& problem, double share) {
+            display.show("aero map of " + problem, share);
+        };
+        bench::run_study(parts, options);
+    }
+    const bench::StudyFigures figures = bench::figures_of(parts, folder.path());
+    folder.write("study.json", bench::json_of(figures) + "\n");
+    folder.write("study.md", bench::markdown_of(figures));
+    if (given.as_json) {
+        fmt::print("{}\n", bench::json_of(figures));
+    } else {
+        fmt::print("{}", bench::markdown_of(figures));
+    }
+    return figures.done == figures.planned ? ExitCode::done : interruption.code();
+}
+
+}  // namespace
+
+void add_study_uncertainty(CLI::App& study, Action& action) {
+    auto [command, given] =
+        add_command(study, action, "uncertainty",
+                    "Compare plans made as if all were as believed, with margins, in one pessimistic world and in "
+                    "several worlds: how "
+                    "often they are found and fail, what they cost. Continues with the results that are there",
+                    run);
+    add_value(command, "--problem FILE...", given.problems, "problem files; default: all in the folder problems/");
+    add_value(command, "--seeds N", given.settings.seeds, "searches of each setup on each problem; default 20")
+        ->check(CLI::Range(1, 100000));
+    add_value(command, "--time-limit S", given.settings.time_limit_s, "of each search [s]; default 5")
+        ->check(CLI::Range(0.01, 1e6));
+    add_value(command, "--worlds M", given.settings.worlds,
+              "fresh worlds in which every reported plan is flown; default 300")
+        ->check(CLI::Range(1, 1000000));
+    add_value(command, "--jobs N", given.settings.jobs, "searches at a time; default: one per processor")
+        ->check(CLI::Range(1, 256));
+    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/study-uncertainty/");
+    add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
+    add_json(command, given.as_json);
+}
+
+}  // namespace downwash::cli
