@@ -8,7 +8,7 @@ using Catch::StartsWith;
 
 TEST_CASE("A study is run into a folder, reported, and continued") {
     const Workspace work;
-    const std::string problem = problem_file("open_air");
+    const std::string problem = shipped_file("open_air");
     const char* const rest = "--seeds 1 --time-limit 0.05 --worlds 2 --out out --quiet";
     const Result first = work.succeed("study uncertainty --problem", problem, rest);
     CHECK_THAT(first.out, StartsWith("# Study: uncertainty\n") && Contains("22 of 22 runs done."));
@@ -27,7 +27,7 @@ TEST_CASE("A study says which problems it cannot use") {
     const Result none = work.run("study uncertainty --out out");
     CHECK(none.code == 2);
     CHECK_THAT(none.err, Contains("there is no problem in the folder problems/"));
-    write_file(work.in_run("sure.yaml"), replaced(problem_text("open_air"), "uncertainty: {}", "uncertainty: none"));
+    write_file(work.in_run("sure.yaml"), problem_text("open_air"));
     const Result sure = work.run("study uncertainty --problem sure.yaml --out out");
     CHECK(sure.code == 2);
     CHECK_THAT(sure.err, Contains("has no uncertainty to study"));
