@@ -124,6 +124,7 @@ FlownWorld ProblemWorlds::world(std::uint64_t index) const {
 
 void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples) {
     std::vector<FlownWorld> worlds;
+    worlds.reserve(samples.size());
     for (const WorldSample& sample : samples) {
         worlds.push_back(world(sample.world));
     }

@@ -59,7 +59,7 @@ void ClosedLoopOde::operator()(const double* s, const double velocity[3], double
     for (int i = 0; i < 2; ++i) {
         const ModelInversion::AxisGains gains = g.axis_gains(i);
         wanted[i] = gains.kd * (velocity[i] - u[i]) + gains.kp * error[i] +
-                    limited(gains.ki * s[integral_x + i], g.position_integral_limit_m_s2);
+                    limited(gains.ki * s[integral_x + static_cast<std::size_t>(i)], g.position_integral_limit_m_s2);
     }
     wanted[3] = g.arm_kd * (velocity[2] - u[3]) + g.arm_kp * error[2] +
                 limited(g.arm_ki * s[integral_arm], g.arm_integral_limit_rad_s2);

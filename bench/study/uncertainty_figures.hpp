@@ -56,7 +56,7 @@ inline constexpr const char* reference_setup = "mp-arm-ada, as believed, margin 
 [[nodiscard]] StudyFigures figures_of(const std::vector<StudyPart>& parts, const std::filesystem::path& folder);
 
 /// The claims that the study can check, from the setups of all problems together.
-[[nodiscard]] std::vector<Finding> findings_of(const std::vector<SetupFigures>& setups);
+[[nodiscard]] std::vector<Finding> findings_of(const std::vector<SetupFigures>& all);
 
 /// A page for people.
 [[nodiscard]] std::string markdown_of(const StudyFigures& figures);
