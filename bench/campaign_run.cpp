@@ -77,6 +77,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"time_limit_s", number_or_none(time_limit_of(c))},
         {"max_iterations", c.max_iterations ? std::to_string(*c.max_iterations) : "none"},
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
+        {"as_believed", c.as_believed ? "true" : "false"},
         {"evaluation_worlds", std::to_string(c.evaluation_worlds)},
         {"variants", listed(c.variants, [](Variant v) { return downwash::name_of(v); })},
         {"algorithms", listed(c.algorithms, [](const std::string& a) { return a; })},

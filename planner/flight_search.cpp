@@ -71,7 +71,8 @@ class FlightSearch {
     std::optional<Obstruction> discarded_;    ///< what discarded the last plan that was
     std::uint64_t attempts_;                  ///< plans that asked for a certificate
     std::optional<Certificate> certificate_;  ///< of the plan that was executed last
-    /// Of the plans without a certificate the one that failed in the least share of worlds.
+    /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
+    /// interrupted after a few worlds says little.
     struct Uncertified {
         Plan plan;
         double cost;
@@ -104,8 +105,7 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
     if (certificate_->is_given) {
         return true;
     }
-    if (!uncertified_ ||
-        certificate_->failure_probability.estimate < uncertified_->certificate.failure_probability.estimate) {
+    if (!uncertified_ || certificate_->failure_probability.high < uncertified_->certificate.failure_probability.high) {
         uncertified_ = {plan, cost, *certificate_};
     }
     discarded_ = Obstruction{"certificate", plan.last(), 0};

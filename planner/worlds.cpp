@@ -66,22 +66,6 @@ std::vector<double> search_quantiles(std::uint64_t number) {
     return quantiles;
 }
 
-/// The outcome of a flight that ended so.
-Outcome outcome_of(Rejection rejection) {
-    switch (rejection) {
-        case Rejection::none:
-            return Outcome::ok;
-        case Rejection::collision:
-            return Outcome::collision;
-        case Rejection::flyable_area:
-            return Outcome::left_flyable_area;
-        case Rejection::goal_missed:
-            return Outcome::goal_missed;
-        default:
-            return Outcome::unstable;
-    }
-}
-
 }  // namespace
 
 ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,

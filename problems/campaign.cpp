@@ -109,6 +109,9 @@ void add_limits(Rows& rows) {
     rows.push_back(parameters::flag<Campaign>(
         "stop_at_first_solution", "end a search with the first plan that is accepted",
         [](auto& c) -> auto& { return c.stop_at_first_solution; }));
+    rows.push_back(parameters::flag<Campaign>(
+        "as_believed", "plan as with `uncertainty: none`; evaluation_worlds stay those of each problem's uncertainty",
+        [](auto& c) -> auto& { return c.as_believed; }));
     rows.push_back(parameters::integer<Campaign>(
                        "evaluation_worlds",
                        "worlds of its problem's uncertainty in which every reported plan is flown; no "

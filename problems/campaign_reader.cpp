@@ -142,6 +142,12 @@ ReadCampaign read_campaign(const std::filesystem::path& file,
     if (!errors.empty()) {
         throw ProblemFileError(std::move(errors));
     }
+    if (read.campaign.as_believed) {
+        read.evaluated_in = read.problems;
+        for (Problem& problem : read.problems) {
+            problem.uncertainty.reset();
+        }
+    }
     return read;
 }
 

@@ -15,7 +15,7 @@ struct ReadCampaign {
     Campaign campaign;
     std::vector<Problem> problems;
     /// In whose worlds the plans for `problems` are flown, one for each: problems that differ from them in their
-    /// uncertainty alone. Empty: `problems` themselves. Not in files.
+    /// uncertainty alone. Empty: `problems` themselves.
     std::vector<Problem> evaluated_in = {};
 };
 

@@ -18,19 +18,6 @@ using Given = controllers::Actuation<double>;
 
 constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
 
-Outcome outcome_of(Rejection rejection) {
-    switch (rejection) {
-        case Rejection::collision:
-            return Outcome::collision;
-        case Rejection::flyable_area:
-            return Outcome::left_flyable_area;
-        case Rejection::none:
-            return Outcome::ok;
-        default:
-            return Outcome::unstable;
-    }
-}
-
 /// Writes the log of one flight while it is flown.
 template <class Factor, class Ceiling>
 class Recorder {
@@ -236,6 +223,21 @@ auto with_effects(const FlightModel& model, bool aero, const FlightWorld& in, co
 
 std::string_view name_of(Outcome outcome) {
     return outcome_names[static_cast<std::size_t>(outcome)];
+}
+
+Outcome outcome_of(Rejection rejection) {
+    switch (rejection) {
+        case Rejection::collision:
+            return Outcome::collision;
+        case Rejection::flyable_area:
+            return Outcome::left_flyable_area;
+        case Rejection::goal_missed:
+            return Outcome::goal_missed;
+        case Rejection::none:
+            return Outcome::ok;
+        default:
+            return Outcome::unstable;
+    }
 }
 
 std::int64_t hold_ticks(const Goal& goal, const FlightModel& model, const ReferencePoint& at) {

@@ -22,6 +22,9 @@ inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcom
 /// The outcome's name in files, for example "left_flyable_area".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome);
 
+/// How a flight that ended early for this reason counts; `unstable` where no other outcome says why.
+[[nodiscard]] DOWNWASH_EXPORT Outcome outcome_of(Rejection rejection);
+
 /// The vehicle at one control tick and the commands it holds until the next; SI units, plane coordinates.
 struct FlightRow {
     double t_s = 0;

@@ -65,6 +65,18 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
           std::vector<std::uint32_t>{7, 1, 4294967295U});
 }
 
+TEST_CASE("a campaign as believed plans without uncertainty and judges with it") {
+    const CampaignFolder folder;
+    folder.folder.write("problem.yaml", std::string(good_problem) + "uncertainty: {}\n");
+    const ReadCampaign usual = folder.read(good_campaign);
+    CHECK(usual.problems[0].uncertainty.has_value());
+    CHECK(usual.evaluated_in.empty());
+    const ReadCampaign believed = folder.read(std::string(good_campaign) + "as_believed: true\n");
+    CHECK_FALSE(believed.problems[0].uncertainty.has_value());
+    REQUIRE(believed.evaluated_in.size() == 1);
+    CHECK(believed.evaluated_in[0].uncertainty.has_value());
+}
+
 TEST_CASE("what cannot be run in a campaign is an error with its place and a remedy") {
     static const Edit edits[] = {
         {"campaign/v1", "campaign/v2",
