@@ -68,9 +68,10 @@ class FlightSearch {
     FlightState start_;                   ///< of the whole flight
     std::optional<Execution> execution_;  ///< made last
     double execution_wall_s_ = 0;
-    std::optional<Obstruction> discarded_;    ///< what discarded the last plan that was
-    std::uint64_t attempts_;                  ///< plans that asked for a certificate
-    std::optional<Certificate> certificate_;  ///< of the plan that was executed last
+    std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
+    std::uint64_t attempts_;                       ///< plans that asked for a certificate
+    std::optional<Certificate> certificate_;       ///< of the plan that was executed last
+    std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
     /// interrupted after a few worlds says little.
     struct Uncertified {
@@ -84,6 +85,7 @@ class FlightSearch {
 
 /// Executes a plan and says whether it counts: that of MP-ARM-ADA has to reach its goal and to keep the margin.
 bool FlightSearch::survives_execution(const Plan& plan, double cost) {
+    counterexamples_.clear();
     clock_.found_first(clock_.seconds());
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
@@ -109,6 +111,7 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
         uncertified_ = {plan, cost, *certificate_};
     }
     discarded_ = Obstruction{"certificate", plan.last(), 0};
+    counterexamples_ = worlds_->counterexamples(*certificate_, before_);
     return false;
 }
 
@@ -205,6 +208,7 @@ void FlightSearch::run_tree() {
     planner.set_hooks({[&](const Candidate& candidate) {
                            return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
                        },
+                       [&] { return std::exchange(counterexamples_, {}); },
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "downwash/planner/world_flights.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/flight.hpp"
 

@@ -31,19 +31,13 @@ double min_clearance_m(const FlightJob& job) {
     return least_m;
 }
 
-}  // namespace
-
-FlightRules rules_of_execution() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    FlightRules rules;
-    rules.margin_m = 0;
-    rules.bounds = {-infinity, infinity, -infinity, infinity};
-    rules.max_tracking_error_m = infinity;
-    rules.max_arm_error_rad = infinity;
-    rules.max_saturation = infinity;
+FlightRules rules_with_clearance() {
+    FlightRules rules = rules_of_execution();
     rules.finds_min_clearance = true;
     return rules;
 }
+
+}  // namespace
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
                            std::shared_ptr<const AeroMap> map, CeilingPart ceiling, int threads)
@@ -68,7 +62,7 @@ WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightM
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
-        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_of_execution(), &goals_[goal], threads_,
+        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_with_clearance(), &goals_[goal], threads_,
                                                     best_instructions(), &ceiling_);
     }
     return *pools_[goal];

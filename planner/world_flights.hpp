@@ -63,8 +63,4 @@ class DOWNWASH_EXPORT WorldFlights {
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 
-/// The rules of a flight that only has to succeed: it may leave bounds and reference, and ask more of rotors and joint
-/// than they have. It ends where it touches something, tumbles or leaves the flyable area.
-[[nodiscard]] DOWNWASH_EXPORT FlightRules rules_of_execution();
-
 }  // namespace downwash

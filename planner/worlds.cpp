@@ -82,24 +82,56 @@ SearchWorlds ProblemWorlds::for_search(const Course& before) {
         search.worlds.push_back(
             make_world(problem_.robot, world_at(*problem_.uncertainty, problem_.robot, search_quantiles(i), tape)));
     }
-    const std::vector<std::optional<FlightState>> starts = flights_.starts_in(search.worlds);
-    std::vector<FlightJob> jobs;
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-        if (!starts[i]) {
+    for (const std::optional<FlightState>& vehicle : vehicles_after(before, search.worlds)) {
+        if (!vehicle) {
             throw_input_error(
                 "is so wide that the vehicle cannot hover at its start in one of the worlds of the search: "
                 "expected less, or a controller that bears it",
                 "uncertainty");
         }
-        jobs.push_back({*starts[i], {}, 0, &search.worlds[i]});
-    }
-    if (!before.plan.reference.empty()) {
-        flights_.advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
-    }
-    for (const FlightJob& job : jobs) {
-        search.start.push_back(job.legs.empty() ? job.start : job.end());
+        search.start.push_back(*vehicle);
     }
     return search;
+}
+
+/// Nothing for worlds in which the vehicle cannot hover at its start, or fly the course.
+std::vector<std::optional<FlightState>> ProblemWorlds::vehicles_after(const Course& before,
+                                                                      std::span<const FlownWorld> worlds) {
+    std::vector<std::optional<FlightState>> vehicles = flights_.starts_in(worlds);
+    if (before.plan.reference.empty()) {
+        return vehicles;
+    }
+    std::vector<FlightJob> jobs;
+    std::vector<std::size_t> world_of;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (vehicles[i]) {
+            jobs.push_back({*vehicles[i], {}, 0, &worlds[i]});
+            world_of.push_back(i);
+        }
+    }
+    flights_.advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+    }
+    return vehicles;
+}
+
+std::vector<Counterexample> ProblemWorlds::counterexamples(const Certificate& certificate, const Course& before) {
+    constexpr std::size_t most = 4;
+    std::vector<FlownWorld> worlds;
+    for (const WorldSample& sample : certificate.worst) {
+        if (sample.outcome != Outcome::ok && worlds.size() < most) {
+            worlds.push_back(world(sample.world));
+        }
+    }
+    const std::vector<std::optional<FlightState>> vehicles = vehicles_after(before, worlds);
+    std::vector<Counterexample> counterexamples;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (vehicles[i]) {
+            counterexamples.push_back({std::move(worlds[i]), *vehicles[i]});
+        }
+    }
+    return counterexamples;
 }
 
 FlownWorld ProblemWorlds::world(std::uint64_t index) const {

@@ -22,6 +22,9 @@ class ProblemWorlds {
     /// @throws InputError when the vehicle cannot hover at its start in some of them
     [[nodiscard]] SearchWorlds for_search(const Course& before);
 
+    /// Worlds in which a plan failed its certificate, with the vehicle there at the end of the course.
+    [[nodiscard]] std::vector<Counterexample> counterexamples(const Certificate& certificate, const Course& before);
+
     /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that is_over ends in the
     /// middle of that has not passed.
     /// @param whole through the first `visits` goals of the problem   @param attempt from 1
@@ -30,6 +33,8 @@ class ProblemWorlds {
                                       const std::function<bool()>& is_over);
 
  private:
+    [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
+                                                                         std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
     /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
     void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples);

@@ -75,14 +75,15 @@ void FlightTreePlanner::setup() {
 
 void FlightTreePlanner::clear() {
     Planner::clear();
-    flights_.forget_statistics();
-    refined_flights_.forget_statistics();
+    flights_.forget();
+    refined_flights_.forget();
     refiner_.reset();
     growth_.reset();
     iterations_ = 0;
     best_.reset();
     handed_over_.clear();
     handed_over_cost_ = HUGE_VAL;
+    idle_rounds_ = 0;
     tree_left_ = refiner_left_ = 0;
 }
 
@@ -117,7 +118,7 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
     }
     const auto is_done = [this] { return best_ && stops_at_first_plan_; };
     while (!terminated && !is_used_up() && !is_done()) {
-        if (growth_->has_plan()) {
+        if (growth_->has_plan() || refined_flights_.has_counterexamples()) {
             go_on_side_by_side(terminated);
         } else {
             grow();
@@ -239,25 +240,28 @@ void FlightTreePlanner::refine() {
     if (handed_over_.empty()) {
         refiner_->improve();
     }
-    for (const Plan& plan : std::exchange(handed_over_, {})) {
-        refiner_->take(plan);
+    for (const HandedOver& handed_over : std::exchange(handed_over_, {})) {
+        refiner_->take(handed_over.plan, handed_over.as_it_is);
     }
     refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + parameters_.refine_work;
 }
 
 /// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
 void FlightTreePlanner::hand_to_refiner() {
-    const FlightNode* const best = growth_->best_hold();
+    const bool is_idle = refiner_->best() == nullptr && handed_over_.empty();
+    idle_rounds_ = is_idle ? idle_rounds_ + 1 : 0;
+    const bool has_counterexamples = refined_flights_.has_counterexamples();
+    const FlightNode* const best =
+        is_idle && has_counterexamples ? growth_->hold_by_rank(idle_rounds_ - 1) : growth_->best_hold();
     if (best == nullptr) {
         return;
     }
-    const bool is_idle = refiner_->best() == nullptr && handed_over_.empty();
     if (is_idle || best->cost < (1 - parameters_.worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
-        handed_over_.push_back(growth_->tree().plan_to(*best));
+        handed_over_.push_back({growth_->tree().plan_to(*best)});
     } else if (refiner_->best() != nullptr && refiner_->wants_plan()) {
         if (const FlightNode* hold = growth_->hold_away_from(refiner_->best()->points)) {
-            handed_over_.push_back(growth_->tree().plan_to(*hold));
+            handed_over_.push_back({growth_->tree().plan_to(*hold)});
         }
     }
 }
@@ -266,7 +270,8 @@ void FlightTreePlanner::hand_to_refiner() {
 std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double min_gain) const {
     const double to_beat = best_ ? (1 - min_gain) * best_->cost : HUGE_VAL;
     const FlownPlan* const refined = refiner_->best();
-    FlightNode* const hold = growth_->best_hold();
+    // The tree does not fly in counterexamples; what it finds has to pass the refiner first.
+    FlightNode* const hold = refined_flights_.has_counterexamples() ? nullptr : growth_->best_hold();
     if (refined != nullptr && refined->cost < to_beat && (hold == nullptr || refined->cost <= hold->cost)) {
         return Proposal{{refiner_->moments_of(*refined), refined->cost, iterations_}, refiner_->best_number()};
     }
@@ -292,13 +297,34 @@ void FlightTreePlanner::settle(Proposal proposal) {
         return;
     }
     flights_.count_rejection("direct_flight");
-    if (proposal.hold == nullptr) {
+    if (std::vector<Counterexample> found; hooks_.counterexamples && !(found = hooks_.counterexamples()).empty()) {
+        learn_from(proposal, std::move(found));
+    } else if (proposal.hold == nullptr) {
         refiner_->drop(proposal.refined);
         if (best_) {
-            handed_over_.push_back(plan_through(best_->moments, task_.model.tick().tick_s));
+            handed_over_.push_back({plan_through(best_->moments, task_.model.tick().tick_s)});
         }
-    } else if (proposal.hold->cost == proposal.candidate.cost) {
+    }
+    if (proposal.hold == nullptr) {
+        return;
+    }
+    if (proposal.hold->cost == proposal.candidate.cost) {
         growth_->discard(*proposal.hold);  // unless it was rewired meanwhile: a new flight, a new chance
+    }
+}
+
+/// From now on the refiner flies in these worlds, too, and takes its plans on anew.
+void FlightTreePlanner::learn_from(const Proposal& failed, std::vector<Counterexample> counterexamples) {
+    const bool is_refiners_best =
+        failed.hold == nullptr && refiner_->best() != nullptr && refiner_->best_number() == failed.refined;
+    refined_flights_.join(std::move(counterexamples));
+    bool is_best = true;
+    for (Plan& plan : refiner_->release()) {
+        handed_over_.push_back({std::move(plan), !(is_best && is_refiners_best)});
+        is_best = false;
+    }
+    if (!is_refiners_best) {
+        handed_over_.push_back({plan_through(failed.candidate.moments, task_.model.tick().tick_s), false});
     }
 }
 

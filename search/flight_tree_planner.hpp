@@ -26,6 +26,8 @@ struct CandidateHooks {
     /// Executes a plan, if need be, and says whether it counts; false discards it and the search goes on. Called with
     /// one plan at a time, but on any thread and beside the search: it may touch nothing that the search works on.
     std::function<bool(const Candidate&)> survives_execution = {};
+    /// The worlds in which the last plan failed that did not survive, if the search may learn from them.
+    std::function<std::vector<Counterexample>()> counterexamples = {};
     /// Told of every plan that counts, when the search takes it on; each is cheaper than the one before.
     std::function<void(const Candidate&)> accept = {};
 };
@@ -90,6 +92,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::optional<Proposal> proposal(double min_gain) const;
     void execute(Proposal& proposal) const;
     void settle(Proposal proposal);
+    void learn_from(const Proposal& failed, std::vector<Counterexample> counterexamples);
     void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
     [[nodiscard]] double work_beside(const Candidate& candidate) const;
     ompl::base::PlannerStatus report_solution();
@@ -111,8 +114,14 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::optional<PlanRefiner> refiner_;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> best_;
-    std::vector<Plan> handed_over_;       ///< the refiner takes them on in the next round
+    /// A plan that the refiner takes on in the next round, changed if the plan itself is known to fail.
+    struct HandedOver {
+        Plan plan;
+        bool as_it_is = true;
+    };
+    std::vector<HandedOver> handed_over_;
     double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
+    std::size_t idle_rounds_ = 0;         ///< in a row, in which the refiner had no plan
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
     double refiner_left_ = 0;             ///< the same of the refiner
 };

@@ -20,6 +20,12 @@ constexpr int batches_to_come_near = 60;
 constexpr double near_cost_ratio = 1.05;
 constexpr int batches_to_overtake = 180;
 
+/// In how many batches a plan that fails in counterexamples may be changed, and with which share of the largest steps.
+constexpr int repair_batches = 6;
+constexpr double repair_step = 0.3;
+/// Shares of the goal's tolerance that its end may use up then.
+constexpr double repair_shares[] = {0.6, 0.3, 0.0};
+
 /// A plan so much dearer than the best is not worth working on.
 constexpr double max_cost_ratio = 1.5;
 
@@ -60,6 +66,16 @@ double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, cons
     return cost;
 }
 
+/// @param from where the job begins   @param cost in the nominal world up to there
+double PlanRefiner::nominal_cost_after(double cost, const FlightState& from, const FleetJob& job) const {
+    const FlightState* before = &from;
+    for (const FlightLeg& leg : job.legs()) {
+        cost = flights_.cost_after(cost, *before, leg);
+        before = &leg.end;
+    }
+    return cost;
+}
+
 FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const FleetJob& job) const {
     FlownPlan plan;
     plan.points = change.points;
@@ -67,36 +83,95 @@ FlownPlan PlanRefiner::flown(const FlownPlan& base, const Change& change, const 
     const auto kept = static_cast<std::ptrdiff_t>(change.first) + 1;
     plan.fleets.assign(base.fleets.begin(), base.fleets.begin() + kept);
     plan.costs.assign(base.costs.begin(), base.costs.begin() + kept);
+    plan.nominal_costs.assign(base.nominal_costs.begin(), base.nominal_costs.begin() + kept);
     const std::size_t hold = job.legs().size() - 1;
     for (std::size_t leg = 0; leg < hold; ++leg) {
         plan.costs.push_back(flights_.cost_after(plan.costs.back(), plan.fleets.back(), job, leg));
+        plan.nominal_costs.push_back(
+            flights_.cost_after(plan.nominal_costs.back(), plan.fleets.back().front(), job.legs()[leg]));
         plan.fleets.push_back(job.fleet_after(leg));
     }
     plan.cost = flights_.cost_after(plan.costs.back(), plan.fleets.back(), job, hold);
+    plan.nominal_cost = flights_.cost_after(plan.nominal_costs.back(), plan.fleets.back().front(), job.legs()[hold]);
     plan.fleets.push_back(job.end());
     return plan;
 }
 
-void PlanRefiner::take(const Plan& plan) {
+std::vector<std::optional<FlownPlan>> PlanRefiner::flown_whole(const std::vector<Change>& plans) {
+    FlownPlan start;
+    start.fleets.push_back(flights_.fleet_at_start(start_.vehicle));
+    start.costs.push_back(0);
+    start.nominal_costs.push_back(0);
+    std::vector<FleetJob> jobs;
+    for (const Change& plan : plans) {
+        jobs.push_back(job_for(start.fleets[0], plan, 0, plan.ticks.size() - 1));
+    }
+    flights_.fly(jobs);
+    std::vector<std::optional<FlownPlan>> flown_plans(plans.size());
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        if (jobs[i].is_accepted()) {
+            Change whole = plans[i];
+            whole.first = 0;
+            flown_plans[i] = flown(start, whole, jobs[i]);
+        }
+    }
+    return flown_plans;
+}
+
+/// The cheapest of some changed plans that fly in all worlds, of the first batch that has any.
+std::optional<FlownPlan> PlanRefiner::repaired(const Change& plan) {
+    for (int batch = 0; batch < repair_batches; ++batch) {
+        std::vector<Change> changes;
+        if (batch == 0) {
+            for (const double share : repair_shares) {
+                if (auto change = moved_into_goal(plan, share)) {
+                    changes.push_back(std::move(*change));
+                }
+            }
+        }
+        for (int tries = 0; tries < 4 * changes_side_by_side && changes.size() < changes_side_by_side; ++tries) {
+            if (auto change = changed(plan.points, plan.ticks, repair_step)) {
+                changes.push_back(std::move(*change));
+            }
+        }
+        std::optional<FlownPlan> best;
+        for (std::optional<FlownPlan>& flown : flown_whole(changes)) {
+            if (flown && (!best || flown->cost < best->cost)) {
+                best = std::move(flown);
+            }
+        }
+        if (best) {
+            return best;
+        }
+    }
+    return std::nullopt;
+}
+
+void PlanRefiner::take(const Plan& plan, bool as_it_is) {
     if (plan.reference.size() < 2) {
         return;  // the start meets the goal: there is nothing on the way
     }
-    Change change;
+    Change whole;
     for (std::size_t i = 0; i < plan.reference.size(); ++i) {
-        change.points.push_back(plan.reference[i].point);
+        whole.points.push_back(plan.reference[i].point);
         if (i > 0) {
-            change.ticks.push_back(plan.reference[i].tick - plan.reference[i - 1].tick);
+            whole.ticks.push_back(plan.reference[i].tick - plan.reference[i - 1].tick);
         }
     }
-    FlownPlan base;
-    base.fleets.push_back(flights_.task().fleet_from(start_.vehicle));
-    base.costs.push_back(0);
-    std::vector<FleetJob> jobs{job_for(base.fleets[0], change, 0, change.ticks.size() - 1)};
-    flights_.fly(jobs);
-    if (!jobs[0].is_accepted()) {
-        return;
+    std::optional<FlownPlan> flown;
+    if (as_it_is) {
+        flown = std::move(flown_whole({whole}).front());
     }
-    Track track{flown(base, change, jobs[0]), ++taken_};
+    if (!flown && flights_.has_counterexamples()) {
+        flown = repaired(whole);
+    }
+    if (flown) {
+        add(std::move(*flown));
+    }
+}
+
+void PlanRefiner::add(FlownPlan plan) {
+    Track track{std::move(plan), ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
         if (!tracks_.empty()) {
             tracks_.front().batches = 0;  // it has its turns to overtake before it
@@ -108,21 +183,46 @@ void PlanRefiner::take(const Plan& plan) {
     }
 }
 
-std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
-    auto drawn = changes_.draw(track.plan.points, track.plan.ticks, track.step);
-    if (!drawn) {
+std::vector<Plan> PlanRefiner::release() {
+    std::vector<Plan> plans;
+    for (const Track& track : tracks_) {
+        plans.push_back(plan_through(moments_of(track.plan), flights_.task().model.tick().tick_s));
+    }
+    tracks_.clear();
+    return plans;
+}
+
+std::optional<PlanRefiner::Change> PlanRefiner::changed(const std::vector<ReferencePoint>& points,
+                                                        const std::vector<std::int64_t>& ticks, double step) {
+    auto drawn = changes_.draw(points, ticks, step);
+    return drawn ? timed(std::move(drawn->points), ticks, drawn->first_segment, drawn->last_segment) : std::nullopt;
+}
+
+std::optional<PlanRefiner::Change> PlanRefiner::moved_into_goal(const Change& plan, double share) {
+    const Configuration end = configuration_of(plan.points.back());
+    const Configuration moved = flights_.task().space.moved_into_goal(end, share);
+    if (moved == end) {
         return std::nullopt;
     }
-    Change change{std::move(drawn->points), {}, drawn->first_segment, drawn->last_segment};
-    // Segments that do not change keep their ticks; their numbers may have shifted by a corner more or less.
+    std::vector<ReferencePoint> points = plan.points;
+    points.back() = at_rest(moved);
+    return timed(std::move(points), plan.ticks, plan.ticks.size() - 1, plan.ticks.size() - 1);
+}
+
+/// Gives segments `first` to `last` as few ticks as they need, if they may be worth flying. The others keep their
+/// ticks; their numbers may have shifted by a corner more or less.
+std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint> points,
+                                                      const std::vector<std::int64_t>& old_ticks, std::size_t first,
+                                                      std::size_t last) {
+    Change change{std::move(points), {}, first, last};
     const std::size_t segments = change.points.size() - 1;
-    const std::size_t old_segments = track.plan.ticks.size();
+    const std::size_t old_segments = old_ticks.size();
     const auto keeps_limits_at = [&](std::size_t corner) {
         return keeps_limits(change.points[corner], flights_.limits());
     };
     std::int64_t total = 0;
     for (std::size_t i = 0; i < segments; ++i) {
-        if (i >= drawn->first_segment && i <= drawn->last_segment) {
+        if (i >= first && i <= last) {
             if (!keeps_limits_at(i) || !keeps_limits_at(i + 1)) {
                 return std::nullopt;
             }
@@ -132,11 +232,16 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const Track& track) {
             }
             change.ticks.push_back(segment.ticks());
         } else {
-            change.ticks.push_back(track.plan.ticks[i < change.first ? i : i + old_segments - segments]);
+            change.ticks.push_back(old_ticks[i < first ? i : i + old_segments - segments]);
         }
         total += change.ticks.back();
     }
     return total <= max_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
+}
+
+/// The corner of the old plan with which a change ends.
+std::size_t PlanRefiner::old_corner_after(const FlownPlan& base, const Change& change) {
+    return change.last + 1 + base.ticks.size() - change.ticks.size();
 }
 
 /// Of changes whose own segments are flown: where one got to the old plan's next corner for less, the rest of the plan,
@@ -148,19 +253,23 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
     std::vector<FleetJob> rests;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Change& change = changes[i];
-        const std::size_t segments = change.ticks.size();
-        const bool is_whole = change.last + 1 == segments;
-        const double old_cost = is_whole ? base.cost : base.costs[change.last + 1 + base.ticks.size() - segments];
+        const bool is_whole = change.last + 1 == change.ticks.size();
+        const double old_cost = is_whole ? base.cost : base.costs[old_corner_after(base, change)];
         if (!jobs[i].is_accepted() || !(cost_after(base, change, jobs[i]) < old_cost)) {
             continue;
         }
         promising.push_back(i);
         if (!is_whole) {
             unfinished.push_back(i);
-            rests.push_back(job_for(jobs[i].end(), change, change.last + 1, segments - 1));
+            rests.push_back(job_for(jobs[i].end(), change, change.last + 1, change.ticks.size() - 1));
         }
     }
-    flights_.fly(rests);
+    flights_.fly(rests, [&](std::size_t rest) {
+        const std::size_t i = unfinished[rest];
+        const std::size_t first = changes[i].first;
+        const double cost = nominal_cost_after(base.nominal_costs[first], base.fleets[first].front(), jobs[i]);
+        return nominal_cost_after(cost, jobs[i].legs().back().end, rests[rest]) < base.nominal_cost;
+    });
     for (std::size_t i = 0; i < rests.size(); ++i) {
         jobs[unfinished[i]].append(rests[i]);
     }
@@ -185,12 +294,18 @@ void PlanRefiner::improve() {
     std::vector<Change> changes;
     std::vector<FleetJob> jobs;
     for (int tries = 0; tries < 4 * changes_side_by_side && jobs.size() < changes_side_by_side; ++tries) {
-        if (auto change = changed(track)) {
+        if (auto change = changed(track.plan.points, track.plan.ticks, track.step)) {
             jobs.push_back(job_for(track.plan.fleets[change->first], *change, change->first, change->last));
             changes.push_back(std::move(*change));
         }
     }
-    flights_.fly(jobs);
+    flights_.fly(jobs, [&](std::size_t i) {
+        const Change& change = changes[i];
+        const FlownPlan& base = track.plan;
+        const bool is_whole = change.last + 1 == change.ticks.size();
+        return nominal_cost_after(base.nominal_costs[change.first], base.fleets[change.first].front(), jobs[i]) <
+               (is_whole ? base.nominal_cost : base.nominal_costs[old_corner_after(base, change)]);
+    });
     const std::optional<FlownPlan> best = best_of(track.plan, changes, jobs);
     if (best) {
         track.plan = *best;

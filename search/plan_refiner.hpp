@@ -16,8 +16,9 @@ struct FlownPlan {
     std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
     std::vector<Fleet> fleets;           ///< the vehicle in every world at each point, and after the hold
     std::vector<double> costs;           ///< from the start up to each point
+    std::vector<double> nominal_costs;   ///< the same in the nominal world
     std::vector<std::int64_t> ticks;     ///< from each point to the next
-    double cost = 0;                     ///< hold included
+    double cost = 0, nominal_cost = 0;   ///< hold included
 };
 
 /// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
@@ -33,7 +34,11 @@ class PlanRefiner {
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }
     /// Flies a plan and takes it on, if nothing rejects it. Far more expensive ones than the best plan are not wanted.
-    void take(const Plan& plan);
+    /// Where counterexamples reject it, changes of it are tried.
+    /// @param as_it_is false: the plan itself is known to fail
+    void take(const Plan& plan, bool as_it_is = true);
+    /// Gives up its plans, the best first, to be taken on anew when counterexamples have joined.
+    [[nodiscard]] std::vector<Plan> release();
 
     /// Tries some changes of one of its plans, as many as are flown side by side.
     void improve();
@@ -60,13 +65,25 @@ class PlanRefiner {
     struct Change {
         std::vector<ReferencePoint> points;
         std::vector<std::int64_t> ticks;
-        std::size_t first = 0, last = 0;  ///< segments that differ
+        std::size_t first = 0, last = 0;  ///< segments that differ from a plan that was flown
     };
 
-    [[nodiscard]] std::optional<Change> changed(const Track& track);
+    [[nodiscard]] std::optional<Change> changed(const std::vector<ReferencePoint>& points,
+                                                const std::vector<std::int64_t>& ticks, double step);
+    /// A change that the plan's end is moved into the goal, so far that it uses up at most this share of the tolerance.
+    [[nodiscard]] std::optional<Change> moved_into_goal(const Change& plan, double share);
+    [[nodiscard]] std::optional<Change> timed(std::vector<ReferencePoint> points,
+                                              const std::vector<std::int64_t>& old_ticks, std::size_t first,
+                                              std::size_t last);
+    [[nodiscard]] std::optional<FlownPlan> repaired(const Change& plan);
+    void add(FlownPlan plan);
     /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
     [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const;
     [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
+    [[nodiscard]] double nominal_cost_after(double cost, const FlightState& from, const FleetJob& job) const;
+    /// Plans flown from the start to the end; nothing for those that are rejected.
+    [[nodiscard]] std::vector<std::optional<FlownPlan>> flown_whole(const std::vector<Change>& plans);
+    [[nodiscard]] static std::size_t old_corner_after(const FlownPlan& base, const Change& change);
     [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
                                                    std::vector<FleetJob>& jobs);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;

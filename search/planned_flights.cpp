@@ -1,7 +1,10 @@
 #include "downwash/search/planned_flights.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <numeric>
 #include <stdexcept>
 
 #include "downwash/search/free_air_cost.hpp"
@@ -10,10 +13,17 @@
 namespace downwash::planning {
 namespace {
 
-FlightRules planning_rules(const Problem& problem, std::function<bool()> is_over) {
+/// In worlds other than the nominal one counts what counts when a plan is executed: the margin is kept as believed.
+FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::function<bool()> is_over) {
     FlightRules rules;
     rules.margin_m = problem.planner.safety_margin_m;
     rules.bounds = problem.bounds;
+    if (!in_nominal_world) {
+        if (const char* m = std::getenv("DBGM")) {
+            rules.margin_m *= std::atof(m);
+        } else
+        rules = rules_of_execution();
+    }
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
     return rules;
@@ -67,12 +77,25 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
     : task_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
-      crew_(task.model, task.map, planning_rules(task.problem, std::move(is_over)), &task.problem.goal, threads,
-            best_instructions(), task.worlds != nullptr ? &task.worlds->ceiling : nullptr) {
-    forget_statistics();
+      crew_(task.model, task.map, planning_rules(task.problem, true, is_over), &task.problem.goal, threads) {
+    if (task.worlds != nullptr) {
+        world_crew_ =
+            std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
+                                         &task.problem.goal, threads, best_instructions(), &task.worlds->ceiling);
+    }
+    forget();
 }
 
-void PlannedFlights::forget_statistics() {
+void PlannedFlights::use_threads(int threads) {
+    crew_.use_threads(threads);
+    if (world_crew_ != nullptr) {
+        world_crew_->use_threads(threads);
+    }
+}
+
+void PlannedFlights::forget() {
+    joined_.clear();
+    rejected_in_.assign(worlds_of_task(), 0);
     statistics_ = {};
     statistics_.rejected = no_rejections();
 }
@@ -156,43 +179,90 @@ void PlannedFlights::count(const FlightJob& job) {
     }
 }
 
+std::size_t PlannedFlights::worlds_of_task() const noexcept {
+    return 1 + (task_.worlds != nullptr ? task_.worlds->worlds.size() : 0);
+}
+
+const FlownWorld* PlannedFlights::world(std::size_t number) const {
+    if (number == 0) {
+        return nullptr;
+    }
+    const std::size_t own = worlds_of_task();
+    return number < own ? &task_.worlds->worlds[number - 1] : &joined_[number - own].world;
+}
+
+void PlannedFlights::join(std::vector<Counterexample> counterexamples) {
+    for (Counterexample& counterexample : counterexamples) {
+        joined_.push_back(std::move(counterexample));
+        rejected_in_.push_back(1);
+    }
+    while (joined_.size() > most_counterexamples) {
+        const auto first = rejected_in_.begin() + static_cast<std::ptrdiff_t>(worlds_of_task());
+        const auto least = std::min_element(first, rejected_in_.end());
+        joined_.erase(joined_.begin() + (least - first));
+        rejected_in_.erase(least);
+    }
+}
+
+Fleet PlannedFlights::fleet_at_start(const FlightState& nominal) const {
+    Fleet fleet = task_.fleet_from(nominal);
+    for (const Counterexample& counterexample : joined_) {
+        fleet.push_back(counterexample.start);
+    }
+    return fleet;
+}
+
 FleetJob PlannedFlights::job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
                              std::int64_t judged_ticks) const {
     FleetJob fleet;
     fleet.jobs.reserve(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) {
-        const FlownWorld* world = i == 0 ? nullptr : &task_.worlds->worlds[i - 1];
-        fleet.jobs.push_back({from[i], legs, judged_ticks, world, task_.first_tick + ticks_from_start});
+        fleet.jobs.push_back({from[i], legs, judged_ticks, world(i), task_.first_tick + ticks_from_start});
     }
     return fleet;
 }
 
-void PlannedFlights::fly(std::span<FleetJob> jobs) {
+/// Flies those jobs in some worlds that nothing speaks against so far.
+void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs) {
+    std::vector<FlightJob*> owners;
+    std::vector<std::size_t> world_of;
+    for (FleetJob& fleet : jobs) {
+        if (!fleet.is_accepted()) {
+            continue;
+        }
+        for (const std::size_t i : worlds) {
+            owners.push_back(&fleet.jobs[i]);
+            world_of.push_back(i);
+        }
+    }
     std::vector<FlightJob> flown;
-    const auto fly_all = [&](const auto& is_wanted) {
-        std::vector<FlightJob*> owners;
-        for (FleetJob& fleet : jobs) {
-            for (std::size_t i = 0; i < fleet.jobs.size(); ++i) {
-                if (is_wanted(fleet, i)) {
-                    owners.push_back(&fleet.jobs[i]);
-                }
-            }
+    flown.reserve(owners.size());
+    for (FlightJob* owner : owners) {
+        flown.push_back(std::move(*owner));
+    }
+    (worlds.front() == 0 ? crew_ : *world_crew_).fly(flown);
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+        count(flown[i]);
+        rejected_in_[world_of[i]] += flown[i].rejected_leg() != nullptr ? 1 : 0;
+        *owners[i] = std::move(flown[i]);
+    }
+}
+
+void PlannedFlights::fly(std::span<FleetJob> jobs, const Promise& is_promising) {
+    if (jobs.empty()) {
+        return;
+    }
+    fly_in(std::array<std::size_t, 1>{0}, jobs);
+    if (const std::size_t worlds = jobs.front().jobs.size(); worlds > 1) {
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            jobs[i].is_dropped = is_promising && jobs[i].is_accepted() && !is_promising(i);
         }
-        flown.clear();
-        for (FlightJob* owner : owners) {
-            flown.push_back(std::move(*owner));
-        }
-        crew_.fly(flown);
-        for (std::size_t i = 0; i < flown.size(); ++i) {
-            count(flown[i]);
-            *owners[i] = std::move(flown[i]);
-        }
-    };
-    fly_all([](const FleetJob&, std::size_t world) { return world == 0; });
-    if (task_.worlds != nullptr) {
-        fly_all([](const FleetJob& fleet, std::size_t world) {
-            return world > 0 && fleet.jobs.front().rejection() == Rejection::none;
-        });
+        std::vector<std::size_t> order(worlds - 1);
+        std::iota(order.begin(), order.end(), std::size_t{1});
+        const auto harm = [this](std::size_t a, std::size_t b) { return rejected_in_[a] < rejected_in_[b]; };
+        std::iter_swap(order.begin(), std::max_element(order.begin(), order.end(), harm));
+        fly_in(std::span(order).first(1), jobs);
+        fly_in(std::span(order).subspan(1), jobs);
     }
     for (const FleetJob& fleet : jobs) {
         if (const FlightLeg* leg = fleet.rejected_leg()) {
@@ -243,10 +313,11 @@ double PlannedFlights::cost_after(double cost_before, const FlightState& from, c
 
 double PlannedFlights::cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const {
     double sum = 0;
-    for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t worlds = worlds_of_task();
+    for (std::size_t i = 0; i < worlds; ++i) {
         sum += cost_after(0, from[i], job.jobs[i].legs[leg]);
     }
-    return cost_before + sum / static_cast<double>(from.size());
+    return cost_before + sum / static_cast<double>(worlds);
 }
 
 ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,7 +34,7 @@ class PlannedFlights {
     explicit PlannedFlights(const SearchTask& task, std::function<bool()> is_over = {}, int threads = 1);
 
     /// From its next batch on flies with so many of its threads. May be called from any thread.
-    void use_threads(int threads) { crew_.use_threads(threads); }
+    void use_threads(int threads);
 
     /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
     /// its reference to a few centimetres. Counts the rejection if it is not.
@@ -42,14 +43,25 @@ class PlannedFlights {
     /// Flies jobs, and counts ticks and rejections.
     void fly(std::span<FlightJob> jobs);
 
+    /// From now on fleets at the start fly in these worlds, too. Of more than most_counterexamples those go that have
+    /// rejected the fewest flights, and of these the oldest. Fleets from before are not to be flown on.
+    void join(std::vector<Counterexample> counterexamples);
+    static constexpr std::size_t most_counterexamples = 8;
+    [[nodiscard]] bool has_counterexamples() const noexcept { return !joined_.empty(); }
+
+    /// The vehicle at the start in every world.
+    [[nodiscard]] Fleet fleet_at_start(const FlightState& nominal) const;
+
     /// A flight of a fleet, yet to be flown.
     /// @param from one vehicle for each world   @param ticks_from_start at which it begins, from the search's start
     [[nodiscard]] FleetJob job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
                                std::int64_t judged_ticks = 0) const;
 
-    /// Flies the jobs in the nominal world, then those that were accepted there in all others. Counts ticks, and every
-    /// rejected job once.
-    void fly(std::span<FleetJob> jobs);
+    /// Whether a job that was accepted in the nominal world is worth flying in the others.
+    using Promise = std::function<bool(std::size_t job)>;
+    /// Flies the jobs in the nominal world, then those that were accepted there, and that are promising, in the world
+    /// that has rejected most flights so far, then in all others. Counts ticks, and every rejected job once.
+    void fly(std::span<FleetJob> jobs, const Promise& is_promising = {});
 
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
     /// called from any thread.
@@ -62,7 +74,7 @@ class PlannedFlights {
 
     /// The cost from the start up to the end of a leg that began with `from`.
     [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
-    /// The same as the mean over all worlds.
+    /// The same as the mean over the worlds of the search, counterexamples apart.
     [[nodiscard]] double cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const;
 
     /// A segment between two points in as few ticks as the limits of motion allow.
@@ -72,14 +84,17 @@ class PlannedFlights {
     [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
-    /// Begins to count anew.
-    void forget_statistics();
+    /// Forgets counterexamples and begins to count anew.
+    void forget();
     void count_rejection(const std::string& cause);
     /// An interrupted flight is none.
     void count_rejection(Rejection rejection);
 
  private:
     [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
+    [[nodiscard]] std::size_t worlds_of_task() const noexcept;
+    [[nodiscard]] const FlownWorld* world(std::size_t number) const;
+    void fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs);
     void count(const FlightJob& job);
     /// Counts a rejection at a place of a segment.
     void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
@@ -87,8 +102,11 @@ class PlannedFlights {
     const SearchTask& task_;
     MotionLimits limits_;
     double tick_s_;
-    FlightPool crew_;
+    FlightPool crew_;                         ///< of the nominal world
+    std::unique_ptr<FlightPool> world_crew_;  ///< of all others, if there are any
     FlightStatistics statistics_;
+    std::vector<Counterexample> joined_;
+    std::vector<std::uint64_t> rejected_in_;  ///< flights by world, the nominal one first
 };
 
 /// Whether moments end with the hover that the goal asks for: without it they are a way, not a plan.

@@ -244,6 +244,16 @@ const FlightNode* TreeGrowth::hold_away_from(const std::vector<ReferencePoint>& 
     return farthest;
 }
 
+const FlightNode* TreeGrowth::hold_by_rank(std::size_t rank) const {
+    std::vector<FlightNode*> holds = tree_.holds();
+    if (holds.empty()) {
+        return nullptr;
+    }
+    std::stable_sort(holds.begin(), holds.end(),
+                     [](const FlightNode* a, const FlightNode* b) { return a->cost < b->cost; });
+    return holds[rank % holds.size()];
+}
+
 FlightNode* TreeGrowth::best_hold() const {
     FlightNode* best = nullptr;
     for (FlightNode* hold : tree_.holds()) {

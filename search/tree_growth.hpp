@@ -30,6 +30,8 @@ class TreeGrowth {
     [[nodiscard]] bool has_plan() const noexcept { return known_plan_ || best_hold_cost_ < HUGE_VAL; }
     /// The cheapest hold that was not discarded; nullptr when there is none.
     [[nodiscard]] FlightNode* best_hold() const;
+    /// Of all holds, discarded ones too, by cost, the one with this rank, modulo their number; nullptr without any.
+    [[nodiscard]] const FlightNode* hold_by_rank(std::size_t rank) const;
     /// Of some holds, drawn at random, the one whose way leads farthest from a plan; nullptr when all follow it.
     [[nodiscard]] const FlightNode* hold_away_from(const std::vector<ReferencePoint>& way);
 

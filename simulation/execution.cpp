@@ -225,6 +225,17 @@ std::string_view name_of(Outcome outcome) {
     return outcome_names[static_cast<std::size_t>(outcome)];
 }
 
+FlightRules rules_of_execution() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    FlightRules rules;
+    rules.margin_m = 0;
+    rules.bounds = {-infinity, infinity, -infinity, infinity};
+    rules.max_tracking_error_m = infinity;
+    rules.max_arm_error_rad = infinity;
+    rules.max_saturation = infinity;
+    return rules;
+}
+
 Outcome outcome_of(Rejection rejection) {
     switch (rejection) {
         case Rejection::collision:

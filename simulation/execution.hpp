@@ -22,6 +22,10 @@ inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcom
 /// The outcome's name in files, for example "left_flyable_area".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome);
 
+/// The rules of a flight that only has to succeed: it may leave bounds and reference, and ask more of rotors and joint
+/// than they have. It ends where it touches something, tumbles or leaves the flyable area.
+[[nodiscard]] DOWNWASH_EXPORT FlightRules rules_of_execution();
+
 /// How a flight that ended early for this reason counts; `unstable` where no other outcome says why.
 [[nodiscard]] DOWNWASH_EXPORT Outcome outcome_of(Rejection rejection);
 
