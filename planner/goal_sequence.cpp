@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "downwash/simulation/execution.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight.hpp"
 
 namespace downwash::planning {

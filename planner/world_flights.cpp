@@ -62,8 +62,8 @@ WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightM
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
-        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_with_clearance(), &goals_[goal], threads_,
-                                                    best_instructions(), &ceiling_);
+        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_with_clearance(), &goals_[goal],
+                                                    threads_, best_instructions(), &ceiling_);
     }
     return *pools_[goal];
 }

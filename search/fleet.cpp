@@ -20,11 +20,4 @@ Fleet FleetJob::fleet_after(std::size_t leg) const {
     return fleet;
 }
 
-void FleetJob::append(const FleetJob& next) {
-    is_dropped = is_dropped || next.is_dropped;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        jobs[i].legs.insert(jobs[i].legs.end(), next.jobs[i].legs.begin(), next.jobs[i].legs.end());
-    }
-}
-
 }  // namespace downwash::planning

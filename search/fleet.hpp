@@ -13,19 +13,16 @@ using Fleet = std::vector<FlightState>;
 /// The same legs, flown by a fleet.
 struct FleetJob {
     std::vector<FlightJob> jobs;  ///< one in each world
-    bool is_dropped = false;      ///< not worth flying in all worlds
 
     /// As flown in the nominal world.
     [[nodiscard]] const std::vector<FlightLeg>& legs() const noexcept { return jobs.front().legs; }
     /// Of the first world in which the flight ended early; nullptr when it did in none.
     [[nodiscard]] const FlightLeg* rejected_leg() const noexcept;
-    [[nodiscard]] bool is_accepted() const noexcept { return !is_dropped && rejected_leg() == nullptr; }
+    [[nodiscard]] bool is_accepted() const noexcept { return rejected_leg() == nullptr; }
     /// At the end of a leg. @pre the flight was accepted that far
     [[nodiscard]] Fleet fleet_after(std::size_t leg) const;
     /// At the end. @pre is_accepted()
     [[nodiscard]] Fleet end() const { return fleet_after(legs().size() - 1); }
-    /// Goes on with the legs of another flight, which began where this one ended. It may have been dropped.
-    void append(const FleetJob& next);
 };
 
 /// A world in which a plan failed that had passed all those of the search, and the vehicle at the search's start in it.

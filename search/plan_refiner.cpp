@@ -58,17 +58,9 @@ FleetJob PlanRefiner::job_for(const Fleet& from, const Change& change, std::size
                         judged_ticks);
 }
 
-double PlanRefiner::cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const {
-    double cost = base.costs[change.first];
-    for (std::size_t leg = 0; leg < job.legs().size(); ++leg) {
-        cost = flights_.cost_after(cost, leg == 0 ? base.fleets[change.first] : job.fleet_after(leg - 1), job, leg);
-    }
-    return cost;
-}
-
-/// @param from where the job begins   @param cost in the nominal world up to there
-double PlanRefiner::nominal_cost_after(double cost, const FlightState& from, const FleetJob& job) const {
-    const FlightState* before = &from;
+double PlanRefiner::nominal_cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const {
+    double cost = base.nominal_costs[change.first];
+    const FlightState* before = &base.fleets[change.first].front();
     for (const FlightLeg& leg : job.legs()) {
         cost = flights_.cost_after(cost, *before, leg);
         before = &leg.end;
@@ -239,50 +231,57 @@ std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint
     return total <= max_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
 }
 
-/// The corner of the old plan with which a change ends.
-std::size_t PlanRefiner::old_corner_after(const FlownPlan& base, const Change& change) {
-    return change.last + 1 + base.ticks.size() - change.ticks.size();
-}
-
-/// Of changes whose own segments are flown: where one got to the old plan's next corner for less, the rest of the plan,
-/// hold included, is flown as well.
-std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes,
-                                              std::vector<FleetJob>& jobs) {
-    std::vector<std::size_t> promising;
+/// Flies changes as believed: their own segments first and, where one gets to the old plan's next corner for less, the
+/// rest of the plan, hold included. The promising ones are flown in the other worlds, the cheapest first, until one is
+/// accepted and cheaper there, too.
+std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes) {
+    std::vector<FleetJob> jobs;
+    for (const Change& change : changes) {
+        jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
+    }
+    flights_.fly_as_believed(jobs);
+    const auto is_whole = [&](std::size_t i) {
+        return changes[i].first + jobs[i].legs().size() == changes[i].ticks.size() + 1;
+    };
+    const auto costs_less = [&](std::size_t i) {
+        const std::size_t old_corner = changes[i].last + 1 + base.ticks.size() - changes[i].ticks.size();
+        const double old_cost = is_whole(i) ? base.nominal_cost : base.nominal_costs[old_corner];
+        return jobs[i].is_accepted() && nominal_cost_after(base, changes[i], jobs[i]) < old_cost;
+    };
     std::vector<std::size_t> unfinished;
     std::vector<FleetJob> rests;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-        const Change& change = changes[i];
-        const bool is_whole = change.last + 1 == change.ticks.size();
-        const double old_cost = is_whole ? base.cost : base.costs[old_corner_after(base, change)];
-        if (!jobs[i].is_accepted() || !(cost_after(base, change, jobs[i]) < old_cost)) {
-            continue;
-        }
-        promising.push_back(i);
-        if (!is_whole) {
+        if (costs_less(i) && !is_whole(i)) {
             unfinished.push_back(i);
-            rests.push_back(job_for(jobs[i].end(), change, change.last + 1, change.ticks.size() - 1));
+            rests.push_back(job_for(jobs[i].end(), changes[i], changes[i].last + 1, changes[i].ticks.size() - 1));
         }
     }
-    flights_.fly(rests, [&](std::size_t rest) {
-        const std::size_t i = unfinished[rest];
-        const std::size_t first = changes[i].first;
-        const double cost = nominal_cost_after(base.nominal_costs[first], base.fleets[first].front(), jobs[i]);
-        return nominal_cost_after(cost, jobs[i].legs().back().end, rests[rest]) < base.nominal_cost;
-    });
+    flights_.fly_as_believed(rests);
     for (std::size_t i = 0; i < rests.size(); ++i) {
-        jobs[unfinished[i]].append(rests[i]);
+        std::ranges::copy(rests[i].legs(), std::back_inserter(jobs[unfinished[i]].jobs.front().legs));
     }
-    std::optional<FlownPlan> best;
+    std::vector<std::size_t> promising;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (is_whole(i) && costs_less(i)) {
+            promising.push_back(i);
+        }
+    }
+    std::stable_sort(promising.begin(), promising.end(), [&](std::size_t a, std::size_t b) {
+        return nominal_cost_after(base, changes[a], jobs[a]) < nominal_cost_after(base, changes[b], jobs[b]);
+    });
     for (const std::size_t i : promising) {
-        if (jobs[i].is_accepted()) {
-            FlownPlan plan = flown(base, changes[i], jobs[i]);
-            if (plan.cost < (best ? best->cost : base.cost)) {
-                best = std::move(plan);
+        const Change& change = changes[i];
+        std::vector<FleetJob> whole{job_for(base.fleets[change.first], change, change.first, change.ticks.size() - 1)};
+        whole.front().jobs.front() = std::move(jobs[i].jobs.front());
+        flights_.fly_in_other_worlds(whole);
+        if (whole.front().is_accepted()) {
+            FlownPlan plan = flown(base, change, whole.front());
+            if (plan.cost < base.cost) {
+                return plan;
             }
         }
     }
-    return best;
+    return std::nullopt;
 }
 
 void PlanRefiner::improve() {
@@ -292,21 +291,12 @@ void PlanRefiner::improve() {
     const std::size_t number = turn_++ % tracks_.size();
     Track& track = tracks_[number];
     std::vector<Change> changes;
-    std::vector<FleetJob> jobs;
-    for (int tries = 0; tries < 4 * changes_side_by_side && jobs.size() < changes_side_by_side; ++tries) {
+    for (int tries = 0; tries < 4 * changes_side_by_side && changes.size() < changes_side_by_side; ++tries) {
         if (auto change = changed(track.plan.points, track.plan.ticks, track.step)) {
-            jobs.push_back(job_for(track.plan.fleets[change->first], *change, change->first, change->last));
             changes.push_back(std::move(*change));
         }
     }
-    flights_.fly(jobs, [&](std::size_t i) {
-        const Change& change = changes[i];
-        const FlownPlan& base = track.plan;
-        const bool is_whole = change.last + 1 == change.ticks.size();
-        return nominal_cost_after(base.nominal_costs[change.first], base.fleets[change.first].front(), jobs[i]) <
-               (is_whole ? base.nominal_cost : base.nominal_costs[old_corner_after(base, change)]);
-    });
-    const std::optional<FlownPlan> best = best_of(track.plan, changes, jobs);
+    const std::optional<FlownPlan> best = best_of(track.plan, changes);
     if (best) {
         track.plan = *best;
         track.step = std::min(1.0, 1.5 * track.step);

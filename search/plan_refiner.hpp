@@ -79,13 +79,11 @@ class PlanRefiner {
     void add(FlownPlan plan);
     /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
     [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const;
-    [[nodiscard]] double cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
-    [[nodiscard]] double nominal_cost_after(double cost, const FlightState& from, const FleetJob& job) const;
+    /// The cost in the nominal world from the start up to the end of a job with which a change begins.
+    [[nodiscard]] double nominal_cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
     /// Plans flown from the start to the end; nothing for those that are rejected.
     [[nodiscard]] std::vector<std::optional<FlownPlan>> flown_whole(const std::vector<Change>& plans);
-    [[nodiscard]] static std::size_t old_corner_after(const FlownPlan& base, const Change& change);
-    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes,
-                                                   std::vector<FleetJob>& jobs);
+    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;
 
     FlightPoint start_;

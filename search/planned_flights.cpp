@@ -22,7 +22,7 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
         if (const char* m = std::getenv("DBGM")) {
             rules.margin_m *= std::atof(m);
         } else
-        rules = rules_of_execution();
+            rules = rules_of_execution();
     }
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
@@ -224,6 +224,9 @@ FleetJob PlannedFlights::job(const Fleet& from, std::int64_t ticks_from_start, s
 
 /// Flies those jobs in some worlds that nothing speaks against so far.
 void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs) {
+    if (worlds.empty()) {
+        return;
+    }
     std::vector<FlightJob*> owners;
     std::vector<std::size_t> world_of;
     for (FleetJob& fleet : jobs) {
@@ -248,26 +251,45 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     }
 }
 
-void PlannedFlights::fly(std::span<FleetJob> jobs, const Promise& is_promising) {
-    if (jobs.empty()) {
+void PlannedFlights::fly(std::span<FleetJob> jobs) {
+    fly_as_believed(jobs);
+    fly_in_other_worlds(jobs);
+}
+
+void PlannedFlights::fly_as_believed(std::span<FleetJob> jobs) {
+    fly_in(std::array<std::size_t, 1>{0}, jobs);
+    for (const FleetJob& fleet : jobs) {
+        reject(fleet);
+    }
+}
+
+void PlannedFlights::fly_in_other_worlds(std::span<FleetJob> jobs) {
+    constexpr std::size_t lanes = 8;
+    std::vector<FleetJob*> accepted;
+    for (FleetJob& fleet : jobs) {
+        if (fleet.is_accepted()) {
+            accepted.push_back(&fleet);
+        }
+    }
+    if (accepted.empty() || accepted.front()->jobs.size() == 1) {
         return;
     }
-    fly_in(std::array<std::size_t, 1>{0}, jobs);
-    if (const std::size_t worlds = jobs.front().jobs.size(); worlds > 1) {
-        for (std::size_t i = 0; i < jobs.size(); ++i) {
-            jobs[i].is_dropped = is_promising && jobs[i].is_accepted() && !is_promising(i);
-        }
-        std::vector<std::size_t> order(worlds - 1);
-        std::iota(order.begin(), order.end(), std::size_t{1});
-        const auto harm = [this](std::size_t a, std::size_t b) { return rejected_in_[a] < rejected_in_[b]; };
-        std::iter_swap(order.begin(), std::max_element(order.begin(), order.end(), harm));
-        fly_in(std::span(order).first(1), jobs);
-        fly_in(std::span(order).subspan(1), jobs);
+    std::vector<std::size_t> order(accepted.front()->jobs.size() - 1);
+    std::iota(order.begin(), order.end(), std::size_t{1});
+    std::stable_sort(order.begin(), order.end(),
+                     [this](std::size_t a, std::size_t b) { return rejected_in_[a] > rejected_in_[b]; });
+    const std::size_t first = std::clamp<std::size_t>(lanes / accepted.size(), 1, order.size());
+    fly_in(std::span(order).first(first), jobs);
+    fly_in(std::span(order).subspan(first), jobs);
+    for (const FleetJob* fleet : accepted) {
+        reject(*fleet);
     }
-    for (const FleetJob& fleet : jobs) {
-        if (const FlightLeg* leg = fleet.rejected_leg()) {
-            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
-        }
+}
+
+/// Counts the rejection of a fleet, if it was rejected.
+void PlannedFlights::reject(const FleetJob& fleet) {
+    if (const FlightLeg* leg = fleet.rejected_leg()) {
+        reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
     }
 }
 

@@ -46,7 +46,7 @@ class PlannedFlights {
     /// From now on fleets at the start fly in these worlds, too. Of more than most_counterexamples those go that have
     /// rejected the fewest flights, and of these the oldest. Fleets from before are not to be flown on.
     void join(std::vector<Counterexample> counterexamples);
-    static constexpr std::size_t most_counterexamples = 8;
+    static constexpr std::size_t most_counterexamples = 32;
     [[nodiscard]] bool has_counterexamples() const noexcept { return !joined_.empty(); }
 
     /// The vehicle at the start in every world.
@@ -57,11 +57,14 @@ class PlannedFlights {
     [[nodiscard]] FleetJob job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
                                std::int64_t judged_ticks = 0) const;
 
-    /// Whether a job that was accepted in the nominal world is worth flying in the others.
-    using Promise = std::function<bool(std::size_t job)>;
-    /// Flies the jobs in the nominal world, then those that were accepted there, and that are promising, in the world
-    /// that has rejected most flights so far, then in all others. Counts ticks, and every rejected job once.
-    void fly(std::span<FleetJob> jobs, const Promise& is_promising = {});
+    /// Flies the jobs in the nominal world, then those that were accepted there in all others. Counts ticks, and every
+    /// rejected job once.
+    void fly(std::span<FleetJob> jobs);
+    /// Flies jobs in the nominal world alone.
+    void fly_as_believed(std::span<FleetJob> jobs);
+    /// Flies those jobs in all other worlds that were accepted in the nominal one: first in the worlds that have
+    /// rejected most flights so far, as many as fill the lanes, then in the rest.
+    void fly_in_other_worlds(std::span<FleetJob> jobs);
 
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
     /// called from any thread.
@@ -95,6 +98,7 @@ class PlannedFlights {
     [[nodiscard]] std::size_t worlds_of_task() const noexcept;
     [[nodiscard]] const FlownWorld* world(std::size_t number) const;
     void fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs);
+    void reject(const FleetJob& fleet);
     void count(const FlightJob& job);
     /// Counts a rejection at a place of a segment.
     void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
