@@ -1,6 +1,4 @@
 #include "downwash/planner/flight_search.hpp"
-#include <cstdio>
-#include <cstdlib>
 
 #include <algorithm>
 #include <optional>
@@ -89,6 +87,9 @@ class FlightSearch {
 bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     counterexamples_.clear();
     clock_.found_first(clock_.seconds());
+    if (uncertified_ && clock_.is_over()) {
+        return false;  // too late for a certificate
+    }
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
         execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_);
@@ -105,13 +106,6 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
     certificate_ =
         worlds_->certify(before_.continued_by(plan), goals_.size(), ++attempts_, [this] { return clock_.is_over(); });
-    if (getenv("DBG20")) {
-        fprintf(stderr, "attempt %lu from %.3f to %.3f cost %.0f: %lu of %lu given %d", attempts_, known_at_s_,
-                clock_.seconds(), cost, certificate_->failures, certificate_->worlds, (int)certificate_->is_given);
-        for (auto& [k, v] : certificate_->causes)
-            fprintf(stderr, " %s %lu", k.c_str(), v);
-        fprintf(stderr, "\n");
-    }
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;

@@ -162,7 +162,7 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::u
     const PlannerSettings& settings = problem_.planner;
     constexpr std::uint64_t worlds_per_attempt = 1'000'000;
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
-    constexpr std::size_t flown_directly = 3;
+    constexpr std::size_t flown_directly = 2;
     CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
     bool is_checked = false;
     while (!is_over()) {

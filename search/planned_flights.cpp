@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 #include <stdexcept>
 
@@ -19,10 +18,7 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
     rules.margin_m = problem.planner.safety_margin_m;
     rules.bounds = problem.bounds;
     if (!in_nominal_world) {
-        if (const char* m = std::getenv("DBGM")) {
-            rules.margin_m *= std::atof(m);
-        } else
-            rules = rules_of_execution();
+        rules = rules_of_execution();
     }
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;

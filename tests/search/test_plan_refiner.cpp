@@ -121,3 +121,44 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
     }
     CHECK(least_corners < 4);  // which the plan began with
 }
+
+TEST_CASE("a plan that a counterexample rejects is changed until it flies there, too") {
+    Fixture f;
+    f.refiner.take(f.stop_and_go());
+    REQUIRE(f.refiner.best() != nullptr);
+    CHECK(f.refiner.best()->fleets.front().size() == 1);
+
+    World raised;  // the ground comes up to the corner at 1 m
+    raised.scene_z_m = 0.92;
+    f.flights.join({{make_world(f.problem.robot, raised), f.task.start}});
+    const std::vector<Plan> plans = f.refiner.release();
+    CHECK(f.refiner.best() == nullptr);
+    REQUIRE(plans.size() == 1);
+    CHECK(plans[0].reference.size() == f.stop_and_go().reference.size());
+    f.refiner.take(plans[0]);
+    REQUIRE(f.refiner.best() != nullptr);
+    const planning::FlownPlan& repaired = *f.refiner.best();
+    CHECK(repaired.fleets.front().size() == 2);
+    CHECK(repaired.points[1].position[1] > plans[0].reference[1].point.position[1]);
+    for (int batch = 0; batch < 10; ++batch) {
+        f.refiner.improve();
+    }
+    // What came of it flies in the counterexample.
+    std::vector<FlightLeg> legs;
+    for (std::size_t i = 0; i + 1 < repaired.points.size(); ++i) {
+        legs.push_back({{repaired.points[i], repaired.points[i + 1], repaired.ticks[i], f.model->tick().tick_s}});
+    }
+    const planning::Fleet start = f.flights.fleet_at_start(f.task.start);
+    std::vector<planning::FleetJob> jobs{f.flights.job(start, 0, legs)};
+    f.flights.fly(jobs);
+    CHECK(jobs[0].is_accepted());
+}
+
+TEST_CASE("a plan that is known to fail is not taken on as it is") {
+    Fixture f;
+    f.flights.join({{make_world(f.problem.robot, World{}), f.task.start}});
+    f.refiner.take(f.stop_and_go(), false);
+    REQUIRE(f.refiner.best() != nullptr);
+    const std::vector<Plan> taken = f.refiner.release();
+    CHECK_FALSE(taken.at(0).reference == f.stop_and_go().reference);
+}

@@ -109,3 +109,105 @@ TEST_CASE("a flight that comes nearer than the margin is rejected") {
     CHECK(rejection_with(0.6) == Rejection::none);
     CHECK(rejection_with(0.7) == Rejection::collision);
 }
+
+namespace {
+
+/// A world in which all surfaces are higher than believed, with the vehicle at the start.
+planning::Counterexample raised(const Fixture& f, double z_m) {
+    World world;
+    world.scene_z_m = z_m;
+    return {make_world(f.problem.robot, world), f.task.start};
+}
+
+planning::SearchWorlds raised_worlds(const Fixture& f, std::initializer_list<double> z_m) {
+    planning::SearchWorlds worlds;
+    for (const double z : z_m) {
+        const planning::Counterexample one = raised(f, z);
+        worlds.worlds.push_back(one.world);
+        worlds.start.push_back(one.start);
+    }
+    return worlds;
+}
+
+/// A problem whose vehicle begins low over the ground, arm up: 0.64 m of clearance.
+Problem low_problem() {
+    Problem problem = test::ceiling_problem();
+    problem.start.z_m = 0.7;
+    problem.start.arm_rad = -quarter_turn;
+    problem.planner.safety_margin_m = 0.6;
+    return problem;
+}
+
+const Configuration low_start{-4, 0.7, -quarter_turn};
+const Configuration low_end{-3.5, 0.7, -quarter_turn};
+
+}  // namespace
+
+TEST_CASE("the margin is kept as believed; in other worlds a flight only must not touch anything") {
+    const auto is_accepted_with = [](double raised_m) {
+        const Fixture f(low_problem());
+        const planning::SearchWorlds worlds = raised_worlds(f, {raised_m});
+        const planning::SearchTask task(f.problem, *f.model, nullptr, {}, &worlds);
+        planning::PlannedFlights flights(task);
+        std::vector<planning::FleetJob> jobs{
+            flights.job(flights.fleet_at_start(task.start), 0, {{f.segment(low_start, low_end)}})};
+        flights.fly(jobs);
+        CHECK(flights.statistics().rejections == (jobs[0].is_accepted() ? 0 : 1));
+        return jobs[0].is_accepted();
+    };
+    CHECK(is_accepted_with(0));
+    CHECK(is_accepted_with(0.3));
+    CHECK_FALSE(is_accepted_with(0.7));
+}
+
+TEST_CASE("a flight that one world rejects is not flown in the rest, once that world is known for it") {
+    const Fixture f(low_problem());
+    const planning::SearchWorlds worlds =
+        raised_worlds(f, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.7});  // two full batches, the last is bad
+    const planning::SearchTask task(f.problem, *f.model, nullptr, {}, &worlds);
+    planning::PlannedFlights flights(task);
+    const auto edges_flown = [&] {
+        const std::uint64_t before = flights.statistics().edges;
+        std::vector<planning::FleetJob> jobs{
+            flights.job(flights.fleet_at_start(task.start), 0, {{f.segment(low_start, low_end)}})};
+        flights.fly(jobs);
+        CHECK_FALSE(jobs[0].is_accepted());
+        return flights.statistics().edges - before;
+    };
+    CHECK(edges_flown() == 17);
+    CHECK(edges_flown() == 9);  // as believed, and as many as fill the lanes
+}
+
+TEST_CASE("counterexamples constrain flights and do not count in their cost; those that reject nothing leave first") {
+    const Fixture f(low_problem());
+    const planning::SearchWorlds worlds = raised_worlds(f, {0.1});
+    const planning::SearchTask task(f.problem, *f.model, nullptr, {}, &worlds);
+    planning::PlannedFlights flights(task);
+    const auto flown = [&] {
+        const planning::Fleet from = flights.fleet_at_start(task.start);
+        std::vector<planning::FleetJob> jobs{flights.job(from, 0, {{f.segment(low_start, low_end)}})};
+        flights.fly(jobs);
+        return std::pair(jobs[0].is_accepted(), flights.cost_after(0, from, jobs[0], 0));
+    };
+    const auto [is_accepted, cost] = flown();
+    CHECK(is_accepted);
+    CHECK_FALSE(flights.has_counterexamples());
+
+    World heavy;  // costs more
+    heavy.mass_scale = 0.05;
+    flights.join({{make_world(f.problem.robot, heavy), task.start}});
+    CHECK(flights.has_counterexamples());
+    CHECK(flights.fleet_at_start(task.start).size() == 3);
+    CHECK(flown() == std::pair(true, cost));
+
+    flights.join({raised(f, 0.7)});
+    CHECK_FALSE(flown().first);
+    constexpr std::size_t most = planning::PlannedFlights::most_counterexamples;
+    flights.join(std::vector<planning::Counterexample>(2 * most, raised(f, 0.1)));
+    CHECK(flights.fleet_at_start(task.start).size() == 2 + most);
+    CHECK_FALSE(flown().first);  // the bad one is still there
+
+    flights.forget();
+    CHECK_FALSE(flights.has_counterexamples());
+    CHECK(flown() == std::pair(true, cost));
+}
