@@ -62,6 +62,7 @@ struct ParameterInfo {
     std::vector<std::string_view> names;     ///< of a choice, or of choices
     std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}; the forms of a spread
     std::string condition;                   ///< says in words when the parameter applies; empty: always
+    std::string_view default_of;             ///< group of keys that may say what the default is; empty: nothing may
     std::string_view former_name;            ///< last name of the path in earlier versions, still read
 };
 

@@ -136,7 +136,7 @@ class SchemaWriter {
         if (const std::string description = description_of(key); !description.empty()) {
             schema["description"] = description;
         }
-        if (key.default_value) {
+        if (key.default_value && info.default_of.empty()) {
             schema["default"] = json_of(*key.default_value);
         }
         return schema;

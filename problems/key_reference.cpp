@@ -19,6 +19,7 @@ template <>
 Robot with_everything<Robot>() {
     Robot robot;
     robot.body = {{Box{}, {}}, {Cylinder{}, {}}, {Sphere{}, {}}};
+    robot.uncertainty.emplace();
     return robot;
 }
 
@@ -135,7 +136,9 @@ std::vector<KeyReference> referenced(const ParameterTable<Model>& table) {
         } else if (parameter.get) {
             const std::string& path = parameter.path;
             key.default_value = in_file_units(path, parameter.get(in_groups(table, path), element_of(path)));
-            key.default_text = text_of(*key.default_value);
+            key.default_text =
+                (key.info.default_of.empty() ? "" : "that of " + std::string(key.info.default_of) + ", or ") +
+                text_of(*key.default_value);
         }
     }
     return keys;

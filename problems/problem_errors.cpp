@@ -321,7 +321,7 @@ const std::array<Check<ProblemCheck>, 18> checks{{
       "planner.safety_margin_m"},
      start_in_collision},
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
-    {{"uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
+    {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
     {{"planner.parameters"}, split_whole_numbers},

@@ -43,7 +43,9 @@ using FileText = std::function<std::string(const Parameter<Problem>& row, std::s
 /// Writes the groups below a key path, two spaces a level.
 class Writer {
  public:
-    Writer(const Problem& problem, FileText file_text) : problem_(problem), file_text_(std::move(file_text)) {}
+    /// @param left_out path of a group that is not written
+    Writer(const Problem& problem, FileText file_text, std::string_view left_out = "")
+        : problem_(problem), file_text_(std::move(file_text)), left_out_(left_out) {}
 
     [[nodiscard]] std::string written() {
         write_keys("", 0, "");
@@ -58,7 +60,7 @@ class Writer {
                     const std::string& first_indent) {
         std::string before = first_indent;
         for (const Row* row : problem_parameters().children(path)) {
-            const bool applies = !row->applies || row->applies(problem_, index);
+            const bool applies = row->path != left_out_ && (!row->applies || row->applies(problem_, index));
             if (applies && (row->get || is_written(*row, index))) {
                 out_ += before + std::string(last_name(row->path)) + ":";
                 write_content(*row, index, indent);
@@ -148,6 +150,7 @@ class Writer {
 
     const Problem& problem_;
     FileText file_text_;
+    std::string_view left_out_;
     std::string out_;
 };
 
@@ -169,7 +172,8 @@ std::string effective_yaml(const Problem& problem, const std::filesystem::path& 
 
 std::string problem_sha256(const Problem& problem) {
     const auto digest = [&](const Parameter<Problem>& row, std::size_t index) { return row.digest(problem, index); };
-    return sha256_hex(Writer(problem, digest).written());
+    // A default, which the problem has taken over where it has an uncertainty: no flight depends on it.
+    return sha256_hex(Writer(problem, digest, "robot.uncertainty").written());
 }
 
 }  // namespace downwash

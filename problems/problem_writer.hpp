@@ -16,7 +16,7 @@ namespace downwash {
 [[nodiscard]] DOWNWASH_EXPORT std::string effective_yaml(const Problem& problem, const std::filesystem::path& folder);
 
 /// SHA-256 of everything that makes up the problem, as 64 hexadecimal digits. Of files that it refers to, what was read
-/// counts, not where they lie.
+/// counts, not where they lie. What the robot says of its uncertainty counts as far as the problem takes it over.
 [[nodiscard]] DOWNWASH_EXPORT std::string problem_sha256(const Problem& problem);
 
 }  // namespace downwash

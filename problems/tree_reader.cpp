@@ -18,6 +18,15 @@ std::string joined(const std::string& key, std::string_view name) {
     return key.empty() ? std::string(name) : key + "." + std::string(name);
 }
 
+/// What a key of a robot would be called if it were one of the problem; empty where nothing is a robot's.
+std::string key_outside_robot(const std::string& path, std::string_view name) {
+    constexpr std::string_view robot = "robot";
+    if (path != robot && !path.starts_with("robot.")) {
+        return {};
+    }
+    return joined(path == robot ? "" : path.substr(robot.size() + 1), name);
+}
+
 }  // namespace
 
 template <class Model>
@@ -140,7 +149,10 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
     for (const Parameter<Model>* child : table_.children(group.path)) {
         valid.push_back(last_name(child->path));
     }
-    const KeyRemedy remedy = remedy_for_key(name, valid);
+    const std::string elsewhere = key_outside_robot(group.path, name);
+    const KeyRemedy remedy = elsewhere.empty() || table_.find(elsewhere) == nullptr
+                                 ? remedy_for_key(name, valid)
+                                 : KeyRemedy{"it belongs in the problem file, as " + elsewhere, {}};
     const std::string where = shown(group.key);
     report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
                      remedy.text);

@@ -7,6 +7,7 @@
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/uncertainty.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
 namespace downwash {
@@ -163,7 +164,18 @@ std::vector<KeyError> too_long_delay(const Robot& robot) {
                                        rounded(simulation::max_delay_ticks / robot.controller.rate_hz) + " s"}};
 }
 
-const std::array<Check<Robot>, 13> checks{{
+std::vector<KeyError> unflyable_uncertainty(const Robot& robot) {
+    std::vector<KeyError> errors;
+    if (robot.uncertainty) {
+        errors = uncertainty_errors(*robot.uncertainty, robot);
+        for (KeyError& error : errors) {
+            error.key = "uncertainty." + error.key;
+        }
+    }
+    return errors;
+}
+
+const std::array<Check<Robot>, 14> checks{{
     {{"multirotor.body"}, missing_bodies},
     {{"multirotor.body"}, shapeless_cylinders},
     {{"rotors.positions_m", "rotors.radius_m"}, unusable_rotor_layout},
@@ -178,6 +190,7 @@ const std::array<Check<Robot>, 13> checks{{
     {{"arm.center_of_mass_m", "arm.length_m"}, outlying_center_of_mass},
     {{"arm.limits_deg"}, crossed_arm_limits},
     {{"arm.max_torque_nm", "arm.mass_kg", "arm.center_of_mass_m"}, weak_joint},
+    {{"uncertainty", "rotors.time_constant_s", "controller"}, unflyable_uncertainty},
 }};
 
 }  // namespace

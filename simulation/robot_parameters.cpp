@@ -8,6 +8,7 @@
 
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/scene/shape_parameters.hpp"
+#include "downwash/simulation/uncertainty_parameters.hpp"
 
 namespace downwash {
 namespace {
@@ -290,6 +291,26 @@ void add_controller(Rows& rows) {
     add_laws(rows, static_cast<const ControlLaw*>(nullptr));
 }
 
+/// What a robot says of itself; the defaults where it says nothing.
+const RobotUncertainty& uncertainty_of(const Robot& robot) {
+    static const RobotUncertainty usual;
+    return robot.uncertainty ? *robot.uncertainty : usual;
+}
+RobotUncertainty& uncertainty_of(Robot& robot) {
+    return robot.uncertainty ? *robot.uncertainty : robot.uncertainty.emplace();
+}
+
+void add_uncertainty(Rows& rows) {
+    rows.push_back(parameters::optional_group<Robot>(
+        "uncertainty",
+        "what is not known exactly of this vehicle: defaults for problems that have an uncertainty; others ignore it",
+        [](auto& r) -> auto& { return r.uncertainty; }));
+    for (const Parameter<RobotUncertainty>& inner : robot_uncertainty_rows()) {
+        rows.push_back(parameters::nested<Robot>(
+            inner, "uncertainty.", [](auto& r) -> auto& { return uncertainty_of(r); }));
+    }
+}
+
 Rows all_rows() {
     Rows rows;
     rows.push_back(parameters::constant<Robot>("schema", "format and version of a robot file", "downwash/robot/v1"));
@@ -300,6 +321,7 @@ Rows all_rows() {
     add_rotors(rows);
     add_arm(rows);
     add_controller(rows);
+    add_uncertainty(rows);
     return rows;
 }
 

@@ -93,7 +93,7 @@ World draw_world(const Uncertainty& uncertainty, const Robot& robot, std::uint64
     return world_at(uncertainty, robot, quantiles, tape);
 }
 
-std::vector<KeyError> uncertainty_errors(const Uncertainty& uncertainty, const Robot& robot) {
+std::vector<KeyError> uncertainty_errors(const RobotUncertainty& uncertainty, const Robot& robot) {
     std::vector<KeyError> errors;
     const double tick_s = 1 / robot.controller.rate_hz;
     const double lag_s = robot.rotors.time_constant_s;

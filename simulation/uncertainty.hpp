@@ -7,32 +7,18 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/base/spread.hpp"
+#include "downwash/simulation/robot_uncertainty.hpp"
 #include "downwash/simulation/world.hpp"
 
 namespace downwash {
 
-/// What is not known exactly, and how well it is known: docs/model.md 9 says where the defaults come from.
-struct Uncertainty {
+/// What is not known exactly, and how well it is known: of vehicle and sensors, and of the world around them.
+/// docs/model.md 9 says where the defaults come from.
+struct Uncertainty : RobotUncertainty {
     Spread ceiling_scale = Spread::of_sd(0.15);  ///< relative, of K - 1
     Spread ground_scale = Spread::of_sd(0.15);
     Spread scene_x_m = Spread::of_sd(0.02);
     Spread scene_z_m = Spread::of_sd(0.02);
-
-    Spread mass_scale = Spread::of_sd(0.02);
-    Spread inertia_scale = Spread::of_sd(0.05);
-    Spread arm_mass_scale = Spread::of_sd(0.05);
-    Spread center_of_mass_x_m = Spread::of_sd(0.005);
-    Spread center_of_mass_z_m = Spread::of_sd(0.005);
-    Spread thrust_scale = Spread::of_sd(0.03);
-    Spread rotor_thrust_scale = Spread::of_sd(0.01);             ///< of each rotor for itself
-    Spread rotor_time_constant_s = Spread::of_factor(0.7, 1.5);  ///< a range is one of the time constant itself
-    Spread delay_s = Spread::of_factor(0.5, 1.5);                ///< a range is one of the delay itself
-
-    Spread position_bias_m = Spread::of_sd(0.01);  ///< of x and z, each for itself
-    Spread pitch_bias_rad = Spread::of_sd(0.005235987755982988);
-    Spread position_noise_m = Spread::of_sd(0.005);  ///< only the sd of a noise has a meaning
-    Spread velocity_noise_m_s = Spread::of_sd(0.02);
-    Spread gyro_noise_rad_s = Spread::of_sd(0.015);
 
     Spread wind_x_m_s = Spread::of_sd(0.5);
     Spread wind_z_m_s = Spread::of_sd(0.1);
@@ -69,7 +55,7 @@ struct WorldParameter {
 
 /// What is wrong with an uncertainty beside a robot: rotors that would follow faster than ticks can tell, delays that
 /// are too long. Keys as in files, without `uncertainty.`.
-[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> uncertainty_errors(const Uncertainty& uncertainty,
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> uncertainty_errors(const RobotUncertainty& uncertainty,
                                                                        const Robot& robot);
 
 }  // namespace downwash

@@ -88,6 +88,10 @@ TEST_CASE("Keys are explained from the table that reads them") {
     CHECK_THAT(work.run("explain environment.obstacles[3].name").out, Contains("environment.obstacles[].name"));
     CHECK_THAT(work.run("explain goal").out, Contains("hold_s"));
     CHECK(work.run("explain goal.hold").out == work.run("explain goal.hold_s").out);
+    CHECK_THAT(work.run("explain uncertainty.vehicle.mass_scale").out,
+               StartsWith("robot.uncertainty.vehicle.mass_scale\n") && Contains("default:  {sd: 0.02}\n") &&
+                   Contains("\nuncertainty.vehicle.mass_scale\n") &&
+                   Contains("default:  that of robot.uncertainty, or {sd: 0.02}\n"));
     check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
 }
 
@@ -98,6 +102,11 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
         CHECK(schema.at("type") == "object");
         CHECK(schema.at("properties").contains("schema"));
     }
+    const nlohmann::json robot = work.run("check --schema robot").json();
+    const nlohmann::json& own = robot.at("properties").at("uncertainty").at("properties");
+    CHECK(own.size() == 2);
+    CHECK(own.at("vehicle").at("properties").at("mass_scale").at("default").at("sd") == 0.02);
+    CHECK(own.at("sensing").at("properties").contains("pitch_bias_deg"));
     const nlohmann::json problem = work.run("check --schema problem").json();
     const nlohmann::json& seed = problem.at("properties").at("planner").at("properties").at("seed");
     CHECK(seed.at("type") == "integer");

@@ -75,6 +75,27 @@ const Edit edits[] = {
     {"attitude: {kp: 8, ", "attitude: {", "16:3: controller.attitude.kp is missing: expected a number from 0 to 10000"},
     {"position: {kp: 2, kd: 2.6}", "position: {Kp: 2, kd: 2.6}",
      "15:14: unknown key 'Kp' in controller.position: did you mean 'kp'?"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {aero: {ceiling_scale: {sd: 0.1}}}",
+     "19:15: unknown key 'aero' in uncertainty: it belongs in the problem file, as uncertainty.aero"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty:\n  vehicle: {mass_scale: 0}\n  wind: {gust_m_s: {sd: 0.3}}",
+     "21:3: unknown key 'wind' in uncertainty: it belongs in the problem file, as uncertainty.wind"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {weight: 0}, weather: 0}",
+     "19:25: unknown key 'weight' in uncertainty.vehicle: expected mass_scale, inertia_scale, arm_mass_scale, "
+     "com_offset_m, thrust_scale, rotor_thrust_scale, rotor_time_constant_s or delay_s\n19:37: unknown key 'weather' "
+     "in uncertainty: expected vehicle or sensing"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nplanner: {seed: 1}",
+     "19:1: unknown key 'planner' at the top: it belongs in the problem file, as planner"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: none",
+     "19:14: uncertainty is 'none': expected a group of keys"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {sensing: {pitch_bias_deg: {sd: 11}}}",
+     "19:41: uncertainty.sensing.pitch_bias_deg has an sd so large that 3 of it leave the range: expected 0 or {sd: "
+     "number} or {range: [low, high]} in deg from -30 to 30"},
+    // Too slow for the delay that the tick can bear: said once, also where a problem takes it over.
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
+     "19:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {rotor_time_constant_s: {sd: 0.01}}}",
+     "19:48: uncertainty.vehicle.rotor_time_constant_s is uncertain for rotors without a lag: give the robot its "
+     "rotors.time_constant_s first"},
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
@@ -32,6 +33,59 @@ TEST_CASE("what a file leaves out has the default of its member") {
     CHECK(problem.planner.safety_margin_m == fresh.planner.safety_margin_m);
     CHECK_FALSE(problem.planner.max_iterations.has_value());
     CHECK_FALSE(problem.robot.arm.is_limited);
+}
+
+TEST_CASE("a problem takes over what its robot says of its own uncertainty, but for keys that it gives itself") {
+    const TestFolder folder;
+    const std::string robot = std::string(good_robot) +
+                              "uncertainty:\n"
+                              "  vehicle: {mass_scale: {sd: 0.11}, com_offset_m: {x: {sd: 0.03}, z: {sd: 0.04}}}\n"
+                              "  sensing: {pitch_bias_deg: {range: [-1, 2]}, position_noise_m: 0}\n";
+    const auto uncertainty_of = [&](std::string_view of_problem) {
+        return folder.read(std::string(good_problem) + std::string(of_problem), robot).uncertainty;
+    };
+    const Uncertainty usual;
+    const Uncertainty taken = uncertainty_of("uncertainty: {}\n").value();
+    CHECK(taken.mass_scale == Spread::of_sd(0.11));
+    CHECK(taken.center_of_mass_x_m == Spread::of_sd(0.03));
+    CHECK(taken.center_of_mass_z_m == Spread::of_sd(0.04));
+    CHECK(taken.pitch_bias_rad.form == Spread::Form::range);
+    CHECK(taken.pitch_bias_rad.high == Approx(0.0349066));
+    CHECK(taken.position_noise_m == Spread());
+    CHECK(taken.inertia_scale == usual.inertia_scale);
+    CHECK(taken.gyro_noise_rad_s == usual.gyro_noise_rad_s);
+    CHECK(taken.ceiling_scale == usual.ceiling_scale);
+    CHECK(taken.gust_m_s == usual.gust_m_s);
+
+    // Key by key, also where the problem makes exact what the robot does not know, and wherever `robot:` stands.
+    const Uncertainty mixed = uncertainty_of(
+                                  "uncertainty: {aero: {ceiling_scale: 0}, vehicle: {mass_scale: 0, com_offset_m: {z: "
+                                  "{sd: 0.001}}}, sensing: {position_noise_m: {sd: 0.005}}}\n")
+                                  .value();
+    CHECK(mixed.mass_scale == Spread());
+    CHECK(mixed.center_of_mass_x_m == Spread::of_sd(0.03));
+    CHECK(mixed.center_of_mass_z_m == Spread::of_sd(0.001));
+    CHECK(mixed.position_noise_m == Spread::of_sd(0.005));
+    CHECK(mixed.pitch_bias_rad == taken.pitch_bias_rad);
+    CHECK(mixed.ceiling_scale == Spread());
+    const std::string robot_last = edited(edited(good_problem, "robot: robot.yaml\n", ""), "seed: 1}\n",
+                                          "seed: 1}\nuncertainty: {vehicle: {thrust_scale: 0}}\nrobot: robot.yaml\n");
+    CHECK(folder.read(robot_last, robot).uncertainty.value().mass_scale == Spread::of_sd(0.11));
+    CHECK(folder.read(robot_last, robot).uncertainty.value().thrust_scale == Spread());
+
+    // Without one of its own a problem stays as believed, and the same problem.
+    const std::string nothing = problem_sha256(folder.read());
+    for (const std::string_view none : {"", "uncertainty: none\n"}) {
+        const Problem problem = folder.read(std::string(good_problem) + std::string(none), robot);
+        CHECK_FALSE(problem.uncertainty.has_value());
+        CHECK(problem.robot.uncertainty.value().mass_scale == Spread::of_sd(0.11));
+        CHECK(problem_sha256(problem) == nothing);
+    }
+}
+
+TEST_CASE("the shipped robot states the defaults of its uncertainty to the last bit") {
+    const Robot robot = read_robot(std::filesystem::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml");
+    CHECK(robot.uncertainty.value() == RobotUncertainty{});
 }
 
 TEST_CASE("keys are read by their former names, which are reported") {
@@ -137,6 +191,10 @@ TEST_CASE("single values are set as a file would set them") {
     CHECK_THROWS_WITH(set_parameter(problem, "planner.objective", "fun"),
                       with_all_names("planner.objective: is 'fun': expected one of <objectives>"));
     CHECK_THROWS_AS(set_parameter(problem, "environment.obstacles[].name", "x"), InputError);
+    set_parameter(problem, "robot.uncertainty.vehicle.thrust_scale", "0");
+    set_parameter(problem, "uncertainty.vehicle.mass_scale", "0");
+    CHECK(problem.uncertainty.value().mass_scale == Spread());
+    CHECK(problem.uncertainty.value().thrust_scale == Spread());
 }
 
 TEST_CASE("every parameter is described, stands in a group and has a sound default unless it must be given") {

@@ -83,6 +83,20 @@ class ProblemMaker {
             problem.aero.ceiling.parameters[0] = 1 + uniform();
         }
         problem.aero.max_factor = 1 + uniform();
+        if (coin()) {
+            RobotUncertainty& own = problem.robot.uncertainty.emplace();
+            own.mass_scale = Spread::of_sd(0.1 * uniform());
+            own.pitch_bias_rad = coin() ? Spread::of_sd(0.05 * uniform()) : Spread::over(-0.1 * uniform(), 0.1);
+            own.delay_s = coin() ? Spread() : Spread::of_factor(uniform(), 1 + uniform());
+        }
+        if (coin()) {
+            Uncertainty& all = problem.uncertainty.emplace();
+            all.ceiling_scale = Spread::of_sd(0.1 * uniform());
+            all.center_of_mass_z_m = coin() ? Spread() : Spread::over(-uniform(), uniform());
+            all.pitch_bias_rad = Spread::of_sd(0.1 * uniform());
+            all.wind_x_m_s = Spread::of_sd(uniform());
+            all.gust_length_x_m = 1 + uniform();
+        }
         return problem;
     }
 
@@ -115,6 +129,10 @@ std::string bits(const Value& value) {
         text += std::to_string(*whole);
     } else if (const auto* words = std::get_if<std::string>(&value)) {
         text += *words;
+    } else if (const auto* spread = std::get_if<Spread>(&value)) {
+        text += std::to_string(static_cast<int>(spread->form)) + " ";
+        add(spread->low);
+        add(spread->high);
     }
     return text;
 }
@@ -149,6 +167,33 @@ TEST_CASE("what is written is read again to the last bit") {
     problem.aero.enabled = false;
     folder.write("effective.yaml", effective_yaml(problem, folder / ""));
     CHECK_FALSE(read_problem(folder / "effective.yaml").aero.enabled);
+}
+
+TEST_CASE("the effective problem gives every number of its uncertainty, and those of its robot beside it") {
+    const TestFolder folder;
+    const Problem problem = folder.read(
+        std::string(good_problem) + "uncertainty: {vehicle: {thrust_scale: {sd: 0.01}}}\n",
+        std::string(good_robot) + "uncertainty: {vehicle: {mass_scale: {sd: 0.11}, thrust_scale: {sd: 0.07}}}\n");
+    const std::string yaml = effective_yaml(problem, folder / "");
+    const std::size_t own = yaml.find("\n  uncertainty:\n"), resolved = yaml.find("\nuncertainty:\n");
+    REQUIRE(own < resolved);
+    REQUIRE(resolved != std::string::npos);
+    const std::string of_robot = yaml.substr(own, resolved - own), of_problem = yaml.substr(resolved);
+    CHECK(of_robot.find("    mass_scale: {sd: 0.11}") == of_robot.rfind("mass_scale: {sd: 0.11}") - 4);
+    CHECK(of_robot.find("thrust_scale: {sd: 0.07}") != std::string::npos);
+    CHECK(of_problem.find("mass_scale: {sd: 0.11}") != std::string::npos);
+    CHECK(of_problem.find("    thrust_scale: {sd: 0.01}") != std::string::npos);
+    CHECK(of_problem.find("gyro_noise_rad_s: {sd: 0.015}") != std::string::npos);
+    folder.write("effective.yaml", yaml);
+    const Problem again = read_problem(folder / "effective.yaml");
+    CHECK(bits(again) == bits(problem));
+    CHECK(problem_sha256(again) == problem_sha256(problem));
+    // What the robot says counts where the problem takes it over, and only there.
+    Problem other = problem;
+    other.robot.uncertainty.reset();
+    CHECK(problem_sha256(other) == problem_sha256(problem));
+    other.uncertainty->mass_scale = Spread::of_sd(0.12);
+    CHECK(problem_sha256(other) != problem_sha256(problem));
 }
 
 TEST_CASE("the hash of a problem depends on its meaning, not on how it is written") {
