@@ -75,7 +75,7 @@ class MujocoWorld {
         data_->ctrl[0] = given.joint_torque_nm;
         std::copy(given.thrust_n, given.thrust_n + rotors, data_->ctrl + 1);
     }
-    mjModel* model() { return model_.get(); }
+    [[nodiscard]] mjModel* model() const { return model_.get(); }
     mjData* data() { return data_.get(); }
 
  private:
