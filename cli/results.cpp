@@ -180,7 +180,7 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
                                 o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
         if (o.cause == "certificate") {
             text += row("", "The planner discarded every plan: in worlds that the search had not seen");
-            text += row("", "each failed too often.");
+            text += row("", "each failed too often. `downwash solve --remedies` tries what would help.");
         } else if (o.cause == "direct_flight") {
             text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += row("", "the last one failed or came nearer to an obstacle than the margin.");

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/remedies.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -43,7 +45,7 @@ struct SolveArguments {
     std::map<std::string_view, std::string> planner;  ///< texts of planner_options that were given
     int threads = default_threads();
     std::optional<std::string> out;
-    bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false;
+    bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
 };
 
 void add_planner_options(CLI::App& command, SolveArguments& given) {
@@ -87,6 +89,31 @@ std::string announcement(const Problem& problem) {
                        planner.algorithm, text_of(planner.objective), planner.seed);
 }
 
+std::string outcome_of(const Remedy& remedy) {
+    if (!remedy.error.empty()) {
+        return "cannot be planned: " + remedy.error;
+    }
+    if (remedy.helps) {
+        return fmt::format("certified after {:.1f} s, cost {:.6g}", remedy.wall_s, remedy.cost);
+    }
+    if (remedy.certificate && remedy.certificate->failures > 0) {
+        return fmt::format("not certified: {} of {} worlds fail", remedy.certificate->failures,
+                           remedy.certificate->worlds);
+    }
+    return "not certified in time";
+}
+
+void print_remedies(const Problem& problem, SolveOptions options) {
+    constexpr double limit_s = 5;
+    fmt::print("What would help, each tried by itself for up to {} s:\n\n", limit_s);
+    options.on_progress = nullptr;
+    options.on_map_progress = nullptr;
+    static_cast<void>(try_remedies(problem, options, limit_s, [](const Remedy& remedy) {
+        fmt::print("  {:<41} {}\n", remedy.change, outcome_of(remedy));
+        std::fflush(stdout);
+    }));
+}
+
 ExitCode run(const SolveArguments& given) {
     const Interruption interruption;
     const Problem read = read_problem(
@@ -116,6 +143,9 @@ ExitCode run(const SolveArguments& given) {
     }
     fmt::print("{}",
                given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
+    if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
+        print_remedies(read, options);
+    }
     return solution.interrupted ? interruption.code() : exit_code_of(solution);
 }
 
@@ -135,7 +165,12 @@ void add_solve(CLI::App& program, Action& action) {
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
+    CLI::Option* remedies =
+        command.add_flag("--remedies", given.tries_remedies,
+                         "where no plan gets its certificate, try what would help: another place or tolerance of the "
+                         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each");
     add_json(command, given.as_json, "print solution.json on standard output instead of a summary");
+    command.get_option("--json")->excludes(remedies);
 }
 
 }  // namespace downwash::cli

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "../support/error_of.hpp"
@@ -8,6 +10,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/certificate.hpp"
+#include "downwash/planner/remedies.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 
@@ -196,4 +199,43 @@ TEST_CASE("An uncertainty so wide that the vehicle cannot even hover at its star
     problem.uncertainty->rotor_time_constant_s = Spread::over(0.02, 0.9);
     const std::string error = error_of([&] { static_cast<void>(solve(problem)); });
     CHECK_THAT(error, Catch::Contains("uncertainty") && Catch::Contains("cannot hover at its start"));
+}
+
+TEST_CASE("Remedies are changes that were tried: what helps got a certificate, and nothing else is said to") {
+    Problem problem = uncertain_problem();
+    problem.uncertainty->position_bias_m = Spread::of_sd(0.03);  // against a tolerance of 10 cm
+    problem.planner.max_failure_probability = 0.02;
+    std::vector<std::string> told;
+    const std::vector<Remedy> remedies =
+        try_remedies(problem, {}, 20, [&told](const Remedy& remedy) { told.push_back(remedy.change); });
+    REQUIRE(remedies.size() == told.size());
+    CHECK(remedies.size() >= 6);
+    for (std::size_t i = 0; i < remedies.size(); ++i) {
+        const Remedy& remedy = remedies[i];
+        CHECK(remedy.change == told[i]);
+        CHECK(remedy.helps == (remedy.certificate && remedy.certificate->is_given));
+        CHECK((remedy.error.empty() || !remedy.helps));
+    }
+    const auto named = [&](std::string_view part) {
+        return *std::find_if(remedies.begin(), remedies.end(),
+                             [part](const Remedy& remedy) { return remedy.change.find(part) != std::string::npos; });
+    };
+    CHECK(named("known twice as well").helps);
+}
+
+TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets those tried so far") {
+    Problem problem = uncertain_problem();
+    problem.goal = configuration_goal(3, 0.55);  // with the least height of 0.5 m
+    problem.planner.max_iterations = 1;
+    std::stop_source stop;
+    SolveOptions options;
+    options.stop = stop.get_token();
+    const auto remedies = try_remedies(problem, options, 10, [&stop](const Remedy& remedy) {
+        if (remedy.change == "the goal 0.2 m lower") {
+            stop.request_stop();
+        }
+    });
+    REQUIRE(remedies.size() == 2);
+    CHECK_THAT(remedies[1].error, Catch::Contains("goal"));
+    CHECK_FALSE(remedies[1].helps);
 }

@@ -143,7 +143,7 @@ const Configuration low_end{-3.5, 0.7, -quarter_turn};
 
 }  // namespace
 
-TEST_CASE("the margin is kept as believed; in other worlds a flight only must not touch anything") {
+TEST_CASE("the margin is kept as believed, and in other worlds a flight only must not touch anything") {
     const auto is_accepted_with = [](double raised_m) {
         const Fixture f(low_problem());
         const planning::SearchWorlds worlds = raised_worlds(f, {raised_m});
@@ -178,7 +178,7 @@ TEST_CASE("a flight that one world rejects is not flown in the rest, once that w
     CHECK(edges_flown() == 9);  // as believed, and as many as fill the lanes
 }
 
-TEST_CASE("counterexamples constrain flights and do not count in their cost; those that reject nothing leave first") {
+TEST_CASE("counterexamples constrain flights, do not count in their cost, and leave first if they reject nothing") {
     const Fixture f(low_problem());
     const planning::SearchWorlds worlds = raised_worlds(f, {0.1});
     const planning::SearchTask task(f.problem, *f.model, nullptr, {}, &worlds);

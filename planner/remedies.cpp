@@ -1,0 +1,177 @@
+#include "downwash/planner/remedies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/planner/solve.hpp"
+
+namespace downwash {
+namespace {
+
+/// Calls `change(target)` with every end-effector or configuration goal, stops and alternatives included.
+template <class Change>
+void change_goals(Problem& problem, const Change& change) {
+    const auto change_one = [&](Goal& goal) {
+        if (goal.end_effector) {
+            change(*goal.end_effector);
+        }
+        if (goal.configuration) {
+            change(*goal.configuration);
+        }
+    };
+    const auto change_all = [&](Goal& goal) {
+        change_one(goal);
+        std::ranges::for_each(goal.any_of, change_one);
+    };
+    std::ranges::for_each(problem.stops, change_all);
+    change_all(problem.goal);
+}
+
+/// To the millimetre, as the error that may come of it prints it.
+double raised(double from_m, double by_m) {
+    return std::round(1e3 * (from_m + by_m)) / 1e3;
+}
+
+void raise(EndEffectorGoal& goal, double z_m) {
+    goal.z_m = raised(goal.z_m, z_m);
+}
+
+void raise(ConfigurationGoal& goal, double z_m) {
+    if (goal.z_m) {
+        goal.z_m = raised(*goal.z_m, z_m);
+    }
+}
+
+void raise_goals(Problem& problem, double z_m) {
+    change_goals(problem, [z_m](auto& goal) { raise(goal, z_m); });
+}
+
+void widen_tolerances(Problem& problem) {
+    constexpr double factor = 1.5;
+    change_goals(problem, [](auto& goal) {
+        goal.tolerance_m *= factor;
+        for (std::optional<double>* tolerance : {&goal.tolerance_x_m, &goal.tolerance_z_m}) {
+            if (*tolerance) {
+                **tolerance *= factor;
+            }
+        }
+    });
+}
+
+/// Time scaled by 2: the same ways at half the speed.
+void slow_down(Problem& problem) {
+    MotionLimits& motion = problem.motion;
+    motion.max_speed_m_s /= 2;
+    motion.max_arm_rate_rad_s /= 2;
+    motion.max_acceleration_m_s2 /= 4;
+    motion.max_arm_acceleration_rad_s2 /= 4;
+}
+
+/// Time of the position loop scaled by 1 / 1.15.
+void stiffen(ModelInversion& law) {
+    constexpr double faster = 1.15;
+    const auto stiffen_loop = [](double& kp, double& kd, double& ki) {
+        kp *= faster * faster;
+        kd *= faster;
+        ki *= faster * faster * faster;
+    };
+    ModelInversion::AxisGains height = law.axis_gains(1);
+    stiffen_loop(height.kp, height.kd, height.ki);
+    stiffen_loop(law.position_kp, law.position_kd, law.position_ki);
+    law.height_kp = height.kp;
+    law.height_kd = height.kd;
+    law.height_ki = height.ki;
+}
+
+/// Of another law there is nothing to say.
+void stiffen_if_known(Problem& problem) {
+    if (auto* law = std::get_if<ModelInversion>(&problem.robot.controller.law)) {
+        stiffen(*law);
+    }
+}
+
+/// All spreads half as wide, around what is believed.
+void know_better(Problem& problem) {
+    Uncertainty& uncertainty = *problem.uncertainty;
+    std::vector<Spread Uncertainty::*> done;
+    for (const WorldParameter& parameter : world_parameters()) {
+        if (std::ranges::find(done, parameter.spread) != done.end()) {
+            continue;  // of several numbers
+        }
+        done.push_back(parameter.spread);
+        Spread& spread = uncertainty.*parameter.spread;
+        double middle = 0;
+        if (spread.form == Spread::Form::factor) {
+            middle = 1;
+        } else if (spread.form == Spread::Form::range && parameter.believed != nullptr) {
+            middle = parameter.believed(problem.robot);
+        }
+        spread.low = 0.5 * (middle + spread.low);
+        spread.high = 0.5 * (middle + spread.high);
+    }
+    for (Spread* noise : {&uncertainty.position_noise_m, &uncertainty.velocity_noise_m_s, &uncertainty.gyro_noise_rad_s,
+                          &uncertainty.gust_m_s}) {
+        noise->high *= 0.5;
+    }
+}
+
+struct Change {
+    std::string_view name;
+    void (*make)(Problem&);
+};
+
+constexpr Change changes[] = {
+    {"the goal 0.1 m lower", [](Problem& problem) { raise_goals(problem, -0.1); }},
+    {"the goal 0.2 m lower", [](Problem& problem) { raise_goals(problem, -0.2); }},
+    {"the goal 0.2 m higher", [](Problem& problem) { raise_goals(problem, 0.2); }},
+    {"1.5 times the goal's tolerance", widen_tolerances},
+    {"0.1 m more margin", [](Problem& problem) { problem.planner.safety_margin_m += 0.1; }},
+    {"half the speed", slow_down},
+    {"a position loop that is 15 % faster", stiffen_if_known},
+    {"all that is uncertain known twice as well", know_better},
+};
+
+Remedy tried(const Change& change, Problem problem, SolveOptions options) {
+    Remedy remedy;
+    remedy.change = change.name;
+    change.make(problem);
+    try {
+        const Solution solution = solve(problem, options);
+        remedy.helps = solution.certificate && solution.certificate->is_given;
+        remedy.certificate = solution.certificate;
+        remedy.cost = solution.cost;
+        remedy.wall_s = solution.planning.wall_s;
+    } catch (const InputError& error) {
+        const KeyError& first = error.errors().front();
+        remedy.error = first.key.empty() ? first.message : first.key + " " + first.message;
+    }
+    return remedy;
+}
+
+}  // namespace
+
+std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& options, double limit_s,
+                                 const std::function<void(const Remedy&)>& on_tried) {
+    Problem limited = problem;
+    limited.planner.time_limit_s = limit_s;
+    SolveOptions until_first = options;
+    until_first.stop_at_first_solution = true;
+    until_first.keep_tree = false;
+    std::vector<Remedy> remedies;
+    for (const Change& change : changes) {
+        if (options.stop.stop_requested()) {
+            break;
+        }
+        remedies.push_back(tried(change, limited, until_first));
+        if (on_tried) {
+            on_tried(remedies.back());
+        }
+    }
+    return remedies;
+}
+
+}  // namespace downwash

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/planner/certificate.hpp"
+#include "downwash/planner/solve_options.hpp"
+#include "downwash/problems/problem.hpp"
+
+namespace downwash {
+
+/// A change of a problem for which a search found no certified plan, and what came of trying it.
+struct Remedy {
+    std::string change;                      ///< in words, for example "the goal 0.2 m lower"
+    std::string error;                       ///< why the changed problem cannot be planned; empty if it can
+    bool helps = false;                      ///< a plan got its certificate
+    std::optional<Certificate> certificate;  ///< of that plan or, without one, of the plan that failed least
+    double cost = 0;                         ///< of that plan, in the objective's unit
+    double wall_s = 0;                       ///< of the search
+};
+
+/// Tries what may help where a search found no certified plan: another place or tolerance of the goal, a larger margin,
+/// slower motion, a stiffer controller, and all that is uncertain known twice as well. Each change is made for itself
+/// and searched for until the first certified plan. The result does not say that nothing else would help.
+/// @param limit_s wall time of each search [s], > 0; a limit of iterations stays
+/// @param on_tried called after each
+/// @pre the problem has an uncertainty
+/// @return in the order in which they were tried; fewer than all when options.stop was requested
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& options,
+                                                               double limit_s,
+                                                               const std::function<void(const Remedy&)>& on_tried = {});
+
+}  // namespace downwash
