@@ -128,7 +128,7 @@ std::vector<Counterexample> ProblemWorlds::counterexamples(const Certificate& ce
     std::vector<Counterexample> counterexamples;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         if (vehicles[i]) {
-            counterexamples.push_back({std::move(worlds[i]), *vehicles[i]});
+            counterexamples.push_back({worlds[i], *vehicles[i]});
         }
     }
     return counterexamples;

@@ -298,7 +298,7 @@ void FlightTreePlanner::settle(Proposal proposal) {
     }
     flights_.count_rejection("direct_flight");
     if (std::vector<Counterexample> found; hooks_.counterexamples && !(found = hooks_.counterexamples()).empty()) {
-        learn_from(proposal, std::move(found));
+        learn_from(proposal, found);
     } else if (proposal.hold == nullptr) {
         refiner_->drop(proposal.refined);
         if (best_) {
@@ -314,10 +314,10 @@ void FlightTreePlanner::settle(Proposal proposal) {
 }
 
 /// From now on the refiner flies in these worlds, too, and takes its plans on anew.
-void FlightTreePlanner::learn_from(const Proposal& failed, std::vector<Counterexample> counterexamples) {
+void FlightTreePlanner::learn_from(const Proposal& failed, const std::vector<Counterexample>& counterexamples) {
     const bool is_refiners_best =
         failed.hold == nullptr && refiner_->best() != nullptr && refiner_->best_number() == failed.refined;
-    refined_flights_.join(std::move(counterexamples));
+    refined_flights_.join(counterexamples);
     bool is_best = true;
     for (Plan& plan : refiner_->release()) {
         handed_over_.push_back({std::move(plan), !(is_best && is_refiners_best)});

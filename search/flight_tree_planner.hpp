@@ -92,7 +92,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] std::optional<Proposal> proposal(double min_gain) const;
     void execute(Proposal& proposal) const;
     void settle(Proposal proposal);
-    void learn_from(const Proposal& failed, std::vector<Counterexample> counterexamples);
+    void learn_from(const Proposal& failed, const std::vector<Counterexample>& counterexamples);
     void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
     [[nodiscard]] double work_beside(const Candidate& candidate) const;
     ompl::base::PlannerStatus report_solution();

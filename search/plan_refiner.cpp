@@ -95,6 +95,7 @@ std::vector<std::optional<FlownPlan>> PlanRefiner::flown_whole(const std::vector
     start.costs.push_back(0);
     start.nominal_costs.push_back(0);
     std::vector<FleetJob> jobs;
+    jobs.reserve(plans.size());
     for (const Change& plan : plans) {
         jobs.push_back(job_for(start.fleets[0], plan, 0, plan.ticks.size() - 1));
     }
@@ -236,6 +237,7 @@ std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint
 /// accepted and cheaper there, too.
 std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes) {
     std::vector<FleetJob> jobs;
+    jobs.reserve(changes.size());
     for (const Change& change : changes) {
         jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
     }

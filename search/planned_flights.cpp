@@ -187,11 +187,9 @@ const FlownWorld* PlannedFlights::world(std::size_t number) const {
     return number < own ? &task_.worlds->worlds[number - 1] : &joined_[number - own].world;
 }
 
-void PlannedFlights::join(std::vector<Counterexample> counterexamples) {
-    for (Counterexample& counterexample : counterexamples) {
-        joined_.push_back(std::move(counterexample));
-        rejected_in_.push_back(1);
-    }
+void PlannedFlights::join(const std::vector<Counterexample>& counterexamples) {
+    joined_.insert(joined_.end(), counterexamples.begin(), counterexamples.end());
+    rejected_in_.insert(rejected_in_.end(), counterexamples.size(), 1);
     while (joined_.size() > most_counterexamples) {
         const auto first = rejected_in_.begin() + static_cast<std::ptrdiff_t>(worlds_of_task());
         const auto least = std::min_element(first, rejected_in_.end());

@@ -46,7 +46,7 @@ class PlannedFlights {
     /// From now on fleets at the start fly in these worlds, too. Of more than most_counterexamples those go that have
     /// rejected the fewest flights, and of these the oldest. Fleets from before are not to be flown on.
     /// @pre the task has worlds, if only an empty list
-    void join(std::vector<Counterexample> counterexamples);
+    void join(const std::vector<Counterexample>& counterexamples);
     static constexpr std::size_t most_counterexamples = 32;
     [[nodiscard]] bool has_counterexamples() const noexcept { return !joined_.empty(); }
 
