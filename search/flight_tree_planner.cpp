@@ -240,8 +240,8 @@ void FlightTreePlanner::refine() {
     if (handed_over_.empty()) {
         refiner_->improve();
     }
-    for (const HandedOver& handed_over : std::exchange(handed_over_, {})) {
-        refiner_->take(handed_over.plan, handed_over.as_it_is);
+    for (HandedOver& handed_over : std::exchange(handed_over_, {})) {
+        refiner_->take(std::move(handed_over.lineage), handed_over.as_it_is);
     }
     refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + parameters_.refine_work;
 }
@@ -258,10 +258,10 @@ void FlightTreePlanner::hand_to_refiner() {
     }
     if (is_idle || best->cost < (1 - parameters_.worthwhile_gain) * handed_over_cost_) {
         handed_over_cost_ = best->cost;
-        handed_over_.push_back({growth_->tree().plan_to(*best)});
+        handed_over_.push_back({{growth_->tree().plan_to(*best)}});
     } else if (refiner_->best() != nullptr && refiner_->wants_plan()) {
         if (const FlightNode* hold = growth_->hold_away_from(refiner_->best()->points)) {
-            handed_over_.push_back({growth_->tree().plan_to(*hold)});
+            handed_over_.push_back({{growth_->tree().plan_to(*hold)}});
         }
     }
 }
@@ -302,7 +302,7 @@ void FlightTreePlanner::settle(Proposal proposal) {
     } else if (proposal.hold == nullptr) {
         refiner_->drop(proposal.refined);
         if (best_) {
-            handed_over_.push_back({plan_through(best_->moments, task_.model.tick().tick_s)});
+            handed_over_.push_back({{plan_through(best_->moments, task_.model.tick().tick_s)}});
         }
     }
     if (proposal.hold == nullptr) {
@@ -319,12 +319,12 @@ void FlightTreePlanner::learn_from(const Proposal& failed, const std::vector<Cou
         failed.hold == nullptr && refiner_->best() != nullptr && refiner_->best_number() == failed.refined;
     refined_flights_.join(counterexamples);
     bool is_best = true;
-    for (Plan& plan : refiner_->release()) {
-        handed_over_.push_back({std::move(plan), !(is_best && is_refiners_best)});
+    for (Lineage& lineage : refiner_->release()) {
+        handed_over_.push_back({std::move(lineage), !(is_best && is_refiners_best)});
         is_best = false;
     }
     if (!is_refiners_best) {
-        handed_over_.push_back({plan_through(failed.candidate.moments, task_.model.tick().tick_s), false});
+        handed_over_.push_back({{plan_through(failed.candidate.moments, task_.model.tick().tick_s)}, false});
     }
 }
 

@@ -116,7 +116,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::optional<Candidate> best_;
     /// A plan that the refiner takes on in the next round, changed if the plan itself is known to fail.
     struct HandedOver {
-        Plan plan;
+        Lineage lineage;
         bool as_it_is = true;
     };
     std::vector<HandedOver> handed_over_;

@@ -20,6 +20,9 @@ constexpr int batches_to_come_near = 60;
 constexpr double near_cost_ratio = 1.05;
 constexpr int batches_to_overtake = 180;
 
+/// A plan is kept in its lineage when it has become cheaper by this share.
+constexpr double lineage_step = 0.01;
+
 /// In how many batches a plan that fails in counterexamples may be changed, and with which share of the largest steps.
 constexpr int repair_batches = 6;
 constexpr double repair_step = 0.3;
@@ -140,31 +143,53 @@ std::optional<FlownPlan> PlanRefiner::repaired(const Change& plan) {
     return std::nullopt;
 }
 
-void PlanRefiner::take(const Plan& plan, bool as_it_is) {
-    if (plan.reference.size() < 2) {
-        return;  // the start meets the goal: there is nothing on the way
-    }
-    Change whole;
+PlanRefiner::Change PlanRefiner::as_change(const Plan& plan) {
+    Change change;
     for (std::size_t i = 0; i < plan.reference.size(); ++i) {
-        whole.points.push_back(plan.reference[i].point);
+        change.points.push_back(plan.reference[i].point);
         if (i > 0) {
-            whole.ticks.push_back(plan.reference[i].tick - plan.reference[i - 1].tick);
+            change.ticks.push_back(plan.reference[i].tick - plan.reference[i - 1].tick);
         }
     }
+    return change;
+}
+
+void PlanRefiner::take(Lineage lineage, bool as_it_is) {
+    if (lineage.back().reference.size() < 2) {
+        return;  // the start meets the goal: there is nothing on the way
+    }
+    const Change last = as_change(lineage.back());
     std::optional<FlownPlan> flown;
     if (as_it_is) {
-        flown = std::move(flown_whole({whole}).front());
+        flown = std::move(flown_whole({last}).front());
     }
     if (!flown && flights_.has_counterexamples()) {
-        flown = repaired(whole);
+        lineage.pop_back();
+        flown = last_that_flies(lineage);
+        std::optional<FlownPlan> changed = repaired(last);
+        if (changed && (!flown || changed->cost < flown->cost)) {
+            flown = std::move(changed);
+            lineage.push_back(plan_of(*flown));
+        }
     }
     if (flown) {
-        add(std::move(*flown));
+        add(std::move(*flown), std::move(lineage));
     }
 }
 
-void PlanRefiner::add(FlownPlan plan) {
-    Track track{std::move(plan), ++taken_};
+/// Leaves out the end of a lineage up to the last plan that nothing rejects.
+std::optional<FlownPlan> PlanRefiner::last_that_flies(Lineage& lineage) {
+    for (; !lineage.empty(); lineage.pop_back()) {
+        if (std::optional<FlownPlan> flown = std::move(flown_whole({as_change(lineage.back())}).front())) {
+            return flown;
+        }
+    }
+    return std::nullopt;
+}
+
+void PlanRefiner::add(FlownPlan plan, Lineage lineage) {
+    const double cost = plan.cost;
+    Track track{std::move(plan), std::move(lineage), cost, ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
         if (!tracks_.empty()) {
             tracks_.front().batches = 0;  // it has its turns to overtake before it
@@ -176,13 +201,20 @@ void PlanRefiner::add(FlownPlan plan) {
     }
 }
 
-std::vector<Plan> PlanRefiner::release() {
-    std::vector<Plan> plans;
-    for (const Track& track : tracks_) {
-        plans.push_back(plan_through(moments_of(track.plan), flights_.task().model.tick().tick_s));
+Plan PlanRefiner::plan_of(const FlownPlan& flown) const {
+    return plan_through(moments_of(flown), flights_.task().model.tick().tick_s);
+}
+
+std::vector<Lineage> PlanRefiner::release() {
+    std::vector<Lineage> lineages;
+    for (Track& track : tracks_) {
+        lineages.push_back(std::move(track.lineage));
+        if (track.plan.cost < track.kept_cost) {
+            lineages.back().push_back(plan_of(track.plan));
+        }
     }
     tracks_.clear();
-    return plans;
+    return lineages;
 }
 
 std::optional<PlanRefiner::Change> PlanRefiner::changed(const std::vector<ReferencePoint>& points,
@@ -301,6 +333,10 @@ void PlanRefiner::improve() {
     const std::optional<FlownPlan> best = best_of(track.plan, changes);
     if (best) {
         track.plan = *best;
+        if (track.plan.cost < (1 - lineage_step) * track.kept_cost) {
+            track.lineage.push_back(plan_of(track.plan));
+            track.kept_cost = track.plan.cost;
+        }
         track.step = std::min(1.0, 1.5 * track.step);
         track.failures = 0;
     } else {

@@ -21,6 +21,9 @@ struct FlownPlan {
     double cost = 0, nominal_cost = 0;   ///< hold included
 };
 
+/// A plan, and before it those from which it came, each a little cheaper than the one before.
+using Lineage = std::vector<Plan>;
+
 /// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
 /// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
 /// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with
@@ -34,11 +37,13 @@ class PlanRefiner {
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }
     /// Flies a plan and takes it on, if nothing rejects it. Far more expensive ones than the best plan are not wanted.
-    /// Where counterexamples reject it, changes of it are tried.
+    /// Where counterexamples reject it, the cheaper one is taken on of the last plan in its lineage that they do not
+    /// reject, and of changes of the plan.
+    /// @param lineage not empty
     /// @param as_it_is false: the plan itself is known to fail
-    void take(const Plan& plan, bool as_it_is = true);
+    void take(Lineage lineage, bool as_it_is = true);
     /// Gives up its plans, the best first, to be taken on anew when counterexamples have joined.
-    [[nodiscard]] std::vector<Plan> release();
+    [[nodiscard]] std::vector<Lineage> release();
 
     /// Tries some changes of one of its plans, as many as are flown side by side.
     void improve();
@@ -56,6 +61,8 @@ class PlanRefiner {
     static constexpr std::size_t max_tracks = 2;
     struct Track {
         FlownPlan plan;
+        Lineage lineage;   ///< up to the plan, or to one that it has become a little cheaper than
+        double kept_cost;  ///< of the last of them
         int number;        ///< of the plan that was taken on
         double step = 1;   ///< of changes, as a share of the largest
         int failures = 0;  ///< batches since the last success, or since steps became large again
@@ -76,7 +83,10 @@ class PlanRefiner {
                                               const std::vector<std::int64_t>& old_ticks, std::size_t first,
                                               std::size_t last);
     [[nodiscard]] std::optional<FlownPlan> repaired(const Change& plan);
-    void add(FlownPlan plan);
+    [[nodiscard]] std::optional<FlownPlan> last_that_flies(Lineage& lineage);
+    void add(FlownPlan plan, Lineage lineage);
+    [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
+    [[nodiscard]] static Change as_change(const Plan& plan);
     /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
     [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const;
     /// The cost in the nominal world from the start up to the end of a job with which a change begins.

@@ -19,12 +19,12 @@ struct Fixture : test::FlightFixture {
     planning::Random random;
     planning::PlanRefiner refiner{planning::start_point(task), flights, random};
 
-    [[nodiscard]] Plan stop_and_go() const {
+    [[nodiscard]] Plan stop_and_go(const Configuration& first = {-2, 1, 0}) const {
         Plan plan;
         plan.tick_s = model->tick().tick_s;
         plan.reference.push_back({0, planning::reference_at(problem.start)});
         // In the end the arm points up, from a vehicle 1.2 m below the goal.
-        for (const Configuration& corner : {Configuration{-2, 1, 0}, {0, 3, -0.5}, {3, 3.6, -test::quarter_turn}}) {
+        for (const Configuration& corner : {first, {0, 3, -0.5}, {3, 3.6, -test::quarter_turn}}) {
             const ReferenceKnot& last = plan.reference.back();
             const ReferenceSegment segment = flights.fastest_segment(last.point, at_rest(corner));
             plan.reference.push_back({last.tick + segment.ticks(), segment.to()});
@@ -37,7 +37,7 @@ struct Fixture : test::FlightFixture {
 
 TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners without a stop") {
     Fixture f;
-    f.refiner.take(f.stop_and_go());
+    f.refiner.take({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     const double before = f.refiner.best()->cost;
     double last = before;
@@ -58,7 +58,7 @@ TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners 
 TEST_CASE(
     "what the refiner says of a plan is what flying it from the start gives, and its reference keeps the limits") {
     Fixture f;
-    f.refiner.take(f.stop_and_go());
+    f.refiner.take({f.stop_and_go()});
     for (int batch = 0; batch < 60; ++batch) {
         f.refiner.improve();
     }
@@ -82,13 +82,13 @@ TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped
     Fixture f;
     Plan through_the_ground = f.stop_and_go();
     through_the_ground.reference[1].point.position[1] = -1;
-    f.refiner.take(through_the_ground);
+    f.refiner.take({through_the_ground});
     CHECK(f.refiner.best() == nullptr);
     f.refiner.improve();  // nothing to work on
-    f.refiner.take(f.stop_and_go());
+    f.refiner.take({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.wants_plan());
-    f.refiner.take(f.stop_and_go());
+    f.refiner.take({f.stop_and_go()});
     CHECK_FALSE(f.refiner.wants_plan());
     const int first = f.refiner.best_number();
     f.refiner.drop(first);
@@ -104,7 +104,7 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
     std::size_t least_corners = 100;
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         Fixture f(seed);
-        f.refiner.take(f.stop_and_go());
+        f.refiner.take({f.stop_and_go()});
         REQUIRE(f.refiner.best() != nullptr);
         for (int batch = 0; batch < 60; ++batch) {
             f.refiner.improve();
@@ -126,22 +126,23 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
 
 TEST_CASE("a plan that a counterexample rejects is changed until it flies there, too") {
     Fixture f(4, true);
-    f.refiner.take(f.stop_and_go());
+    f.refiner.take({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.best()->fleets.front().size() == 1);
 
     World raised;  // the ground comes up to the corner at 1 m
     raised.scene_z_m = 0.65;
     f.flights.join({{make_world(f.problem.robot, raised), f.task.start}});
-    const std::vector<Plan> plans = f.refiner.release();
+    const std::vector<planning::Lineage> lineages = f.refiner.release();
     CHECK(f.refiner.best() == nullptr);
-    REQUIRE(plans.size() == 1);
-    CHECK(plans[0].reference.size() == f.stop_and_go().reference.size());
-    f.refiner.take(plans[0]);
+    REQUIRE(lineages.size() == 1);
+    const Plan& rejected = lineages[0].back();
+    CHECK(rejected.reference.size() == f.stop_and_go().reference.size());
+    f.refiner.take(lineages[0]);
     REQUIRE(f.refiner.best() != nullptr);
     const planning::FlownPlan& repaired = *f.refiner.best();
     CHECK(repaired.fleets.front().size() == 2);
-    CHECK(repaired.points[1].position[1] > plans[0].reference[1].point.position[1]);
+    CHECK(repaired.points[1].position[1] > rejected.reference[1].point.position[1]);
     for (int batch = 0; batch < 10; ++batch) {
         f.refiner.improve();
     }
@@ -159,8 +160,30 @@ TEST_CASE("a plan that a counterexample rejects is changed until it flies there,
 TEST_CASE("a plan that is known to fail is not taken on as it is") {
     Fixture f(4, true);
     f.flights.join({{make_world(f.problem.robot, World{}), f.task.start}});
-    f.refiner.take(f.stop_and_go(), false);
+    f.refiner.take({f.stop_and_go()}, false);
     REQUIRE(f.refiner.best() != nullptr);
-    const std::vector<Plan> taken = f.refiner.release();
-    CHECK_FALSE(test::same_bytes(taken.at(0), f.stop_and_go()));
+    const std::vector<planning::Lineage> taken = f.refiner.release();
+    CHECK_FALSE(test::same_bytes(taken.at(0).back(), f.stop_and_go()));
+}
+
+TEST_CASE("where a counterexample rejects a plan and not those from which it came, the refiner goes back to the last") {
+    Fixture f(4, true);
+    World raised;  // the ground comes up to a corner at 1 m
+    raised.scene_z_m = 0.65;
+    f.flights.join({{make_world(f.problem.robot, raised), f.task.start}});
+    const auto with_corner_at = [&f](double z_m) {
+        return f.stop_and_go(Configuration{-2, z_m, 0});
+    };
+    f.refiner.take({with_corner_at(1.8)});
+    REQUIRE(f.refiner.best() != nullptr);
+    const double cost = f.refiner.best()->cost;
+    CHECK(f.refiner.release().size() == 1);
+    f.refiner.take({with_corner_at(1.9), with_corner_at(1.8), with_corner_at(1.1), with_corner_at(1)});
+    REQUIRE(f.refiner.best() != nullptr);
+    CHECK(f.refiner.best()->cost <= cost);
+    const planning::Lineage lineage = f.refiner.release().at(0);
+    REQUIRE(lineage.size() >= 2);
+    CHECK(lineage.size() <= 3);  // a change of the last may have been cheaper
+    CHECK(test::same_bytes(lineage[0], with_corner_at(1.9)));
+    CHECK(test::same_bytes(lineage[1], with_corner_at(1.8)));
 }
