@@ -84,6 +84,7 @@ void FlightTreePlanner::clear() {
     handed_over_.clear();
     handed_over_cost_ = HUGE_VAL;
     idle_rounds_ = 0;
+    failures_in_a_row_ = 0;
     tree_left_ = refiner_left_ = 0;
 }
 
@@ -169,6 +170,12 @@ ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
     return is_exact ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::APPROXIMATE_SOLUTION;
 }
 
+/// How far a plan goes back in its lineage: the more plans in a row failed their certificates, the farther.
+std::size_t FlightTreePlanner::steps_back_after(int failures_in_a_row) {
+    constexpr int patience = 2, most_doublings = 6;
+    return std::size_t{1} << std::clamp(failures_in_a_row - patience, 0, most_doublings);
+}
+
 /// The work that tree and refiner do in a round beside a plan that is flown directly.
 double FlightTreePlanner::work_beside(const Candidate& candidate) const {
     const double most = std::max(parameters_.round_work, parameters_.max_round_work);
@@ -241,7 +248,7 @@ void FlightTreePlanner::refine() {
         refiner_->improve();
     }
     for (HandedOver& handed_over : std::exchange(handed_over_, {})) {
-        refiner_->take(std::move(handed_over.lineage), handed_over.as_it_is);
+        refiner_->take(std::move(handed_over.lineage), handed_over.steps_back);
     }
     refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + parameters_.refine_work;
 }
@@ -293,6 +300,7 @@ void FlightTreePlanner::settle(Proposal proposal) {
             hooks_.accept(proposal.candidate);
         }
         best_ = std::move(proposal.candidate);
+        failures_in_a_row_ = 0;
         growth_->know_plan(best_->moments);
         return;
     }
@@ -318,13 +326,15 @@ void FlightTreePlanner::learn_from(const Proposal& failed, const std::vector<Cou
     const bool is_refiners_best =
         failed.hold == nullptr && refiner_->best() != nullptr && refiner_->best_number() == failed.refined;
     refined_flights_.join(counterexamples);
+    ++failures_in_a_row_;
     bool is_best = true;
     for (Lineage& lineage : refiner_->release()) {
-        handed_over_.push_back({std::move(lineage), !(is_best && is_refiners_best)});
+        handed_over_.push_back(
+            {std::move(lineage), is_best && is_refiners_best ? steps_back_after(failures_in_a_row_) : 0});
         is_best = false;
     }
     if (!is_refiners_best) {
-        handed_over_.push_back({{plan_through(failed.candidate.moments, task_.model.tick().tick_s)}, false});
+        handed_over_.push_back({{plan_through(failed.candidate.moments, task_.model.tick().tick_s)}, 1});
     }
 }
 

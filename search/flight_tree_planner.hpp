@@ -94,6 +94,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     void settle(Proposal proposal);
     void learn_from(const Proposal& failed, const std::vector<Counterexample>& counterexamples);
     void settle_best(const ompl::base::PlannerTerminationCondition& terminated);
+    [[nodiscard]] static std::size_t steps_back_after(int failures_in_a_row);
     [[nodiscard]] double work_beside(const Candidate& candidate) const;
     ompl::base::PlannerStatus report_solution();
 
@@ -114,12 +115,13 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::optional<PlanRefiner> refiner_;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> best_;
-    /// A plan that the refiner takes on in the next round, changed if the plan itself is known to fail.
+    /// A plan that the refiner takes on in the next round; see PlanRefiner::take().
     struct HandedOver {
         Lineage lineage;
-        bool as_it_is = true;
+        std::size_t steps_back = 0;
     };
     std::vector<HandedOver> handed_over_;
+    int failures_in_a_row_ = 0;           ///< of plans that were executed
     double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
     std::size_t idle_rounds_ = 0;         ///< in a row, in which the refiner had no plan
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much

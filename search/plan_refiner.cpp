@@ -154,19 +154,19 @@ PlanRefiner::Change PlanRefiner::as_change(const Plan& plan) {
     return change;
 }
 
-void PlanRefiner::take(Lineage lineage, bool as_it_is) {
+void PlanRefiner::take(Lineage lineage, std::size_t steps_back) {
     if (lineage.back().reference.size() < 2) {
         return;  // the start meets the goal: there is nothing on the way
     }
     const Change last = as_change(lineage.back());
     std::optional<FlownPlan> flown;
-    if (as_it_is) {
+    if (steps_back == 0) {
         flown = std::move(flown_whole({last}).front());
     }
     if (!flown && flights_.has_counterexamples()) {
-        lineage.pop_back();
+        lineage.resize(lineage.size() - std::clamp<std::size_t>(steps_back, 1, lineage.size()));
         flown = last_that_flies(lineage);
-        std::optional<FlownPlan> changed = repaired(last);
+        std::optional<FlownPlan> changed = flown && steps_back > 1 ? std::nullopt : repaired(last);
         if (changed && (!flown || changed->cost < flown->cost)) {
             flown = std::move(changed);
             lineage.push_back(plan_of(*flown));

@@ -40,8 +40,9 @@ class PlanRefiner {
     /// Where counterexamples reject it, the cheaper one is taken on of the last plan in its lineage that they do not
     /// reject, and of changes of the plan.
     /// @param lineage not empty
-    /// @param as_it_is false: the plan itself is known to fail
-    void take(Lineage lineage, bool as_it_is = true);
+    /// @param steps_back how many of its last plans are known to fail, or supposed to; after more than one, changes are
+    /// tried only if no other plan flies
+    void take(Lineage lineage, std::size_t steps_back = 0);
     /// Gives up its plans, the best first, to be taken on anew when counterexamples have joined.
     [[nodiscard]] std::vector<Lineage> release();
 

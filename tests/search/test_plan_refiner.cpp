@@ -160,7 +160,7 @@ TEST_CASE("a plan that a counterexample rejects is changed until it flies there,
 TEST_CASE("a plan that is known to fail is not taken on as it is") {
     Fixture f(4, true);
     f.flights.join({{make_world(f.problem.robot, World{}), f.task.start}});
-    f.refiner.take({f.stop_and_go()}, false);
+    f.refiner.take({f.stop_and_go()}, 1);
     REQUIRE(f.refiner.best() != nullptr);
     const std::vector<planning::Lineage> taken = f.refiner.release();
     CHECK_FALSE(test::same_bytes(taken.at(0).back(), f.stop_and_go()));
@@ -171,9 +171,7 @@ TEST_CASE("where a counterexample rejects a plan and not those from which it cam
     World raised;  // the ground comes up to a corner at 1 m
     raised.scene_z_m = 0.65;
     f.flights.join({{make_world(f.problem.robot, raised), f.task.start}});
-    const auto with_corner_at = [&f](double z_m) {
-        return f.stop_and_go(Configuration{-2, z_m, 0});
-    };
+    const auto with_corner_at = [&f](double z_m) { return f.stop_and_go(Configuration{-2, z_m, 0}); };
     f.refiner.take({with_corner_at(1.8)});
     REQUIRE(f.refiner.best() != nullptr);
     const double cost = f.refiner.best()->cost;
