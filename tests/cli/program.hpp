@@ -28,6 +28,15 @@ template <class... Parts>
 /// The text with its first `part` replaced. Fails the test where there is none.
 [[nodiscard]] std::string replaced(std::string text, const std::string& part, const std::string& by);
 
+/// A solution.json for bridge_inspection whose plan leads straight through the walkway.
+inline constexpr const char* plan_through_walkway = R"({"schema": "downwash/solution/v1", "plan": {
+    "waypoints": [{"x_m": -10, "z_m": 8.5, "arm_rad": 1.5707963267948966}, {"x_m": 2, "z_m": 7, "arm_rad": 0}],
+    "reference": [
+        {"t_s": 0, "x_m": -10, "z_m": 8.5, "arm_rad": 1.5707963267948966, "vx_m_s": 0, "vz_m_s": 0,
+         "arm_rate_rad_s": 0, "ax_m_s2": 0, "az_m_s2": 0, "arm_acceleration_rad_s2": 0},
+        {"t_s": 30, "x_m": 2, "z_m": 7, "arm_rad": 0, "vx_m_s": 0, "vz_m_s": 0,
+         "arm_rate_rad_s": 0, "ax_m_s2": 0, "az_m_s2": 0, "arm_acceleration_rad_s2": 0}]}})";
+
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const std::string& text);
 

@@ -68,14 +68,7 @@ TEST_CASE("A plan flown again flies as before") {
 
 TEST_CASE("A plan whose flight fails ends with 3") {
     const Workspace work;
-    // Straight through the walkway.
-    write_file(work / "plan.json", R"({"schema": "downwash/solution/v1", "plan": {
-        "waypoints": [{"x_m": -10, "z_m": 8.5, "arm_rad": 1.5707963267948966}, {"x_m": 2, "z_m": 7, "arm_rad": 0}],
-        "reference": [
-            {"t_s": 0, "x_m": -10, "z_m": 8.5, "arm_rad": 1.5707963267948966, "vx_m_s": 0, "vz_m_s": 0,
-             "arm_rate_rad_s": 0, "ax_m_s2": 0, "az_m_s2": 0, "arm_acceleration_rad_s2": 0},
-            {"t_s": 30, "x_m": 2, "z_m": 7, "arm_rad": 0, "vx_m_s": 0, "vz_m_s": 0,
-             "arm_rate_rad_s": 0, "ax_m_s2": 0, "az_m_s2": 0, "arm_acceleration_rad_s2": 0}]}})");
+    write_file(work / "plan.json", plan_through_walkway);
     const Result flown =
         work.run("execute", problem_file("bridge_inspection"), "--plan", work / "plan.json", "--aero off");
     CHECK(flown.code == 3);
