@@ -1,10 +1,10 @@
 // The certificate of a plan: how it flew in worlds that the search had not seen.
 
-import {make_command} from "./command.js";
 import {h} from "./dom.js";
 import {meters, number} from "./format.js";
 import {make_probability_bar, percent} from "./probability_bar.js";
 import {outcome_name, outcome_text} from "./words.js";
+import {make_worst_worlds} from "./worst_worlds.js";
 
 const causes_of = ({causes}) => Object.entries(causes).sort((a, b) => b[1] - a[1]);
 
@@ -61,26 +61,15 @@ function make_quantiles({certificate}) {
             h("p", null, "No flight failed."));
 }
 
-/** Worlds by how badly they ended, with the command that flies the first one again in the folder of the run. */
 function make_worst({certificate}) {
     const {worst} = certificate;
     if (worst.length === 0) {
         return null;
     }
     const {world} = worst[0];
-    return h(
-        "div", {class: "card"}, h("h3", null, "Worst worlds"),
-        h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Worst worlds"},
-          h("table", {class: "numbers worst-worlds"},
-            h("thead", null,
-              h("tr", null, ["world", "outcome", "min. clearance"].map((name) => h("th", {scope: "col"}, name)))),
-            h("tbody", null,
-              worst.map(
-                  (each) =>
-                      h("tr", null, h("th", {scope: "row"}, String(each.world)),
-                        h("td", null, outcome_name(each.outcome)), h("td", null, meters(each.min_clearance_m))))))),
-        h("p", {class: "muted"}, `To fly world ${world} again; put the number of another world there:`),
-        make_command(`downwash execute effective.yaml --plan solution.json --world ${world} --out world-${world}`));
+    return make_worst_worlds(
+        worst, `To fly world ${world} again; put the number of another world there:`,
+        `downwash execute effective.yaml --plan solution.json --world ${world} --out world-${world}`);
 }
 
 /** The panel of the certificate; null without one. */

@@ -1,10 +1,9 @@
 // Flights in many worlds: how often they fail, how near they come, and which are the worst.
 
-import {make_command} from "../command.js";
 import {h} from "../dom.js";
 import {meters, quantity} from "../format.js";
 import {make_probability_bar} from "../probability_bar.js";
-import {outcome_name} from "../words.js";
+import {make_worst_worlds} from "../worst_worlds.js";
 
 const confidence = 0.95;
 
@@ -29,21 +28,9 @@ function make_quantiles({clearance_m, tracking_error_m, run_energy_j}) {
         h("p", {class: "muted"}, "Energies include flights that ended early."));
 }
 
-function make_worst({findings, command}) {
-    const {worst} = findings;
-    const again = command.replace(/ --runs \d+/, ` --world ${worst[0].world}`);
-    return h(
-        "div", {class: "card"}, h("h3", null, "Worst worlds"),
-        h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Worst worlds"},
-          h("table", {class: "numbers worst-worlds"},
-            h("thead", null,
-              h("tr", null, ["world", "outcome", "min. clearance"].map((name) => h("th", {scope: "col"}, name)))),
-            h("tbody", null,
-              worst.map(
-                  ({world, outcome, min_clearance_m}) =>
-                      h("tr", null, h("th", {scope: "row"}, String(world)), h("td", null, outcome_name(outcome)),
-                        h("td", null, meters(min_clearance_m))))))),
-        h("p", {class: "muted"}, "The judge flies one of them again with"), make_command(again));
+function make_worst({findings: {worst}, command}) {
+    return make_worst_worlds(
+        worst, "The judge flies one of them again with", command.replace(/ --runs \d+/, ` --world ${worst[0].world}`));
 }
 
 /** null without flights in worlds. */
