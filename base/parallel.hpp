@@ -7,11 +7,29 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <new>
 #include <span>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace downwash {
+
+/// Starts threads that run function(1), function(2), ... function(count): as many of them as the system has left.
+template <class Function>
+[[nodiscard]] std::vector<std::jthread> start_threads(int count, const Function& function) {
+    std::vector<std::jthread> threads;
+    threads.reserve(static_cast<std::size_t>(std::max(count, 0)));
+    try {
+        for (int i = 1; i <= count; ++i) {
+            threads.emplace_back(function, i);
+        }
+    } catch (const std::system_error&) {  // no more threads; those that there are do the work
+    } catch (const std::bad_alloc&) {     // no memory for more
+    }
+    return threads;
+}
 
 /// Runs task(0), task(1), ... task(count - 1) on some threads, in any order, and waits for all of them. Rethrows what a
 /// task throws.
@@ -38,10 +56,7 @@ void run_parallel(std::size_t count, int threads, const Task& task,
         }
     };
     {
-        std::vector<std::jthread> others;
-        for (int t = 1; t < threads; ++t) {
-            others.emplace_back(work, false);
-        }
+        const std::vector<std::jthread> others = start_threads(threads - 1, [&work](int) { work(false); });
         work(true);
     }
     if (failure) {

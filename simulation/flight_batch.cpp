@@ -5,10 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/flight_lane.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -166,8 +168,16 @@ struct FlightPool::Impl {
                     continue;
                 }
             }
-            work();
+            std::exception_ptr thrown;
+            try {
+                work();
+            } catch (...) {
+                thrown = std::current_exception();
+            }
             const std::scoped_lock lock(mutex);
+            if (thrown) {
+                failure = thrown;
+            }
             if (--working == 0) {
                 done.notify_one();
             }
@@ -189,6 +199,7 @@ struct FlightPool::Impl {
     std::atomic<std::size_t> allowed{0};  ///< threads beside the calling one that may fly
     std::size_t helpers = 0;              ///< that fly this batch
     std::size_t working = 0;              ///< of them, still at it
+    std::exception_ptr failure;           ///< of a thread beside the calling one
     bool is_closed = false;
     std::vector<std::jthread> others;
 };
@@ -196,9 +207,8 @@ struct FlightPool::Impl {
 FlightPool::FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
                        Instructions instructions, const CeilingPart* ceiling)
     : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions, ceiling)) {
-    for (int i = 1; i < threads; ++i) {
-        impl_->others.emplace_back([impl = impl_.get(), i] { impl->stand_by(static_cast<std::size_t>(i)); });
-    }
+    impl_->others =
+        start_threads(threads - 1, [impl = impl_.get()](int i) { impl->stand_by(static_cast<std::size_t>(i)); });
     use_threads(threads);
 }
 
@@ -243,9 +253,20 @@ void FlightPool::fly(std::span<FlightJob> jobs) {
         pool.working = helpers;
     }
     pool.called.notify_all();
-    pool.work();
+    std::exception_ptr failure;
+    try {
+        pool.work();
+    } catch (...) {
+        failure = std::current_exception();  // the others still fly the jobs
+    }
     std::unique_lock lock(pool.mutex);
     pool.done.wait(lock, [&pool] { return pool.working == 0; });
+    if (std::exception_ptr other = std::exchange(pool.failure, nullptr); other && !failure) {
+        failure = std::move(other);
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
 }
 
 }  // namespace downwash

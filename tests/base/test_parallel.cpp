@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "../support/short_of_memory.hpp"
 #include "downwash/base/parallel.hpp"
 
 using namespace downwash;
@@ -84,4 +85,16 @@ TEST_CASE("what a step throws reaches the caller") {
         CHECK_THROWS_WITH(run_side_by_side(tasks, threads), "no way on");
         CHECK(others <= 50);
     }
+}
+
+TEST_CASE("tasks are done on as many threads as there can be") {
+    if (!test::can_limit_memory) {
+        WARN("not with sanitizers");
+        return;
+    }
+    CHECK(test::succeeds_with_memory_left(100'000'000, [] {
+        std::atomic<int> done{0};
+        run_parallel(1000, 500, [&done](std::size_t) { ++done; });  // stacks for twelve
+        return done == 1000;
+    }));
 }

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "../support/short_of_memory.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;
@@ -219,4 +220,28 @@ TEST_CASE("a batch can be ended from outside") {
     for (const FlightJob& job : jobs) {
         CHECK(job.rejection() == Rejection::interrupted);
     }
+}
+
+TEST_CASE("flights go on with the threads that there are, with the same bits") {
+    if (!can_limit_memory) {
+        WARN("not with sanitizers");
+        return;
+    }
+    const Problem problem = ceiling_problem();
+    const auto model = make_flight_model(problem);
+    const FlightRules rules = rules_of(problem);
+    const std::vector<FlightJob> jobs = random_jobs(problem, *model, 100, 3);
+    std::vector<FlightJob> expected = jobs;
+    fly_one_by_one(*model, nullptr, rules, expected);
+    CHECK(succeeds_with_memory_left(100'000'000, [&] {
+        std::vector<FlightJob> flown = jobs;
+        FlightPool(*model, nullptr, rules, nullptr, 64).fly(flown);
+        bool are_same = true;
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            for (std::size_t leg = 0; leg < jobs[i].legs.size(); ++leg) {
+                are_same = are_same && is_same(flown[i].legs[leg], expected[i].legs[leg]);
+            }
+        }
+        return are_same;
+    }));
 }
