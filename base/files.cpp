@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <fstream>
+#include <random>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -37,9 +38,13 @@ fs::path target_of(fs::path file) {
 class UnfinishedFile {
  public:
     explicit UnfinishedFile(const fs::path& place) : place_(target_of(place)) {
-        static std::atomic<unsigned> count{0};  // threads may write the same file
-        path_ = place_.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part";
-        descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        // A name that nobody can foresee and that is not there yet: others may write to the same folder.
+        constexpr int most_tries = 100;
+        std::random_device random;
+        for (int i = 0; i < most_tries && descriptor_ < 0 && (i == 0 || errno == EEXIST); ++i) {
+            path_ = place_.string() + "." + std::to_string(random()) + ".part";
+            descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        }
         if (descriptor_ < 0) {
             fail();
         }
@@ -69,6 +74,10 @@ class UnfinishedFile {
     }
 
     void finish() {
+        // Content reaches the disk before its name does: a loss of power leaves the old file or the whole new one.
+        if (fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {  // pipes and the like cannot
+            fail();
+        }
         // Some file systems report a full disk only when the file is closed.
         const bool is_closed = close(std::exchange(descriptor_, -1)) == 0;
         if (!is_closed || std::rename(path_.c_str(), place_.c_str()) != 0) {

@@ -105,7 +105,7 @@ ExitCode run(int argc, char** argv) {
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& end) {  // help and version too
-        return program.exit(end) == 0 ? ExitCode::done : ExitCode::bad_input;
+        return program.exit(end) == 0 ? checked_output(ExitCode::done) : ExitCode::bad_input;
     }
     return checked_output(action());
 }
@@ -126,6 +126,8 @@ int main(int argc, char** argv) {
     using downwash::cli::ExitCode;
     // A closed pipe shows as a failed write instead of ending the program.
     std::signal(SIGPIPE, SIG_IGN);
+    // So does a file that may not grow any more (ulimit -f).
+    std::signal(SIGXFSZ, SIG_IGN);
     ExitCode code = ExitCode::bad_input;
     try {
         code = downwash::cli::run(argc, argv);

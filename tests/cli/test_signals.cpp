@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 
@@ -51,4 +53,44 @@ TEST_CASE("Two signals end the program at once and leave no half file") {
     for (const auto& [name, text] : work.files()) {
         CHECK_FALSE(name.ends_with("solution.json"));
     }
+}
+
+namespace {
+
+/// While it lives, no file may grow beyond so many bytes, those of programs started meanwhile included (ulimit -f).
+class FileSizeLimit {
+ public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+    rlimit before_{};
+};
+
+}  // namespace
+
+TEST_CASE("Files that may not grow are an error with its reason, like a full disk, and leave nothing behind") {
+    const Workspace work;
+    const Words command = words("solve", problem_file("open_air"), "--max-iterations 20 --no-cache --out x");
+    const FileSizeLimit limit(20000);
+    const Result result = work.run(command);
+    CHECK(result.code == 2);
+    CHECK_THAT(result.err, Catch::Contains("trajectory.csv cannot be written: File too large"));
+    for (const auto& [name, text] : work.files()) {
+        CHECK_FALSE(name.ends_with(".part"));
+        CHECK_FALSE(name.ends_with("solution.json"));
+    }
+}
+
+TEST_CASE("Help that cannot be written is an error") {
+    const Workspace work;
+    const FileSizeLimit limit(0);
+    CHECK(work.run("solve --help").code == 2);
+    CHECK(work.run("--version").code == 2);
 }
