@@ -1,15 +1,12 @@
 #include "downwash/cli/results.hpp"
-#include "downwash/base/angles.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "downwash/problems/problem_writer.hpp"
-#include "downwash/results/solution_file.hpp"
-#include "downwash/results/trajectory_csv.hpp"
-#include "downwash/results/tree_csv.hpp"
+#include "downwash/base/angles.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -75,12 +72,14 @@ RunRecord write_results(const OutputFolder& folder, const Problem& problem, cons
                         const Solution& solution) {
     const Execution flight = solution.execution.value_or(no_flight(problem.robot));
     RunRecord record = run_record(problem, solution, flight);
-    record.problem_text = effective_yaml(problem, folder.path());
-    record.solution_text = solution_json(solution, {problem.name, problem_file, problem_sha256(problem)});
-    folder.write("effective.yaml", record.problem_text);
-    folder.write("trajectory.csv", trajectory_csv(flight));
-    folder.write("tree.csv", tree_csv(solution.tree));
-    folder.write("solution.json", record.solution_text);
+    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path())) {
+        folder.write(name, content);
+        if (name == "effective.yaml") {
+            record.problem_text = std::move(content);
+        } else if (name == "solution.json") {
+            record.solution_text = std::move(content);
+        }
+    }
     return record;
 }
 

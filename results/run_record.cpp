@@ -6,8 +6,10 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/problem_writer.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/results/trajectory_csv.hpp"
 #include "downwash/results/tree_csv.hpp"
@@ -42,8 +44,14 @@ std::string text_at(const nlohmann::json& json, const char* pointer) {
     return json.contains(place) && json[place].is_string() ? json[place].get<std::string>() : "";
 }
 
-/// @return whether there is a plan
-bool take_solution(const fs::path& file, RunRecord& run) {
+/// What solution.json says of itself and of the files beside it.
+struct Claims {
+    bool has_plan = false;
+    std::string problem_sha256;
+    FileDigests files;  ///< empty in solutions of former versions
+};
+
+Claims take_solution(const fs::path& file, RunRecord& run) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
@@ -61,8 +69,34 @@ bool take_solution(const fs::path& file, RunRecord& run) {
     }
     run.status = text_at(solution, "/status");
     run.outcome = text_at(solution, "/execution/outcome");
+    Claims claims;
     const auto plan = solution.find("plan");
-    return plan != solution.end() && !plan->is_null();
+    claims.has_plan = plan != solution.end() && !plan->is_null();
+    claims.problem_sha256 = text_at(solution, "/problem/sha256");
+    if (const auto files = solution.find("files"); files != solution.end() && files->is_object()) {
+        for (const auto& [name, digest] : files->items()) {
+            claims.files[name] = digest.is_string() ? digest.get<std::string>() : "";
+        }
+    }
+    return claims;
+}
+
+/// @throws InputError if a digest that solution.json holds is another
+void check_digest(const fs::path& file, const std::string& digest, const std::string& claimed) {
+    if (!claimed.empty() && digest != claimed) {
+        report(file,
+               "this is not the file that the run of the solution.json beside it wrote: it was changed, or another "
+               "run wrote into this folder. Plan again with `downwash solve`, or execute the plan again with "
+               "`downwash execute PROBLEM --plan solution.json`");
+    }
+}
+
+/// The same for a file by its content.
+void check_file(const fs::path& file, const std::string& content, const FileDigests& digests) {
+    const auto claimed = digests.find(file.filename().string());
+    if (claimed != digests.end()) {
+        check_digest(file, sha256_hex(content), claimed->second);
+    }
 }
 
 [[noreturn]] void throw_at_row(const fs::path& file, const NumberTable& table, std::size_t row,
@@ -152,6 +186,20 @@ RunRecord run_record(const Problem& problem, const Solution& solution, const Exe
     return run;
 }
 
+std::vector<std::pair<std::string, std::string>> run_files(const Problem& problem, const std::string& problem_file,
+                                                           const Solution& solution, const Execution& flight,
+                                                           const fs::path& folder) {
+    std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
+                                                           {"trajectory.csv", trajectory_csv(flight)},
+                                                           {"tree.csv", tree_csv(solution.tree)}};
+    // effective.yaml depends on its folder; the digest of the problem stands for it.
+    const FileDigests digests{{files[1].first, sha256_hex(files[1].second)},
+                              {files[2].first, sha256_hex(files[2].second)}};
+    files.emplace_back("solution.json",
+                       solution_json(solution, {problem.name, problem_file, problem_sha256(problem)}, digests));
+    return files;
+}
+
 RunRecord read_run(const fs::path& folder) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored)) {
@@ -160,20 +208,25 @@ RunRecord read_run(const fs::path& folder) {
     RunRecord run;
     const fs::path solution = folder / "solution.json";
     run.solution_text = text_of(solution);
-    const bool has_plan = take_solution(solution, run);
+    const Claims claims = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_problem(problem);
-    if (has_plan) {
+    check_digest(problem, problem_sha256(run.problem), claims.problem_sha256);
+    if (claims.has_plan) {
         run.plan = read_solution(solution.string(), run.problem).plan;
     }
     const fs::path flight = folder / "trajectory.csv";
-    run.flight = read_number_table(text_of(flight), flight.string(), flight_columns(run.problem.robot));
+    const std::string flight_text = text_of(flight);
+    run.flight = read_number_table(flight_text, flight.string(), flight_columns(run.problem.robot));
     check_flight(flight, run.flight);
+    check_file(flight, flight_text, claims.files);
     const fs::path tree = folder / "tree.csv";
     if (fs::exists(tree, ignored)) {
-        run.tree = read_number_table(text_of(tree), tree.string(), {"x_m", "z_m", "arm_rad", "parent"});
+        const std::string tree_text = text_of(tree);
+        run.tree = read_number_table(tree_text, tree.string(), {"x_m", "z_m", "arm_rad", "parent"});
         check_tree(tree, run.tree);
+        check_file(tree, tree_text, claims.files);
     }
     return run;
 }

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
@@ -28,7 +30,15 @@ struct RunRecord {
 [[nodiscard]] DOWNWASH_EXPORT RunRecord run_record(const Problem& problem, const Solution& solution,
                                                    const Execution& flight);
 
-/// Reads what `solve` or `execute` left in a folder.
+/// The files that a run leaves in a folder: names and contents, in the order in which they are to be written.
+/// solution.json is the last: until it is there, what is in the folder is no run.
+/// @param problem_file as the user gave it   @param folder in which effective.yaml will be
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::pair<std::string, std::string>> run_files(
+    const Problem& problem, const std::string& problem_file, const Solution& solution, const Execution& flight,
+    const std::filesystem::path& folder);
+
+/// Reads what `solve` or `execute` left in a folder. All files have to be of the same run: solution.json holds digests
+/// of the others.
 /// @throws ProblemFileError or InputError with the place of every error: a file that is missing or is not what they
 /// write
 [[nodiscard]] DOWNWASH_EXPORT RunRecord read_run(const std::filesystem::path& folder);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "downwash/base/export.hpp"
@@ -18,9 +19,13 @@ struct ProblemReference {
     std::string sha256;  ///< of the effective problem and every file that it refers to
 };
 
+/// SHA-256 digests of files of a run by their names: they belong to this solution and to no other.
+using FileDigests = std::map<std::string, std::string>;
+
 /// The text of solution.json: everything but the rows of the flight. Numbers read back as the very same; what is not
 /// finite becomes null.
-[[nodiscard]] DOWNWASH_EXPORT std::string solution_json(const Solution& solution, const ProblemReference& problem);
+[[nodiscard]] DOWNWASH_EXPORT std::string solution_json(const Solution& solution, const ProblemReference& problem,
+                                                        const FileDigests& files = {});
 
 /// Reads a solution back, its plan above all, to fly it for `problem`. The execution stays empty; what a plan written
 /// by hand leaves out (all but `schema` and `plan`) is taken from the problem's settings.

@@ -147,7 +147,7 @@ Json objective_json(const CostFunction& objective) {
 
 }  // namespace
 
-std::string solution_json(const Solution& solution, const ProblemReference& problem) {
+std::string solution_json(const Solution& solution, const ProblemReference& problem, const FileDigests& files) {
     const Json document = {
         {"schema", solution_schema},
         {"status", name_of(solution.status)},
@@ -164,6 +164,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
         {"execution", execution_json(solution)},
+        {"files", files},
     };
     // A file name may be any bytes; what is no UTF-8 in it is replaced.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

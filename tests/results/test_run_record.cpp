@@ -75,6 +75,22 @@ TEST_CASE("a run is read back as it was written, and as its record in memory") {
     CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
     check_same(record, run_record(run.problem, run.solution, *run.solution.execution));  // the record in memory
 }
+
+TEST_CASE("files of two runs in one folder are no run, whichever of them is the other's") {
+    const SolvedRun run;
+    Problem elsewhere = test::ceiling_problem();
+    elsewhere.goal = test::tip_goal(2, 4.7);
+    const SolvedRun other(elsewhere);
+    for (const char* name : {"effective.yaml", "trajectory.csv", "tree.csv", "solution.json"}) {
+        CAPTURE(name);
+        const std::string own = content_of(run.file(name));
+        write_file(run.file(name), content_of(other.file(name)));
+        CHECK_THAT(error_of(run), Catch::Contains("solution.json beside it"));
+        write_file(run.file(name), own);
+    }
+    CHECK(error_of(run).empty());
+}
+
 TEST_CASE("files that no run left behind are errors with their place") {
     const SolvedRun run;
     SECTION("no folder") {

@@ -4,11 +4,7 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/problems/problem_writer.hpp"
 #include "downwash/results/run_record.hpp"
-#include "downwash/results/solution_file.hpp"
-#include "downwash/results/trajectory_csv.hpp"
-#include "downwash/results/tree_csv.hpp"
 #include "scratch_folder.hpp"
 #include "test_problem.hpp"
 
@@ -22,11 +18,10 @@ class SolvedRun {
         SolveOptions options;
         options.keep_tree = true;
         solution = solve(problem, options);
-        write_file(file("effective.yaml"), effective_yaml(problem, folder()));
-        write_file(file("trajectory.csv"), trajectory_csv(solution.execution.value()));
-        write_file(file("tree.csv"), tree_csv(solution.tree));
-        write_file(file("solution.json"),
-                   solution_json(solution, {problem.name, "problem.yaml", problem_sha256(problem)}));
+        for (const auto& [name, content] :
+             run_files(problem, "problem.yaml", solution, solution.execution.value(), folder())) {
+            write_file(file(name), content);
+        }
     }
 
     [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
