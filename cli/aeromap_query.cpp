@@ -151,9 +151,12 @@ std::optional<std::array<double, 3>> point_in(const std::string& line) {
 /// Reads lines of three numbers, separated by blanks or commas. Skips empty lines, comments after # and a line
 /// x_m,y_m,z_m.
 std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::string& name) {
+    constexpr std::size_t most_points = 1'000'000;
     std::vector<std::array<double, 3>> points;
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
+    std::array<char, 1000> buffer{};
+    int number = 1;
+    for (; lines.getline(buffer.data(), buffer.size()); ++number) {
+        std::string line(buffer.data());
         line.erase(std::min(line.find('#'), line.size()));
         std::replace(line.begin(), line.end(), ',', ' ');
         if (const std::string_view content = trimmed(line); content.empty() || content.starts_with("x_m")) {
@@ -164,7 +167,14 @@ std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::s
             throw UsageError("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(trimmed(line)));
         }
         require_place(*point_m, fmt::format("{}:{}:", name, number));
+        if (points.size() == most_points) {
+            throw UsageError("{}:{}: more than {} points", name, number, most_points);
+        }
         points.push_back(*point_m);
+    }
+    if (!lines.eof()) {
+        throw UsageError("{}:{}: longer than {} characters, expected three numbers, x_m y_m z_m", name, number,
+                         buffer.size() - 1);
     }
     return points;
 }

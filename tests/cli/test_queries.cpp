@@ -58,6 +58,7 @@ TEST_CASE("Many points are read from a file or from standard input, after those 
     CHECK(piped == asked("--at 1 0 3 --at 0 0.32 9.8 --at 1 0 4 --json", "").json());
     check_rejected(asked("--points -", "0 0 1\n0 zero 1\n"), "standard input:2: '0 zero 1': expected three numbers");
     check_rejected(asked("--points -", ""), "--points -: holds no point");
+    check_rejected(work.run(query, "--points /dev/zero"), "/dev/zero:1: longer than 999 characters");
 }
 
 TEST_CASE("A grid that was built flies like its problem and tells what made it") {
