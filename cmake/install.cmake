@@ -2,10 +2,14 @@
 
 include(CMakePackageConfigHelpers)
 
+# Builds all that is installed, without tests and benchmarks.
+add_custom_target(installed)
 if(TARGET downwash)
+  add_dependencies(installed downwash)
   install(TARGETS downwash RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 if(DOWNWASH_HELP)
+  add_dependencies(installed downwash_help)
   install(DIRECTORY ${DOWNWASH_HELP}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
   install(FILES ${DOWNWASH_HELP}/downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
@@ -30,6 +34,7 @@ foreach(module IN LISTS modules)
   if(module STREQUAL ompl)
     set(export downwash_ompl_targets)
   endif()
+  add_dependencies(installed downwash_${module})
   install(TARGETS downwash_${module} EXPORT ${export}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${module})
