@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,6 +73,22 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     return text + (below.empty() ? "" : "  keys:\n" + below);
 }
 
+bool contains_ignoring_case(std::string_view text, std::string_view part) {
+    const auto lower = [](unsigned char letter) { return std::tolower(letter); };
+    return !std::ranges::search(text, part, {}, lower, lower).empty();
+}
+
+/// A line for each key in whose path or description the word occurs.
+std::string keys_about(std::string_view word, const std::vector<KeyReference>& all) {
+    std::string text;
+    for (const KeyReference& known : all) {
+        if (contains_ignoring_case(known.info.path, word) || contains_ignoring_case(known.info.description, word)) {
+            text += fmt::format("  {:<40} {}\n", known.info.path, known.info.description);
+        }
+    }
+    return text;
+}
+
 ExitCode run(const ExplainArguments& given) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
     const std::string wanted = without_indices(given.key);
@@ -87,6 +104,10 @@ ExitCode run(const ExplainArguments& given) {
             return ExitCode::done;
         }
     }
+    if (const std::string about = keys_about(wanted, all); !about.empty() && !wanted.empty()) {
+        fmt::print("No key is called '{}'. It occurs in:\n{}", excerpt(given.key), about);
+        return ExitCode::done;
+    }
     std::vector<std::string_view> names;
     for (const KeyReference& known : all) {
         names.push_back(known.info.path);
@@ -100,7 +121,10 @@ ExitCode run(const ExplainArguments& given) {
 void add_explain(CLI::App& program, Action& action) {
     auto [command, given] = add_command(
         program, action, "explain", "Explain a key of a file: its meaning, the expected value and the default", run);
-    command.add_option("KEY", given.key, "a key (safety_margin_m) or a path of keys (planner.safety_margin_m)")
+    command
+        .add_option("KEY", given.key,
+                    "a key (safety_margin_m), a path of keys (planner.safety_margin_m), or a word (margin) of keys or "
+                    "their descriptions")
         ->required();
     CLI::Option* option = command.add_option("--of", given.kind, "kind of file; default problem, with its robot");
     require_one_of(*option, {"problem", "robot", "campaign"});

@@ -92,6 +92,11 @@ TEST_CASE("Keys are explained from the table that reads them") {
                StartsWith("robot.uncertainty.vehicle.mass_scale\n") && Contains("default:  {sd: 0.02}\n") &&
                    Contains("\nuncertainty.vehicle.mass_scale\n") &&
                    Contains("default:  that of robot.uncertainty, or {sd: 0.02}\n"));
+    for (const char* word : {"margin", "Clearance while"}) {
+        const Words command{"explain", word};
+        CHECK_THAT(work.succeed(command).out,
+                   Contains("No key is called") && Contains("planner.safety_margin_m") && Contains("least clearance"));
+    }
     check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
 }
 
