@@ -74,8 +74,8 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
 }
 
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
-    const auto lower = [](unsigned char letter) { return std::tolower(letter); };
-    return !std::ranges::search(text, part, {}, lower, lower).empty();
+    const auto are_equal = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+    return std::search(text.begin(), text.end(), part.begin(), part.end(), are_equal) != text.end();
 }
 
 /// A line for each key in whose path or description the word occurs.
