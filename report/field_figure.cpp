@@ -149,6 +149,8 @@ void add_axes(GnuplotScript& script, const FieldFigure& figure, const FieldLayou
     script.set_axes(layout.left, layout.right, layout.bottom, layout.top);
     script.add("set xrange [{}:{}]", extent.x_low_m, extent.x_high_m);
     script.add("set yrange [{}:{}]", extent.z_low_m, extent.z_high_m);
+    // Without this, gnuplot omits pieces of lines that cross the frame from outside to outside.
+    script.add("set clip two");
     script.add("set xlabel {} offset 0,0.3", in_quotes(figure.x_label));
     script.add("set ylabel {} offset 0.8,0", in_quotes(figure.z_label));
 }
@@ -171,7 +173,8 @@ AxisRange value_range(const std::function<double(double, double)>& value, const 
 std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     require_drawable(figure.extent);
     const double max_px_per_m = settings.width_px / (figure.extent.x_high_m - figure.extent.x_low_m);
-    const std::vector<ObstacleOutline> outlines = thinned_outlines(merged_outlines(figure.obstacles), max_px_per_m);
+    const std::vector<VisibleOutline> outlines =
+        visible_outlines(thinned_outlines(merged_outlines(figure.obstacles), max_px_per_m), figure.extent);
 
     // The legend determines the layout, and the layout how finely the field is sampled. The legend also says whether
     // the field is defined everywhere, which a coarse sampling finds out first.

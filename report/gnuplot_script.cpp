@@ -43,6 +43,15 @@ void forget_date(std::string& pdf) {
     }
 }
 
+/// Escapes what must not occur in the text of XML; gnuplot leaves it as it is.
+void escape_section_ends(std::string& svg) {
+    constexpr std::string_view section_end = "]]>", escaped = "]]&gt;";
+    for (std::size_t at = svg.find(section_end); at != std::string::npos; at = svg.find(section_end, at)) {
+        svg.replace(at, section_end.size(), escaped);
+        at += escaped.size();
+    }
+}
+
 }  // namespace
 
 GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
@@ -105,6 +114,8 @@ std::string GnuplotScript::draw() const {
     }
     if (settings_.format == PictureFormat::pdf) {
         forget_date(picture);
+    } else if (settings_.format == PictureFormat::svg) {
+        escape_section_ends(picture);
     }
     return picture;
 }

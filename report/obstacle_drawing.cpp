@@ -10,6 +10,7 @@
 
 #include "downwash/report/label_placement.hpp"
 #include "downwash/report/picture_text.hpp"
+#include "downwash/report/planar_geometry.hpp"
 
 namespace downwash {
 namespace {
@@ -99,17 +100,42 @@ std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outli
     return outlines;
 }
 
-void add_obstacles(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
+std::vector<VisibleOutline> visible_outlines(std::vector<ObstacleOutline> outlines, const Bounds& extent) {
+    std::vector<VisibleOutline> all;
+    for (ObstacleOutline& outline : outlines) {
+        VisibleOutline visible;
+        const auto add_edges = [&](const Ring& line, bool is_closed) {
+            const std::vector<Ring> pieces = clipped_line(line, is_closed, extent);
+            visible.edges.insert(visible.edges.end(), pieces.begin(), pieces.end());
+        };
+        for (const Ring& ring : outline.rings) {
+            if (Ring part = clipped_ring(ring, extent); outline.is_cut && part.size() > 2) {
+                visible.fill.push_back(std::move(part));
+            }
+            add_edges(ring, true);
+        }
+        for (const Ring& line : outline.lines) {
+            add_edges(line, false);
+        }
+        if (!visible.fill.empty() || !visible.edges.empty()) {
+            visible.outline = std::move(outline);
+            all.push_back(std::move(visible));
+        }
+    }
+    return all;
+}
+
+void add_obstacles(Plot& plot, const std::vector<VisibleOutline>& outlines) {
     bool has_cut = false, has_projected = false;
     for (std::size_t i = 0; i < outlines.size(); ++i) {
-        const ObstacleOutline& outline = outlines[i];
+        const ObstacleOutline& outline = outlines[i].outline;
         const std::string edge = fmt::format("$edge{}", i);
         if (!outline.is_cut) {
             plot.add_lines(edge, "dashtype (14,9) linewidth 1.3 linecolor rgb '#505050'",
                            std::exchange(has_projected, true) ? "" : "obstacle beside the plane, projected");
             continue;
         }
-        if (!outline.rings.empty()) {
+        if (!outlines[i].fill.empty()) {
             plot.add_fill(fmt::format("$fill{}", i),
                           fmt::format("fillstyle solid noborder fillcolor rgb {}", obstacle_color),
                           std::exchange(has_cut, true) ? "" : "obstacle");
@@ -122,20 +148,20 @@ void add_obstacles(Plot& plot, const std::vector<ObstacleOutline>& outlines) {
     }
 }
 
-void add_obstacle_data(GnuplotScript& script, const std::vector<ObstacleOutline>& outlines) {
+void add_obstacle_data(GnuplotScript& script, const std::vector<VisibleOutline>& outlines) {
     for (std::size_t i = 0; i < outlines.size(); ++i) {
-        add_data(script, fmt::format("$fill{}", i), fill_text(outlines[i].rings));
-        add_data(script, fmt::format("$edge{}", i),
-                 lines_text(outlines[i].rings, true) + lines_text(outlines[i].lines, false));
+        add_data(script, fmt::format("$fill{}", i), fill_text(outlines[i].fill));
+        add_data(script, fmt::format("$edge{}", i), lines_text(outlines[i].edges, false));
     }
 }
 
-void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<ObstacleOutline>& outlines,
+void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
                         const FieldLayout& layout) {
     const Bounds& extent = figure.extent;
     const double px_per_m = layout.width() / (extent.x_high_m - extent.x_low_m);
     std::vector<NamedShape> shapes;
-    for (const ObstacleOutline& outline : outlines) {
+    for (const VisibleOutline& visible : outlines) {
+        const ObstacleOutline& outline = visible.outline;
         NamedShape shape{outline.name, text_width_px(shown_name(outline.name), font_px) + 6, outline.is_cut, {}};
         for_each_ring(outline, [&](const Ring& ring) {
             auto& pixels = shape.rings.emplace_back();

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/report/field_parts.hpp"
 #include "downwash/report/gnuplot_script.hpp"
 #include "downwash/report/obstacle_outline.hpp"
@@ -18,14 +19,23 @@ namespace downwash {
 /// pixel apart and the rings that are larger than that. @param px_per_m maximum scale of the picture
 [[nodiscard]] std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outlines, double px_per_m);
 
+/// The parts of outlines within an extent, without the outlines of which nothing can be seen there.
+struct VisibleOutline {
+    ObstacleOutline outline;  ///< the whole one
+    std::vector<Ring> fill;   ///< its area within the extent
+    std::vector<Ring> edges;  ///< its lines within the extent, not the extent's own border
+};
+[[nodiscard]] DOWNWASH_EXPORT std::vector<VisibleOutline> visible_outlines(std::vector<ObstacleOutline> outlines,
+                                                                           const Bounds& extent);
+
 /// Draws outlines: filled where they are cut, dashed where they are projected.
-void add_obstacles(Plot& plot, const std::vector<ObstacleOutline>& outlines);
+void add_obstacles(Plot& plot, const std::vector<VisibleOutline>& outlines);
 
 /// Adds the data for add_obstacles().
-void add_obstacle_data(GnuplotScript& script, const std::vector<ObstacleOutline>& outlines);
+void add_obstacle_data(GnuplotScript& script, const std::vector<VisibleOutline>& outlines);
 
 /// Adds the names of obstacles where there is room.
-void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<ObstacleOutline>& outlines,
+void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
                         const FieldLayout& layout);
 
 }  // namespace downwash

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -106,7 +107,75 @@ PlanePoint point_on(const Edge& edge, const std::vector<Vector3>& vertices_m) {
     return {a[0] + part * (b[0] - a[0]), a[2] + part * (b[2] - a[2])};
 }
 
+PlanePoint point_between(const PlanePoint& a, const PlanePoint& b, double part) {
+    return {a.x_m + part * (b.x_m - a.x_m), a.z_m + part * (b.z_m - a.z_m)};
+}
+
+/// How far a point is on the inner side of each of the four edges of an extent.
+std::array<double, 4> depths(const PlanePoint& p, const Bounds& extent) {
+    return {p.x_m - extent.x_low_m, extent.x_high_m - p.x_m, p.z_m - extent.z_low_m, extent.z_high_m - p.z_m};
+}
+
+/// The part of a piece of line within an extent, from and to as parts of its length (Liang and Barsky 1984).
+std::optional<std::pair<double, double>> part_within(const PlanePoint& a, const PlanePoint& b, const Bounds& extent) {
+    const std::array<double, 4> at_a = depths(a, extent), at_b = depths(b, extent);
+    double from = 0, to = 1;
+    for (std::size_t edge = 0; edge < at_a.size(); ++edge) {
+        if (at_a[edge] < 0 && at_b[edge] < 0) {
+            return std::nullopt;
+        }
+        if (at_a[edge] < 0) {
+            from = std::max(from, at_a[edge] / (at_a[edge] - at_b[edge]));
+        } else if (at_b[edge] < 0) {
+            to = std::min(to, at_a[edge] / (at_a[edge] - at_b[edge]));
+        }
+    }
+    if (!(from < to)) {
+        return std::nullopt;
+    }
+    return std::pair(from, to);
+}
+
 }  // namespace
+
+// Sutherland and Hodgman 1974: one edge of the extent after the other.
+Ring clipped_ring(const Ring& ring, const Bounds& extent) {
+    Ring part = ring;
+    for (std::size_t edge = 0; edge < 4; ++edge) {
+        Ring kept;
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const PlanePoint &a = part[i], &b = part[(i + 1) % part.size()];
+            const double at_a = depths(a, extent)[edge], at_b = depths(b, extent)[edge];
+            if (at_a >= 0) {
+                kept.push_back(a);
+            }
+            if ((at_a >= 0) != (at_b >= 0)) {
+                kept.push_back(point_between(a, b, at_a / (at_a - at_b)));
+            }
+        }
+        part = std::move(kept);
+    }
+    return part;
+}
+
+std::vector<Ring> clipped_line(const Ring& line, bool is_closed, const Bounds& extent) {
+    std::vector<Ring> pieces;
+    bool is_open = false;  // whether the last piece reaches the point that comes next
+    for (std::size_t i = 0; i + (is_closed ? 0 : 1) < line.size(); ++i) {
+        const PlanePoint &a = line[i], &b = line[(i + 1) % line.size()];
+        const auto within = part_within(a, b, extent);
+        if (!within) {
+            is_open = false;
+            continue;
+        }
+        if (!is_open || within->first > 0) {
+            pieces.push_back({point_between(a, b, within->first)});
+        }
+        pieces.back().push_back(within->second < 1 ? point_between(a, b, within->second) : b);
+        is_open = within->second >= 1;
+    }
+    return pieces;
+}
 
 // Andrew's monotone chain.
 Ring convex_hull(std::vector<PlanePoint> points) {

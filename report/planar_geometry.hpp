@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/report/picture.hpp"
@@ -24,6 +25,13 @@ namespace downwash {
 /// corners on straight lines. The result is outlines, counter-clockwise, and the holes in them, clockwise.
 /// @param rings counter-clockwise, none over another; corners within 1e-7 m of each other count as one
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Ring> joined_rings(const std::vector<Ring>& rings);
+
+/// The part of a polygon within an extent. Every point inside the extent keeps its winding number, also of rings that
+/// cross themselves or are holes. Parts that the extent separates stay connected along its border.
+[[nodiscard]] DOWNWASH_EXPORT Ring clipped_ring(const Ring& ring, const Bounds& extent);
+
+/// The pieces of a line within an extent. @param is_closed whether the line returns to its first point
+[[nodiscard]] DOWNWASH_EXPORT std::vector<Ring> clipped_line(const Ring& line, bool is_closed, const Bounds& extent);
 
 /// The section of a surface with a plane.
 struct MeshSection {

@@ -95,6 +95,14 @@ TEST_CASE("names that would run commands are shown as they are") {
     CHECK(folder.is_empty());
 }
 
+TEST_CASE("a name that would end a section of XML is escaped in an SVG") {
+    FieldFigure figure = sample_figure();
+    figure.title = figure.obstacles[0].name = "a]]>]]>b";
+    const std::string picture = draw(figure, {PictureFormat::svg, 900});
+    CHECK_THAT(picture, !Contains("]]>") && Contains("a]]&gt;]]&gt;b"));
+    CHECK_THAT(test::svg_texts(picture), Contains("a]]>]]>b"));
+}
+
 TEST_CASE("what cannot be drawn to scale is an error") {
     const auto with_extent = [](const Bounds& extent) {
         FieldFigure figure = sample_figure();
