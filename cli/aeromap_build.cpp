@@ -85,10 +85,10 @@ void require_sound_output(const BuildArguments& given) {
         static_cast<void>(pitch_option(pitch_deg));
     }
     if (std::filesystem::path(given.output).extension() != ".csv") {
-        throw UsageError("--output " + given.output +
+        throw UsageError("--out " + given.output +
                          ": the whole vehicle (--pitch-deg) is written as CSV, expected a name that ends in .csv");
     }
-    require_writable_result(given.output, "--output");
+    require_writable_result(given.output, "--out");
 }
 
 ExitCode build_vehicle(const BuildArguments& given, const Problem& problem, const FlightModel& model) {
@@ -96,7 +96,7 @@ ExitCode build_vehicle(const BuildArguments& given, const Problem& problem, cons
     const std::string table =
         vehicle_table(problem, model, given.pitch_deg, step_of(given, problem), given.threads,
                       [&display](double share) { display.show("evaluating the vehicle", share); });
-    write_result(given.output, table, "--output");
+    write_result(given.output, table, "--out");
     display.say(fmt::format("{}: the whole vehicle at {} pitch angle(s)", given.output, given.pitch_deg.size()));
     return ExitCode::done;
 }
@@ -132,19 +132,19 @@ void add_aeromap_build(CLI::App& aeromap, Action& action) {
                                         "regular grid and write it as a file",
                                         run);
     add_problem(command, given.problem);
-    add_value(command, "-o,--output FILE", given.output,
-              "file to write: .vti (VTK ImageData, opens in ParaView) or .csv")
-        ->required();
+    add_out(command, "FILE", given.output, "a file, .vti (VTK ImageData, opens in ParaView) or .csv")->required();
     add_value(command, "--step M", given.step_m, "maximum distance between nodes [m]; default aero.grid_m");
     CLI::Option* one_rotor =
         add_value(command, "--rotor N", given.rotor,
-                  "only the plane of this rotor, counted from 1; default: one layer for every lateral offset");
-    CLI::Option* lateral = add_value(command, "--lateral LOW HIGH", given.lateral_m,
-                                     "a volume instead of planes, from LOW to HIGH beside the plane of motion [m]")
-                               ->expected(2);
-    add_value(command, "--pitch-deg P...", given.pitch_deg,
-              "the whole vehicle at these pitch angles instead of rotors, as .csv: force factor, pitch torque and its "
-              "factor over the place of the centre of mass; positive nose down")
+                  "number of the rotor, counted from 1; only its plane, default: one layer for every lateral offset");
+    CLI::Option* lateral =
+        add_value(command, "--lateral LOW HIGH", given.lateral_m,
+                  "distance to the left of the plane of motion [m]; a volume from LOW to HIGH instead of planes")
+            ->expected(2);
+    add_value(
+        command, "--pitch-deg P...", given.pitch_deg,
+        "pitch of the vehicle [deg], positive nose down; the whole vehicle instead of rotors, as .csv: force factor, "
+        "pitch torque and its factor over the place of the centre of mass")
         ->excludes(one_rotor)
         ->excludes(lateral);
     add_threads(command, given.threads);

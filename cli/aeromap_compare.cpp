@@ -157,7 +157,7 @@ void add_aeromap_compare(CLI::App& aeromap, Action& action) {
                     "Compare all models with measurements, each with the parameters of its source and refitted", run);
     given.data.add_options(command);
     add_json(command, given.as_json);
-    command.add_flag("--markdown", given.as_markdown, "print tables in Markdown");
+    command.add_flag("--markdown", given.as_markdown, "Markdown instead of text; tables");
 }
 
 }  // namespace downwash::cli

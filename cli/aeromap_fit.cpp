@@ -24,7 +24,7 @@ struct FitArguments {
     std::string model;
     std::vector<std::string> fixed;
     bool is_weighted = false, as_json = false;
-    std::string plot;
+    std::string picture;
 };
 
 Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vector<Measurement>& points) {
@@ -191,8 +191,8 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
 ExitCode run(const FitArguments& given) {
     const EffectModelInfo& known = model_named(given.model);
     PictureSettings settings;
-    if (!given.plot.empty()) {
-        settings.format = picture_format("--plot", given.plot);
+    if (!given.picture.empty()) {
+        settings.format = picture_format("--out", given.picture);
     }
     FitOptions options;
     options.neighbours = given.data.neighbours();
@@ -213,9 +213,9 @@ ExitCode run(const FitArguments& given) {
                         given.data.file));
     }
     const EffectFit fit = fit_effect(known.model, measurements.points, options);
-    if (!given.plot.empty()) {
-        write_result(given.plot, draw(figures_of(known, fit, measurements.points, options.neighbours), settings),
-                     "--plot");
+    if (!given.picture.empty()) {
+        write_result(given.picture, draw(figures_of(known, fit, measurements.points, options.neighbours), settings),
+                     "--out");
     }
     if (given.as_json) {
         print_json(fit_json(known, fit, measurements.points));
@@ -236,8 +236,7 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
         ->expected(1)
         ->take_all();
     command.add_flag("--weighted", given.is_weighted, "weight each residual by 1 / sigma, a column of DATA");
-    add_value(command, "--plot FILE", given.plot,
-              "draw measurements, curve and residuals to a .svg, .png or .pdf file");
+    add_out(command, "FILE", given.picture, "a picture of measurements, curve and residuals, .svg, .png or .pdf");
     add_json(command, given.as_json);
 }
 

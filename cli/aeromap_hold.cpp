@@ -20,7 +20,7 @@ namespace {
 
 struct HoldArguments {
     std::string problem;
-    double arm_deg = 0;
+    std::optional<double> arm_deg;
     std::vector<std::array<double, 2>> at;
     bool as_json = false;
 };
@@ -100,16 +100,13 @@ void print_table(const std::vector<HoldAnswer>& answers) {
 }
 
 ExitCode run(const HoldArguments& given) {
-    constexpr double max_degrees = 3600;
-    if (!(std::abs(given.arm_deg) <= max_degrees)) {
-        throw UsageError("--arm-deg {}: expected an angle of at most {} degrees", given.arm_deg, max_degrees);
-    }
     for (const auto& [x_m, z_m] : given.at) {
         require_coordinate(x_m, "--at");
         require_coordinate(z_m, "--at");
     }
-    const auto model = make_flight_model(read_problem(given.problem, {}, print_outdated));
-    const double arm_rad = given.arm_deg / degrees_per_radian;
+    const Problem problem = read_problem(given.problem, {}, print_outdated);
+    const double arm_rad = arm_option(given.arm_deg, problem);
+    const auto model = make_flight_model(problem);
     std::vector<HoldAnswer> answers;
     for (const auto& [x_m, z_m] : given.at) {
         answers.push_back({x_m, z_m, analyse_hover(*model, x_m, z_m, arm_rad),
@@ -123,7 +120,7 @@ ExitCode run(const HoldArguments& given) {
     for (const HoldAnswer& answer : answers) {
         points.push_back(json_of(answer, model->tick().plant.rotor_count));
     }
-    print_json({{"arm_deg", given.arm_deg}, {"points", std::move(points)}});
+    print_json({{"arm_deg", given.arm_deg.value_or(arm_rad * degrees_per_radian)}, {"points", std::move(points)}});
     return ExitCode::done;
 }
 
@@ -135,9 +132,8 @@ void add_aeromap_hold(CLI::App& aeromap, Action& action) {
         "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop",
         run);
     add_problem(command, given.problem);
-    add_value(command, "--arm-deg A", given.arm_deg, "arm angle relative to the multirotor [deg]")->required();
-    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not; may be repeated")
-        ->required();
+    add_arm(command, given.arm_deg);
+    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not")->required();
     add_json(command, given.as_json);
 }
 

@@ -127,9 +127,6 @@ void require_sound_options(const PlotArguments& request) {
     }
     static_cast<void>(entry_named(field_kinds, request.what, "--what"));
     reject_useless_options(request);
-    if (!(std::abs(request.arm_deg) <= 1e5)) {
-        throw UsageError("--arm-deg {}: expected degrees, at most 1e5 either way", request.arm_deg);
-    }
     static_cast<void>(pitch_option(request.pitch_deg));
     if (request.lateral_m) {
         require_coordinate(*request.lateral_m, "--lateral");
@@ -150,10 +147,10 @@ std::string picture(const PlotRequest& request, const PictureSettings& settings)
 
 ExitCode run(const PlotArguments& given) {
     require_sound_options(given);
-    const PictureSettings settings{picture_format("--output", given.output),
+    const PictureSettings settings{picture_format("--out", given.output),
                                    given.width_px.value_or(PictureSettings{}.width_px)};
-    require_writable_result(given.output, "--output");
-    write_result(given.output, picture(given, settings), "--output");
+    require_writable_result(given.output, "--out");
+    write_result(given.output, picture(given, settings), "--out");
     if (!given.is_quiet) {
         print_error(fmt::format("wrote {}\n", given.output));
     }
@@ -171,31 +168,34 @@ void add_aeromap_plot(CLI::App& aeromap, Action& action) {
     CLI::Option* kind = plot.add_option("--what", given.what, "what to show of a problem: " + kinds_text());
     offer_words(*kind->capture_default_str(), names_of(field_kinds));
     CLI::Option* one_rotor =
-        add_value(plot, "--rotor N", given.rotor, "the rotor, counted from 1")->capture_default_str();
+        add_value(plot, "--rotor N", given.rotor, "number of the rotor, counted from 1")->capture_default_str();
     add_value(plot, "--lateral Y", given.lateral_m,
-              "distance of its hub to the left of the plane of motion [m]; default: its own place")
+              "distance to the left of the plane of motion [m]; of the hub, default: its own place")
         ->excludes(one_rotor);
-    add_value(plot, "--arm-deg A", given.arm_deg, "angle of the arm with --what hold")->capture_default_str();
+    add_arm(plot, given.arm_deg);
     add_value(plot, "--pitch-deg P", given.pitch_deg,
-              "pitch of the vehicle with --what force or torque, positive nose down")
+              "pitch of the vehicle [deg], positive nose down; with --what force or torque")
         ->capture_default_str();
     add_value(plot, "--x LOW HIGH", given.x_m, "shown part of the plane [m]; default: the reach of the rotors")
         ->expected(2);
     add_value(plot, "--z LOW HIGH", given.z_m, "the same for z")->expected(2);
     CLI::Option* model =
-        plot.add_option("--model", given.models, "curves of K over z/R, by names as in a problem file");
+        plot.add_option("--model", given.models, "name of a model as in a problem file; curves of K over z/R");
     offer_models(*model->type_name("NAME..."));
     add_value(plot, "--data CSV", given.data, "measurements to show with them: CSV as for `aeromap fit`");
-    offer_words(*add_value(plot, "--surface S", given.surface, "only measurements at this surface"), measured_surfaces);
+    offer_words(
+        *add_value(plot, "--surface S", given.surface, "only measurements at this surface, `ground` or `ceiling`"),
+        measured_surfaces);
     add_value(plot, "--source NAME", given.source, "only measurements of this source");
-    add_value(plot, "--max-factor K", given.max_factor, "cap of the models; default 2");
+    add_value(plot, "--max-factor K", given.max_factor, "cap of K; default 2");
     add_value(plot, "--rotor-spacing D", given.rotor_spacing,
-              "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5");
+              "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
     plot.add_flag("--flow", given.is_flow, "the potential flow of a rotor and its image below the ground");
     add_value(plot, "--z-over-r LOW HIGH", given.z_over_r,
-              "shown range of curves (default 0 4), or the rotor's height with --flow [radii]")
+              "distance from the surface in rotor radii; shown range of curves (default 0 4), or the rotor's height "
+              "with --flow")
         ->expected(1, 2);
-    add_value(plot, "-o,--output FILE", given.output, "the picture, .svg, .png or .pdf")->required();
+    add_out(plot, "FILE", given.output, "the picture, .svg, .png or .pdf")->required();
     add_width(plot, given.width_px);
     add_quiet(plot, given.is_quiet);
 }

@@ -31,7 +31,8 @@ struct QueryArguments {
     std::optional<int> rotor;
     ModelChoice model;
     std::vector<double> z_over_r;
-    bool no_cache = false, as_json = false;
+    int threads = default_threads();
+    bool no_cache = false, is_quiet = false, as_json = false;
 };
 
 /// The effect of surfaces on a rotor at one point; the factors are empty where it is not flyable.
@@ -49,7 +50,9 @@ class Effects {
         : problem_(problem),
           model_(make_flight_model(problem)),
           rotor_(rotor_option(given.rotor, model_->tick().plant.rotor_count)),
-          cache_(std::move(cache)) {}
+          cache_(std::move(cache)),
+          threads_(given.threads),
+          is_quiet_(given.is_quiet) {}
 
     PointEffect at(const std::array<double, 3>& point_m) {
         const DirectEffect& direct = model_->effect(rotor_);
@@ -83,10 +86,10 @@ class Effects {
 
     const AeroMap& map() {
         if (!map_) {
-            ProgressDisplay display(false);
+            ProgressDisplay display(is_quiet_);
             map_ = model_->make_map(
-                problem_.bounds, default_threads(),
-                [&display](double share) { display.show("building the map", share); }, cache_);
+                problem_.bounds, threads_, [&display](double share) { display.show("building the map", share); },
+                cache_);
         }
         return *map_;
     }
@@ -95,6 +98,8 @@ class Effects {
     std::shared_ptr<const FlightModel> model_;
     int rotor_;
     std::filesystem::path cache_;
+    int threads_;
+    bool is_quiet_;
     std::shared_ptr<const AeroMap> map_;
 };
 
@@ -210,7 +215,7 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& given) {
 }
 
 void query_problem(const QueryArguments& given) {
-    const Problem problem = read_problem(given.problem, {}, print_outdated);
+    const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
     Effects effects(given, problem, cache_folder(given.no_cache));
     std::vector<PointEffect> points;
     for (const auto& point_m : all_points(given)) {
@@ -265,16 +270,18 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
         run);
     command.add_option("PROBLEM", given.problem, "problem file");
     add_points(command, given.at,
-               "rotor hub in the world frame [m]; may be repeated. `factor` comes from the problem's map if the point "
+               "rotor hub in the world frame [m]. `factor` comes from the problem's map if the point "
                "lies on one of its planes");
     add_value(command, "--points FILE", given.points,
               "file with more points, one per line; - reads them from standard input");
     add_value(command, "--rotor N", given.rotor,
-              "the rotor whose neighbours the multirotor models consider, counted from 1; default 1");
+              "number of the rotor, counted from 1; the multirotor models consider its neighbours, default 1");
     offer_models(*add_value(command, "--model NAME", given.model.name, "name of a model as in a problem file"));
-    add_value(command, "--z-over-r V...", given.z_over_r, "distances in rotor radii");
+    add_value(command, "--z-over-r V...", given.z_over_r, "distance from the surface in rotor radii");
     add_model_options(command, given.model);
+    add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
     add_json(command, given.as_json);
 }
 

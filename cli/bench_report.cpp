@@ -49,7 +49,8 @@ void add_bench_report(CLI::App& bench, Action& action) {
         bench, action, "report",
         "Report the results of a campaign as Markdown; exit code 1 if it misses a target that its file sets", run);
     command.add_option("DIR", given.folder, "folder that `bench run` wrote to")->required();
-    CLI::Option* json = command.add_flag("--json", given.as_json, "JSON: every figure, and those of every seed");
+    add_json(command, given.as_json, "every figure, and those of every seed");
+    CLI::Option* json = command.get_option("--json");
     CLI::Option* html =
         command.add_flag("--html", given.as_html, "one HTML page with pictures, as `bench run` writes it");
     CLI::Option* latex =
@@ -58,7 +59,7 @@ void add_bench_report(CLI::App& bench, Action& action) {
     html->excludes(json);
     latex->excludes(json)->excludes(html);
     csv->excludes(json)->excludes(html)->excludes(latex);
-    add_value(command, "-o,--out FILE", given.out, "file to write to; default: standard output");
+    add_out(command, "FILE", given.out, "a file; default: standard output");
 }
 
 }  // namespace downwash::cli

@@ -19,12 +19,16 @@ namespace {
 struct BenchRunArguments {
     std::string campaign;
     std::optional<std::string> out;
+    std::optional<std::uint64_t> jobs;
     bool resumes = false, no_cache = false, is_quiet = false;
 };
 
 ExitCode run(const BenchRunArguments& given) {
     const Interruption interruption;
-    const ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated);
+    ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated);
+    if (given.jobs) {
+        read.campaign.jobs = *given.jobs;
+    }
     bench::CampaignRunOptions options;
     options.out = given.out.value_or("downwash-out/bench-" + read.campaign.name);
     options.resumes = given.resumes;
@@ -59,9 +63,10 @@ void add_bench_run(CLI::App& bench, Action& action) {
         bench, action, "run",
         "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db", run);
     command.add_option("CAMPAIGN", given.campaign, "campaign file")->required();
-    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
+    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
     command.add_flag("--resume", given.resumes,
                      "continue with the results that are there, if they were begun with the same settings");
+    add_jobs(command, given.jobs, "that of the campaign, or one per processor");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
 }

@@ -66,7 +66,7 @@ void add_check(CLI::App& program, Action& action) {
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
     require_one_of(*schema, {"problem", "robot", "campaign"});
-    add_json(command, given.as_json, "print the errors as JSON on standard output");
+    add_json(command, given.as_json, "the errors");
 }
 
 }  // namespace downwash::cli

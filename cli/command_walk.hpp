@@ -23,6 +23,19 @@ namespace downwash::cli {
     return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
 }
 
+/// "downwash solve [OPTIONS] PROBLEM"
+[[nodiscard]] inline std::string usage_line(const CLI::App& command) {
+    if (!commands_of(command).empty()) {
+        return full_name(command) + " COMMAND";
+    }
+    std::string line = full_name(command) + " [OPTIONS]";
+    for (const CLI::Option* option : options_of(command, true)) {
+        const std::string name = option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
+        line += option->get_required() ? " " + name : " [" + name + "]";
+    }
+    return line;
+}
+
 /// Calls visit(command) for a command and all below it.
 template <class Visit>
 void for_each_command(const CLI::App& command, const Visit& visit) {

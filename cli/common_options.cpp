@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
@@ -15,6 +16,7 @@ namespace downwash::cli {
 namespace {
 
 constexpr int max_threads = 256;
+constexpr char solution_name[] = "solution.json";
 
 /// The absolute path in an environment variable; empty without one.
 std::filesystem::path path_in(const char* variable) {
@@ -29,8 +31,8 @@ void add_problem(CLI::App& command, std::string& file) {
     command.add_option("PROBLEM", file, "problem file")->required();
 }
 
-void add_json(CLI::App& command, bool& as_json, const std::string& what) {
-    command.add_flag("--json", as_json, what);
+void add_json(CLI::App& command, bool& as_json, const std::string& detail) {
+    command.add_flag("--json", as_json, meaning_and("JSON instead of text", detail));
 }
 
 void add_quiet(CLI::App& command, bool& is_quiet) {
@@ -49,6 +51,27 @@ void add_threads(CLI::App& command, int& threads) {
         ->check(CLI::Range(1, max_threads));
 }
 
+void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::string& otherwise) {
+    add_value(command, "--jobs N", jobs,
+              fmt::format("searches at a time, 1 to {}; default: {}", max_threads, otherwise))
+        ->check(CLI::Range(1, max_threads));
+}
+
+CLI::Option* add_plan(CLI::App& command, std::string& plan) {
+    return add_value(command, "--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
+        ->required();
+}
+
+CLI::Option* add_run(CLI::App& command, std::string& folder) {
+    return command.add_option("DIR", folder, "folder that `solve` or `execute` wrote to, or the solution.json in it")
+        ->required();
+}
+
+CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg) {
+    return add_value(command, "--arm-deg A", arm_deg,
+                     "arm angle relative to the multirotor [deg]; default: that of the problem's start");
+}
+
 void add_width(CLI::App& command, std::optional<int>& width_px) {
     add_value(command, "--width PX", width_px,
               fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
@@ -62,6 +85,43 @@ void require_coordinate(double coordinate_m, const std::string& where) {
         throw UsageError("{} {}: expected finite coordinates in m, at most {:g} either way", where, coordinate_m,
                          max_m);
     }
+}
+
+std::string meaning_and(std::string meaning, const std::string& detail) {
+    return detail.empty() ? meaning : std::move(meaning) + "; " + detail;
+}
+
+std::string plan_file(const std::string& given) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(given, ignored) ? (std::filesystem::path(given) / solution_name).string()
+                                                         : given;
+}
+
+std::string run_folder(const std::string& given) {
+    const std::filesystem::path path(given);
+    if (std::error_code ignored; path.filename() != solution_name || std::filesystem::is_directory(path, ignored)) {
+        return given;
+    }
+    return path.has_parent_path() ? path.parent_path().string() : ".";
+}
+
+double arm_option(const std::optional<double>& arm_deg, const Problem& problem) {
+    if (!arm_deg) {
+        return problem.start.arm_rad;
+    }
+    constexpr double max_deg = 3600;
+    if (!(std::abs(*arm_deg) <= max_deg)) {
+        throw UsageError("--arm-deg {}: expected degrees, at most {} either way", *arm_deg, max_deg);
+    }
+    const double arm_rad = *arm_deg / degrees_per_radian;
+    constexpr double tolerance_rad = 1e-9;
+    const ArmParameters& arm = problem.robot.arm;
+    if (arm.is_limited &&
+        (arm_rad < arm.lower_limit_rad - tolerance_rad || arm_rad > arm.upper_limit_rad + tolerance_rad)) {
+        throw UsageError("--arm-deg {}: beyond the arm's limits, expected {:.6g} to {:.6g} degrees", *arm_deg,
+                         arm.lower_limit_rad * degrees_per_radian, arm.upper_limit_rad * degrees_per_radian);
+    }
+    return arm_rad;
 }
 
 int default_threads() {

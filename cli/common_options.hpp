@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "downwash/cli/commands.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/report/picture.hpp"
 
 namespace downwash::cli {
@@ -32,20 +33,37 @@ CLI::Option* add_value(CLI::App& command, const std::string& spelling, Value& va
     return command.add_option(spelling.substr(0, blank), value, description)->type_name(spelling.substr(blank + 1));
 }
 
-// Options that several commands have, each with the same name and meaning everywhere.
+// Options that several commands have, each with the same name and short form everywhere. The description begins with
+// the meaning, which is the same everywhere too; what differs between commands follows a semicolon.
+
+/// "meaning; detail", or the meaning alone.
+[[nodiscard]] std::string meaning_and(std::string meaning, const std::string& detail);
 
 void add_problem(CLI::App& command, std::string& file);
-void add_json(CLI::App& command, bool& as_json, const std::string& what = "print JSON");
+void add_json(CLI::App& command, bool& as_json, const std::string& detail = "");
 void add_quiet(CLI::App& command, bool& is_quiet);
 void add_no_cache(CLI::App& command, bool& no_cache);
 void add_threads(CLI::App& command, int& threads);
+/// @param otherwise says how many there are without the option
+void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::string& otherwise);
+/// What it takes: see plan_file().
+CLI::Option* add_plan(CLI::App& command, std::string& plan);
+/// What it takes: see run_folder().
+CLI::Option* add_run(CLI::App& command, std::string& folder);
+/// See arm_option().
+CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg);
 void add_width(CLI::App& command, std::optional<int>& width_px);
+
+/// -o,--out. @param placeholder FILE or DIR   @param detail what it holds, and where it is without the option
+template <class Value>
+CLI::Option* add_out(CLI::App& command, const std::string& placeholder, Value& out, const std::string& detail) {
+    return add_value(command, "-o,--out " + placeholder, out, meaning_and("where to write", detail));
+}
 
 /// --at with so many coordinates, as often as wanted.
 template <std::size_t size>
-CLI::Option* add_points(CLI::App& command, std::vector<std::array<double, size>>& points,
-                        const std::string& description) {
-    return command.add_option("--at", points, description)
+CLI::Option* add_points(CLI::App& command, std::vector<std::array<double, size>>& points, const std::string& detail) {
+    return command.add_option("--at", points, meaning_and("a point; may be repeated", detail))
         ->type_name(size == 2 ? "X Z" : "X Y Z")
         ->expected(1)
         ->allow_extra_args(false)
@@ -62,6 +80,15 @@ void require_coordinate(double coordinate_m, const std::string& where);
 /// The folder that keeps the user's aero maps between runs: $XDG_CACHE_HOME/downwash, or $HOME/.cache/downwash without
 /// an absolute path in that variable. Empty when there is no home either, or no cache is wanted.
 [[nodiscard]] std::filesystem::path cache_folder(bool no_cache = false);
+
+/// The file of a plan that --plan gives: itself, or solution.json in a folder.
+[[nodiscard]] std::string plan_file(const std::string& given);
+
+/// The folder of a run: itself, or that of a solution.json.
+[[nodiscard]] std::string run_folder(const std::string& given);
+
+/// The arm angle that --arm-deg gives [rad]; that of the start without one. @throws UsageError beyond the arm's limits
+[[nodiscard]] double arm_option(const std::optional<double>& arm_deg, const Problem& problem);
 
 /// The index of the rotor that --rotor N names, counted from 0; that of the first rotor without a number.
 /// @throws UsageError when the vehicle has no such rotor

@@ -9,6 +9,7 @@
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -27,7 +28,9 @@ struct ExecuteArguments {
     std::string aero = "on";
     std::optional<std::uint64_t> world, seed;
     std::optional<std::string> out;
-    bool no_cache = false, as_json = false;
+    PlannerOptions planner;
+    int threads = default_threads();
+    bool no_cache = false, is_quiet = false, as_json = false;
 };
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
@@ -48,9 +51,9 @@ bool holds_plan(const fs::path& folder, const std::string& plan) {
 fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
     if (!given.out) {
         const fs::path folder = default_folder(problem);
-        return holds_plan(folder, given.plan) ? fs::path(folder.string() + "-executed") : folder;
+        return holds_plan(folder, plan_file(given.plan)) ? fs::path(folder.string() + "-executed") : folder;
     }
-    if (holds_plan(*given.out, given.plan)) {
+    if (holds_plan(*given.out, plan_file(given.plan))) {
         throw UsageError("--out " + *given.out + " holds the plan itself, which would be replaced; choose another");
     }
     return *given.out;
@@ -95,8 +98,10 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
 
 ExitCode run(const ExecuteArguments& given) {
     const Interruption interruption;
-    Problem read = read_problem(given.problem, {}, print_outdated);
-    Solution solution = read_solution(given.plan, read);
+    Problem read = read_problem(
+        given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
+        given.is_quiet ? nullptr : print_outdated);
+    Solution solution = read_solution(plan_file(given.plan), read);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
     const OutputFolder folder(folder_for(given, read));
@@ -105,7 +110,7 @@ ExitCode run(const ExecuteArguments& given) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
     const RunRecord record = write_results(folder, read, given.problem, solution);
-    write_page(folder, record, nullptr, cache_folder(given.no_cache));
+    write_page(folder, record, nullptr, cache_folder(given.no_cache), given.is_quiet, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
                                    : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
@@ -122,18 +127,21 @@ void add_execute(CLI::App& program, Action& action) {
         "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied",
         run);
     add_problem(command, given.problem);
-    add_value(command, "--plan FILE", given.plan, "solution.json that holds the plan")->required();
+    add_plan(command, given.plan);
+    given.planner.add(command, "planner.safety_margin_m");
     CLI::Option* option =
         command.add_option("--aero", given.aero, "on: surface effects evaluated directly (default); off: free air");
     require_one_of(*option, {"on", "off"});
     add_value(command, "--world I", given.world,
-              "fly in world I of the problem's uncertainty; 0 is the nominal one (default)");
-    add_value(command, "--seed N", given.seed, "of the worlds; default: that of the plan");
-    add_value(command, "--out DIR", given.out,
-              "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
-              "itself is in that folder");
+              "world I of the problem's uncertainty to fly in; 0 is the nominal one (default)");
+    add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
+    add_out(command, "DIR", given.out,
+            "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
+            "itself is in that folder");
+    add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
-    add_json(command, given.as_json, "print solution.json on standard output instead of a summary");
+    add_quiet(command, given.is_quiet);
+    add_json(command, given.as_json, "solution.json");
 }
 
 }  // namespace downwash::cli

@@ -58,8 +58,9 @@ void require_good_flight(const RunRecord& run) {
 ExitCode run(const ExportArguments& given) {
     const ExportFormat& chosen = entry_named(export_formats(), given.format, "--format");
     reject_useless_options(given, chosen);
-    const fs::path file = given.out ? fs::path(*given.out) : fs::path(given.folder) / std::string(chosen.file_name);
-    const RunRecord record = read_run(given.folder);
+    const fs::path file =
+        given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / std::string(chosen.file_name);
+    const RunRecord record = read_run(run_folder(given.folder));
     if (chosen.is_to_be_flown && !given.anyway) {
         require_good_flight(record);
     }
@@ -81,10 +82,10 @@ std::string formats_help() {
 void add_export(CLI::App& program, Action& action) {
     auto [command, given] =
         add_command(program, action, "export", "Write a run as a file that other programs read", run);
-    command.add_option("DIR", given.folder, "folder that `solve` or `execute` wrote to")->required();
+    add_run(command, given.folder);
     CLI::Option* option = add_value(command, "--format F", given.format, formats_help())->required();
     offer_words(*option, names_of(export_formats()));
-    add_value(command, "-o,--out FILE", given.out, "the file; default its usual name, in that folder");
+    add_out(command, "FILE", given.out, "a file; default its usual name, in that folder");
     add_value(command, "--rate HZ", given.rate_hz, "set-points per second; default: the controller's rate");
     add_value(command, "--origin LATITUDE LONGITUDE ALTITUDE", given.origin,
               "origin of the world frame, for qgc: latitude and longitude in degrees (WGS 84), and altitude of z = 0 "

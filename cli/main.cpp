@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -8,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "downwash/base/parameter.hpp"
@@ -29,20 +31,93 @@ constexpr char exit_codes[] =
     "failed;\n"
     "130 after SIGINT, 143 after SIGTERM: the best solution so far is written; a second signal ends at once.";
 
-/// The error in a command line, and the command that prints help.
-std::string usage_error(const CLI::App* program, const CLI::Error& error) {
-    std::string command = program->get_name();
-    for (auto given = program->get_subcommands(); !given.empty(); given = given.front()->get_subcommands()) {
-        command += " " + given.front()->get_name();
+/// The command that was given, at any depth.
+const CLI::App& given_command(const CLI::App& program) {
+    const CLI::App* command = &program;
+    for (auto given = command->get_subcommands(); !given.empty(); given = command->get_subcommands()) {
+        command = given.front();
     }
-    return fmt::format("{}: {}\nSee {} --help.\n", program->get_name(), error.what(), command);
+    return *command;
 }
 
-/// CLI11 would only say that a command is missing.
+/// "N" of an option that takes a number; a check that follows is in the description, too.
+std::string placeholder_of(const CLI::Option& option) {
+    const std::string name = option.get_type_name();
+    return name.substr(0, name.find(':'));
+}
+
+/// What is wrong in a command line, with a remedy. CLI11 says which option and which value, but not what it expects.
+std::string explained(const CLI::App& command, const CLI::Error& error) {
+    const std::string message = error.what();
+    std::string_view name = message;
+    if (error.get_name() == "ConversionError" && name.starts_with("Could not convert: ")) {
+        name.remove_prefix(std::string_view("Could not convert: ").size());
+    }
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string spelled = option->get_name();
+        if (!name.starts_with(spelled) ||
+            (name.size() > spelled.size() && name[spelled.size()] != ' ' && name[spelled.size()] != ':')) {
+            continue;
+        }
+        const std::string expected = fmt::format(
+            "{}: {}", option->get_positional() ? option->get_name(true) : spelled + " " + placeholder_of(*option),
+            option->get_description());
+        const std::string_view value = name.substr(spelled.size());
+        if (error.get_name() == "ConversionError" && value.starts_with(" = ")) {
+            return fmt::format("{} is '{}': expected {}", spelled, excerpt(value.substr(3)), expected);
+        }
+        if (error.get_name() == "RequiredError") {
+            return fmt::format("{} is missing: expected {}", spelled, expected);
+        }
+        if (error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch") {
+            return fmt::format("{}; expected {}", message, expected);
+        }
+    }
+    return error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)
+               ? fmt::format("{}: expected {}", message, usage_line(command))
+               : message;
+}
+
+/// The error in a command line, and the command that prints help.
+std::string usage_error(const CLI::App* program, const CLI::Error& error) {
+    const CLI::App& command = given_command(*program);
+    return fmt::format("{}: {}\nSee {} --help.\n", program->get_name(), explained(command, error), full_name(command));
+}
+
+/// CLI11 would call an unknown option an argument that was not expected.
+/// @param words what follows the command's name
+void reject_unknown_option(const CLI::App& command, std::span<char* const> words) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            known.push_back("--" + name);
+        }
+    }
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    for (const std::string_view word : words) {
+        if (word == "--") {
+            return;
+        }
+        const std::string_view name = word.substr(0, word.find('='));
+        if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end()) {
+            const bool was_out = name == "--output" || name == "--plot";  // in earlier versions
+            const bool has_out = std::find(names.begin(), names.end(), "--out") != names.end();
+            const std::string hint = was_out && has_out ? "; did you mean '--out'?" : did_you_mean(name, names);
+            throw UsageError("{} has no option {}: expected {}{}\nSee {} --help.", full_name(command), excerpt(name),
+                             joined_names(names), hint, full_name(command));
+        }
+    }
+}
+
+/// CLI11 would only say that a command is missing. Rejects options that the command does not have, too.
 /// @param words what follows the command's name
 void reject_unknown_command(const CLI::App& command, std::span<char* const> words) {
     const std::vector<const CLI::App*> known = commands_of(command);
-    if (words.empty() || known.empty() || std::string_view(words[0]).starts_with("-")) {
+    if (known.empty() || (!words.empty() && std::string_view(words[0]).starts_with("-"))) {
+        reject_unknown_option(command, words);
+        return;
+    }
+    if (words.empty()) {
         return;
     }
     const std::string_view word = words[0];
@@ -81,9 +156,11 @@ void add_study(CLI::App& program, Action& action) {
     add_study_uncertainty(*study, action);
 }
 
-/// Results that do not reach standard output are an error.
+/// Results that do not reach standard output are an error, unless its reader went away.
 ExitCode checked_output(ExitCode code) {
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    errno = 0;
+    const bool has_failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+    if (has_failed && errno != EPIPE) {
         throw UsageError("standard output cannot be written");
     }
     return code;
@@ -141,6 +218,11 @@ int main(int argc, char** argv) {
         downwash::cli::print_errors(
             "out of memory: choose a larger aero.grid_m or --step, smaller bounds, a smaller --width, fewer obstacles "
             "or a shorter search");
+    } catch (const std::system_error& error) {
+        if (error.code() == std::errc::broken_pipe) {  // who reads standard output has seen enough
+            return static_cast<int>(ExitCode::done);
+        }
+        downwash::cli::print_errors(error.what());
     } catch (const std::exception& error) {
         downwash::cli::print_errors(error.what());
     }

@@ -79,19 +79,6 @@ std::string in_cell(const std::string& text) {
     return cell;
 }
 
-/// "downwash solve [OPTIONS] PROBLEM"
-std::string usage_line(const CLI::App& command) {
-    if (!commands_of(command).empty()) {
-        return full_name(command) + " COMMAND";
-    }
-    std::string line = full_name(command) + " [OPTIONS]";
-    for (const CLI::Option* option : options_of(command, true)) {
-        const std::string name = option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
-        line += option->get_required() ? " " + name : " [" + name + "]";
-    }
-    return line;
-}
-
 std::string markdown_options(const CLI::App& command) {
     std::string rows;
     for (const CLI::Option* option : all_options_of(command)) {
@@ -210,7 +197,7 @@ void add_manual(CLI::App& program, Action& action) {
     CLI::Option* pages = add_value(command, "--all DIR", given.all,
                                    "write the pages of all commands to a folder instead: downwash-solve.1...")
                              ->excludes(one);
-    command.add_flag("--markdown", given.is_markdown, "print all commands as one Markdown page instead")
+    command.add_flag("--markdown", given.is_markdown, "Markdown instead of text; all commands as one page")
         ->excludes(one)
         ->excludes(pages);
 }

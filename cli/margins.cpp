@@ -87,7 +87,7 @@ void add_margins(CLI::App& program, Action& action) {
         add_command(program, action, "margins",
                     "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
     add_value(command, "ROBOT", given.robot, "robot file")->required();
-    add_json(command, given.as_json, "print JSON on standard output instead of a table");
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

@@ -42,16 +42,16 @@ void MeasuredData::add_options(CLI::App& command) {
                     "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally "
                     "surface, source and sigma, then rows")
         ->required();
-    CLI::Option* at =
-        add_value(command, "--surface S", surface,
-                  "only rows with this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
+    CLI::Option* at = add_value(
+        command, "--surface S", surface,
+        "only measurements at this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
     offer_words(*at, measured_surfaces);
-    add_value(command, "--source NAME", source, "only rows with this source");
+    add_value(command, "--source NAME", source, "only measurements of this source");
     add_value(command, "--from Z", from, "only measurements at this z/R and beyond");
     add_value(command, "--to Z", to, "only measurements up to this z/R");
-    add_value(
-        command, "--rotor-spacing D", rotor_spacing,
-        "spacing of adjacent axes in radii, if the measured vehicle is a square quadrotor; multirotor models need it");
+    add_value(command, "--rotor-spacing D", rotor_spacing,
+              "spacing of adjacent axes of a square quadrotor in radii; that of the measured vehicle, multirotor "
+              "models need it");
 }
 
 Measurements MeasuredData::read() const {

@@ -81,8 +81,8 @@ void add_model_options(CLI::App& command, ModelChoice& choice) {
     add_value(command, "--table FILE", choice.table, "CSV file of the model `table`");
     add_value(command, "--d-over-r D", choice.d_over_r, "second distance of a table over two, in radii");
     add_value(command, "--rotor-spacing D", choice.rotor_spacing,
-              "multirotor models: spacing of adjacent axes of a square quadrotor in radii; default 2.5");
-    add_value(command, "--max-factor K", choice.max_factor, "cap of the model; default 2");
+              "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
+    add_value(command, "--max-factor K", choice.max_factor, "cap of K; default 2");
 }
 
 bool is_given(const ModelChoice& choice) {

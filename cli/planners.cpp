@@ -78,7 +78,7 @@ ExitCode run(const PlannersArguments& given) {
 
 void add_planners(CLI::App& program, Action& action) {
     auto [command, given] = add_command(program, action, "planners", "List the search algorithms", run);
-    add_json(command, given.as_json, "print them as JSON");
+    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

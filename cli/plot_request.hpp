@@ -16,7 +16,7 @@ struct PlotRequest {
     std::string what = "factor";
     int rotor = 1;
     std::optional<double> lateral_m;
-    double arm_deg = 0;
+    std::optional<double> arm_deg;
     double pitch_deg = 0;          ///< of the whole vehicle
     std::vector<double> x_m, z_m;  ///< low and high, or empty
     std::vector<std::string> models;

@@ -118,10 +118,11 @@ FieldFigure torque_figure(const PlotRequest& request, const Problem& problem, co
 
 FieldFigure hold_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     constexpr double cells_across = 240;
-    const double arm_rad = request.arm_deg / degrees_per_radian;
+    const double arm_rad = arm_option(request.arm_deg, problem);
     const auto model = make_flight_model(problem);
-    FieldFigure figure = vehicle_figure(problem, *model, extent,
-                                        fmt::format("Can it hover here? Arm at {:.6g} degrees", request.arm_deg), "");
+    FieldFigure figure =
+        vehicle_figure(problem, *model, extent,
+                       fmt::format("Can it hover here? Arm at {:.6g} degrees", arm_rad * degrees_per_radian), "");
     const double width_m = std::max(extent.x_high_m - extent.x_low_m, extent.z_high_m - extent.z_low_m);
     const auto map = std::make_shared<const HoldMap>(
         make_hold_map(*model, {extent.x_low_m, extent.x_high_m, extent.z_low_m, extent.z_high_m},

@@ -20,7 +20,8 @@ struct ReportArguments {
     std::optional<std::string> out;
     bool as_svg = false, as_png = false, as_pdf = false;
     std::optional<int> width_px;
-    bool no_cache = false;
+    int threads = default_threads();
+    bool no_cache = false, is_quiet = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
@@ -58,11 +59,12 @@ ExitCode run(const ReportArguments& given) {
     if (!given.wants_pictures()) {
         require_pages();
     }
-    const ShownRun shown = shown_run(read_run(given.folder), nullptr, cache_folder(given.no_cache));
+    const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
+                                     given.is_quiet, given.threads);
     if (given.wants_pictures()) {
         write_pictures(given, shown);
     } else {
-        const fs::path page = given.out ? fs::path(*given.out) : fs::path(given.folder) / "report.html";
+        const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / "report.html";
         write_result(page, run_page(shown.record, *shown.model, shown.map.get()));
         fmt::print("{}\n", page.string());
     }
@@ -77,14 +79,16 @@ void add_report(CLI::App& program, Action& action) {
         "Show a run as one self-contained HTML page with scene, playback, plots and search; with --svg, --png or "
         "--pdf, draw pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*",
         run);
-    command.add_option("DIR", given.folder, "folder that `solve` or `execute` wrote to")->required();
-    add_value(command, "-o,--out FILE|DIR", given.out,
-              "the page, default report.html in that folder; or the folder for the pictures, default the same");
+    add_run(command, given.folder);
+    add_out(command, "FILE|DIR", given.out,
+            "the page, default report.html in that folder; or the folder for the pictures, default the same");
     command.add_flag("--svg", given.as_svg, "pictures as SVG");
     command.add_flag("--png", given.as_png, "pictures as PNG");
     command.add_flag("--pdf", given.as_pdf, "pictures as PDF");
     add_width(command, given.width_px);
+    add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
 }
 
 }  // namespace downwash::cli

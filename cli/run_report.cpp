@@ -19,23 +19,23 @@ constexpr char page_name[] = "report.html";
 }  // namespace
 
 ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
-                   bool is_quiet) {
+                   bool is_quiet, int threads) {
     ShownRun run{std::move(record), nullptr, std::move(map)};
     run.model = make_flight_model(run.record.problem);
     if (run.map == nullptr) {
-        run.map = map_for_page(run.record.problem, *run.model, cache, is_quiet);
+        run.map = map_for_page(run.record.problem, *run.model, cache, is_quiet, threads);
     }
     return run;
 }
 
 std::shared_ptr<const AeroMap> map_for_page(const Problem& problem, const FlightModel& model,
-                                            const std::filesystem::path& cache, bool is_quiet) {
+                                            const std::filesystem::path& cache, bool is_quiet, int threads) {
     if (!problem.aero.enabled) {
         return nullptr;
     }
     ProgressDisplay display(is_quiet);
     return model.make_map(
-        problem.bounds, default_threads(), [&display](double share) { display.show("aero map", share); }, cache);
+        problem.bounds, threads, [&display](double share) { display.show("aero map", share); }, cache);
 }
 
 void require_pages() {
@@ -47,12 +47,12 @@ void require_pages() {
 }
 
 void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
-                const std::filesystem::path& cache, bool is_quiet) {
+                const std::filesystem::path& cache, bool is_quiet, int threads) {
     if (!has_pages()) {
         return;
     }
     try {
-        const ShownRun run = shown_run(record, std::move(map), cache, is_quiet);
+        const ShownRun run = shown_run(record, std::move(map), cache, is_quiet, threads);
         folder.write(page_name, run_page(run.record, *run.model, run.map.get()));
     } catch (const std::runtime_error& error) {
         remove_page(folder);

@@ -2,86 +2,30 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <utility>
 
-#include "downwash/base/key_error.hpp"
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
-#include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/remedies.hpp"
-#include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 namespace downwash::cli {
 namespace {
 
-/// An option that overrides a planner setting of the problem file. The table of parameters describes and checks both.
-struct PlannerOption {
-    std::string_view name, key, placeholder, note;
-};
-
-constexpr std::array planner_options{
-    PlannerOption{"--variant", "planner.variant", "V", ""},
-    PlannerOption{"--algorithm", "planner.algorithm", "A", ""},
-    PlannerOption{"--objective", "planner.objective", "O", ""},
-    PlannerOption{"--seed", "planner.seed", "N", ""},
-    PlannerOption{"--time-limit", "planner.time_limit_s", "S", ""},
-    PlannerOption{"--max-iterations", "planner.max_iterations", "N",
-                  "; without --time-limit it lifts the file's time limit"},
-    PlannerOption{"--margin", "planner.safety_margin_m", "M", ""},
-};
-
 struct SolveArguments {
     std::string problem;
-    std::map<std::string_view, std::string> planner;  ///< texts of planner_options that were given
+    PlannerOptions planner;
     int threads = default_threads();
     std::optional<std::string> out;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
 };
-
-void add_planner_options(CLI::App& command, SolveArguments& given) {
-    for (const PlannerOption& option : planner_options) {
-        const ParameterInfo& known = *problem_parameters().find(option.key);
-        ParameterInfo parameter = known;
-        parameter.can_be_group = false;  // an option is a word
-        CLI::Option* added = command.add_option_function<std::string>(
-            std::string(option.name), [&given, option](const std::string& text) { given.planner[option.name] = text; },
-            fmt::format("{}: {}{} [{}]", parameter.description, expectation(parameter), option.note, option.key));
-        offer_words(*added->type_name(std::string(option.placeholder)), parameter.names);
-    }
-}
-
-/// Overrides the settings of the file with the options that were given.
-/// @throws UsageError with every option whose value is invalid or out of range
-void override_settings(const SolveArguments& given, Problem& problem) {
-    if (given.planner.contains("--max-iterations") && !given.planner.contains("--time-limit")) {
-        problem.planner.time_limit_s.reset();
-    }
-    std::string messages;
-    for (const PlannerOption& option : planner_options) {
-        try {
-            if (const auto text = given.planner.find(option.name); text != given.planner.end()) {
-                set_parameter(problem, option.key, text->second);
-            }
-        } catch (const InputError& error) {
-            for (const KeyError& of : error.errors()) {
-                messages += fmt::format("{}{} {}", messages.empty() ? "" : "\n", option.name, of.message);
-            }
-        }
-    }
-    if (!messages.empty()) {
-        throw UsageError(messages);
-    }
-}
 
 std::string announcement(const Problem& problem) {
     const PlannerSettings& planner = problem.planner;
@@ -117,7 +61,7 @@ void print_remedies(const Problem& problem, SolveOptions options) {
 ExitCode run(const SolveArguments& given) {
     const Interruption interruption;
     const Problem read = read_problem(
-        given.problem, [&given](Problem& settings) { override_settings(given, settings); },
+        given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated);
     const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
@@ -159,9 +103,12 @@ void add_solve(CLI::App& program, Action& action) {
                     "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
                     run);
     add_problem(command, given.problem);
-    add_planner_options(command, given);
+    for (const std::string_view key : {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed",
+                                       "planner.time_limit_s", "planner.max_iterations", "planner.safety_margin_m"}) {
+        given.planner.add(command, key);
+    }
     add_threads(command, given.threads);
-    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
+    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
@@ -169,7 +116,7 @@ void add_solve(CLI::App& program, Action& action) {
         command.add_flag("--remedies", given.tries_remedies,
                          "where no plan gets its certificate, try what would help: another place or tolerance of the "
                          "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each");
-    add_json(command, given.as_json, "print solution.json on standard output instead of a summary");
+    add_json(command, given.as_json, "solution.json");
     command.get_option("--json")->excludes(remedies);
 }
 

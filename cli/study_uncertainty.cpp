@@ -93,14 +93,13 @@ void add_study_uncertainty(CLI::App& study, Action& action) {
     add_value(command, "--problem FILE...", given.problems, "problem files; default: all in the folder problems/");
     add_value(command, "--seeds N", given.settings.seeds, "searches of each setup on each problem; default 20")
         ->check(CLI::Range(1, 100000));
-    add_value(command, "--time-limit S", given.settings.time_limit_s, "of each search [s]; default 5")
+    add_value(command, "--time-limit S", given.settings.time_limit_s, "wall time of a search [s]; default 5")
         ->check(CLI::Range(0.01, 1e6));
     add_value(command, "--worlds M", given.settings.worlds,
               "fresh worlds in which every reported plan is flown; default 300")
         ->check(CLI::Range(1, 1000000));
-    add_value(command, "--jobs N", given.settings.jobs, "searches at a time; default: one per processor")
-        ->check(CLI::Range(1, 256));
-    add_value(command, "--out DIR", given.out, "folder for the results; default downwash-out/study-uncertainty/");
+    add_jobs(command, given.settings.jobs, "one per processor");
+    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/study-uncertainty/");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
     add_json(command, given.as_json);

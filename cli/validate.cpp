@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -27,13 +26,6 @@ struct ValidateArguments {
     int threads = default_threads();
     bool as_json = false, is_quiet = false, no_cache = false;
 };
-
-/// The file of a plan: itself, or solution.json of a folder.
-std::string plan_file(const std::string& given) {
-    std::error_code ignored;
-    return std::filesystem::is_directory(given, ignored) ? (std::filesystem::path(given) / "solution.json").string()
-                                                         : given;
-}
 
 void check_options(const ValidateArguments& given, const Problem& problem) {
     if (given.runs && given.world) {
@@ -135,13 +127,14 @@ void add_validate(CLI::App& program, Action& action) {
                     "with --runs, fly it in many worlds of the problem's uncertainty and estimate how often it fails",
                     run);
     add_problem(command, given.problem);
-    add_value(command, "--plan FILE", given.plan, "solution.json that holds the plan, or its folder")->required();
+    add_plan(command, given.plan);
     add_value(command, "--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
     add_value(command, "--world I", given.world,
-              "judge the flight in world I of the problem's uncertainty instead of the undisturbed one");
-    add_value(command, "--seed N", given.seed, "of the worlds; default: that of the problem");
-    add_value(command, "--out DIR", given.out,
-              "folder for validation.json, what --json prints, and the page validation.html; default: no files");
+              "world I of the problem's uncertainty to fly in; default: the undisturbed one");
+    add_value(command, "--seed N", given.seed,
+              "seed of the random numbers; of the worlds, default: that of the problem");
+    add_out(command, "DIR", given.out,
+            "folder for validation.json, what --json prints, and the page validation.html; default: no files");
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

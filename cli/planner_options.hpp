@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "downwash/problems/problem.hpp"
+
+namespace downwash::cli {
+
+/// Options that override planner settings of a problem file. The table of parameters describes and checks them.
+class PlannerOptions {
+ public:
+    /// Adds the option of a key: --margin for "planner.safety_margin_m".
+    /// @pre the key has one; this object stays where it is as long as the command
+    void add(CLI::App& command, std::string_view key);
+
+    /// Overrides the settings of the file with the options that were given.
+    /// @throws UsageError with every option whose value is invalid or out of range
+    void apply_to(Problem& problem) const;
+
+ private:
+    std::map<std::string_view, std::string> given_;  ///< texts by keys
+};
+
+}  // namespace downwash::cli

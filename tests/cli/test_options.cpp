@@ -1,0 +1,155 @@
+#include <catch2/catch.hpp>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "program.hpp"
+
+using namespace downwash::test;  // NOLINT(google-build-using-namespace): a test
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+struct Option {
+    std::string command, short_form, meaning;
+};
+
+/// Every option of every command by its long name, as the manual lists them.
+std::map<std::string, std::vector<Option>> all_options(const Workspace& work) {
+    std::map<std::string, std::vector<Option>> options;
+    std::istringstream lines(work.succeed("manual --markdown").out);
+    const std::regex row("\\| `(?:(-[a-z]),)?(--[a-z-]+)[^`]*` \\| ([^;]*)[^|]*\\|");
+    std::string command;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("## downwash ", 0) == 0) {
+            command = line.substr(12);
+        }
+        if (std::smatch found; std::regex_search(line, found, row)) {
+            std::string meaning = found[3];
+            meaning = std::regex_replace(meaning, std::regex(" *(\\(required\\))? *$"), "");
+            options[found[2]].push_back({command, found[1], meaning});
+        }
+    }
+    return options;
+}
+
+/// The reason for which a command line is rejected, without the lines that follow.
+std::string reason(const Workspace& work, const Words& arguments) {
+    const Result result = work.run(arguments);
+    CHECK(result.code == 2);
+    CHECK(result.out.empty());
+    return result.err.substr(0, result.err.find('\n'));
+}
+
+}  // namespace
+
+TEST_CASE("An option has the same meaning and the same short form in every command") {
+    const Workspace work;
+    const auto options = all_options(work);
+    REQUIRE(options.size() > 40);
+    for (const auto& [name, commands] : options) {
+        for (const Option& option : commands) {
+            INFO(name << " of " << commands.front().command << " and of " << option.command);
+            CHECK(option.short_form == commands.front().short_form);
+            CHECK(option.meaning == commands.front().meaning);
+        }
+    }
+}
+
+TEST_CASE("What several commands do has one name in all of them") {
+    const Workspace work;
+    const auto options = all_options(work);
+    const std::vector<std::pair<std::string, std::set<std::string>>> expected{
+        {"--out",
+         {"solve", "execute", "validate", "aeromap build", "aeromap plot", "aeromap fit", "bench run", "bench report",
+          "study uncertainty", "report", "export"}},
+        {"--quiet",
+         {"solve", "execute", "validate", "aeromap query", "aeromap build", "aeromap plot", "bench run",
+          "study uncertainty", "report"}},
+        {"--threads", {"solve", "execute", "validate", "aeromap query", "aeromap build", "report"}},
+        {"--margin", {"solve", "execute"}},
+        {"--jobs", {"bench run", "study uncertainty"}},
+        {"--plan", {"execute", "validate"}},
+        {"--arm-deg", {"aeromap plot", "aeromap hold"}},
+        {"--no-cache", {"solve", "execute", "validate", "aeromap query", "bench run", "study uncertainty", "report"}}};
+    for (const auto& [name, commands] : expected) {
+        INFO(name);
+        REQUIRE(options.contains(name));
+        std::set<std::string> found;
+        for (const Option& option : options.at(name)) {
+            found.insert(option.command);
+        }
+        CHECK(found == commands);
+    }
+    for (const char* former : {"--output", "--plot", "--file"}) {
+        CHECK_FALSE(options.contains(former));
+    }
+}
+
+TEST_CASE("An error in an option names it and its value and says what was expected") {
+    const Workspace work;
+    const std::string open_air = problem_file("open_air");
+    CHECK_THAT(reason(work, words("solve", open_air, "--sead 1")),
+               Contains("downwash solve has no option --sead") && Contains("did you mean '--seed'?"));
+    CHECK_THAT(reason(work, words("aeromap plot", open_air, "--output map.svg")),
+               Contains("no option --output") && Contains("did you mean '--out'?"));
+    CHECK_THAT(reason(work, words("--vresion")), Contains("did you mean '--version'?"));
+    CHECK_THAT(
+        reason(work, words("solve", open_air, "--threads many")),
+        Contains("--threads: Value many not in range 1 to 256; expected --threads N: number of threads, 1 to 256"));
+    CHECK_THAT(reason(work, words("solve", open_air, "--threads 0")),
+               Contains("--threads") && Contains("0") && Contains("expected --threads N: number of threads, 1 to 256"));
+    CHECK_THAT(reason(work, words("solve")), Contains("PROBLEM is missing: expected PROBLEM: problem file"));
+    CHECK_THAT(reason(work, words("execute", open_air)), Contains("--plan is missing: expected --plan FILE"));
+    CHECK_THAT(reason(work, words("solve", open_air, "--seed")), Contains("--seed") && Contains("expected --seed N"));
+    CHECK_THAT(reason(work, words("solve", open_air, open_air)), Contains("expected downwash solve [OPTIONS] PROBLEM"));
+    // What follows -- is no option.
+    CHECK_THAT(reason(work, words("check -- --bogus")), Contains("--bogus"));
+}
+
+TEST_CASE("Weights of several objectives can be given on the command line") {
+    const Workspace work;
+    const std::string open_air = problem_file("open_air");
+    const auto solution = work.json("solve", open_air, "--max-iterations 50 --objective energy=1,time=50");
+    CHECK(solution.at("objective") == nlohmann::json{{"energy", 1}, {"time", 50}});
+    CHECK_THAT(reason(work, words("solve", open_air, "--objective energy=1,tmie=50")),
+               Contains("--objective is 'energy=1,tmie=50'") && Contains("did you mean 'time'?"));
+    for (const char* wrong : {"energy=", "energy=-1", "energy=1,energy=2", "energy=nan", "=1", ",", "time=1,"}) {
+        CHECK_THAT(reason(work, words("solve", open_air, "--objective", std::string(wrong))),
+                   StartsWith("downwash: --objective is"));
+    }
+    CHECK_THAT(reason(work, words("solve", open_air, "--objective energy=0,time=0")), Contains("no weight above 0"));
+}
+
+TEST_CASE("A plan may be given as its folder and a run as its file") {
+    const Workspace work;
+    const std::string open_air = problem_file("open_air");
+    work.succeed("solve", open_air, "--max-iterations 50 --seed 1 --quiet --out made");
+    const Result executed =
+        work.succeed("execute", open_air, "--plan made --quiet --threads 1 --margin 0.01 -o executed --json");
+    CHECK(executed.err.empty());
+    CHECK(executed.json().at("execution").at("outcome") == "ok");
+    CHECK_THAT(work.text("executed/effective.yaml"), Contains("safety_margin_m: 0.01"));
+    CHECK(work.succeed("validate", open_air, "--plan made").code == 0);
+    CHECK(work.succeed("export made/solution.json --format csv -o a.csv").code == 0);
+    CHECK(work.succeed("export made --format csv -o b.csv").code == 0);
+    CHECK(work.text("a.csv") == work.text("b.csv"));
+    // A plan given as its folder is not replaced either.
+    CHECK_THAT(reason(work, words("execute", open_air, "--plan made --out made")), Contains("holds the plan itself"));
+}
+
+TEST_CASE("The arm is at the angle of the start unless told otherwise and never beyond its limits") {
+    const Workspace work;
+    const std::string file = work / "limited.yaml";
+    write_file(file, problem_text("open_air"));
+    const double start_deg = work.json("aeromap hold", file, "--at 0 5").at("arm_deg");
+    CHECK(start_deg == Approx(90));
+    write_file(work / "robot.yaml", replaced(read_file(DOWNWASH_PROBLEMS "/robots/ars_lrm_ideal.yaml"),
+                                             "limits_deg: null", "limits_deg: [30, 150]"));
+    write_file(file, std::regex_replace(problem_text("open_air"), std::regex("robot: [^\n]*"), "robot: robot.yaml"));
+    CHECK_THAT(reason(work, words("aeromap hold", file, "--at 0 5 --arm-deg 0")), Contains("expected 30 to 150"));
+    CHECK_THAT(reason(work, words("aeromap plot", file, "--what hold --arm-deg 0 -o hold.svg")),
+               Contains("expected 30 to 150"));
+}
