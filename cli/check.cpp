@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/campaign_reader.hpp"
 #include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -20,13 +22,44 @@ struct CheckArguments {
     bool as_json = false;
 };
 
-std::vector<LocatedError> errors_of(const std::string& path) {
-    try {
-        static_cast<void>(read_problem(path, {}, print_outdated));
-    } catch (const ProblemFileError& error) {
-        return error.errors();
+/// The first words of a file's `schema:` line tell its kind; a problem unless they say otherwise.
+std::string kind_of(const std::string& path) {
+    std::ifstream file(path);
+    std::string line;
+    for (int i = 0; i < 200 && std::getline(file, line); ++i) {
+        for (const char* kind : {"robot", "campaign"}) {
+            if (line.starts_with("schema:") && line.find(fmt::format("downwash/{}/", kind)) != std::string::npos) {
+                return kind;
+            }
+        }
     }
-    return {};
+    return "problem";
+}
+
+struct Findings {
+    std::vector<LocatedError> errors, warnings;
+};
+
+Findings findings_in(const std::string& path) {
+    Findings found;
+    const auto on_warning = [&found](const LocatedError& warning) { found.warnings.push_back(warning); };
+    try {
+        const std::string kind = kind_of(path);
+        if (kind == "robot") {
+            static_cast<void>(read_robot(path, on_warning));
+        } else if (kind == "campaign") {
+            static_cast<void>(read_campaign(path, print_outdated));
+        } else {
+            static_cast<void>(read_problem(path, {}, print_outdated, on_warning));
+        }
+    } catch (const ProblemFileError& error) {
+        found.errors = error.errors();
+    }
+    return found;
+}
+
+Json json_of(const LocatedError& found) {
+    return {{"file", found.file}, {"line", found.line}, {"column", found.column}, {"message", found.message}};
 }
 
 ExitCode run(const CheckArguments& given) {
@@ -37,21 +70,27 @@ ExitCode run(const CheckArguments& given) {
     if (given.problems.empty()) {
         throw UsageError("expected problem files, or --schema problem, robot or campaign");
     }
-    auto list = Json::array();
+    auto faults = Json::array();
+    auto warnings = Json::array();
     for (const std::string& path : given.problems) {
-        const std::vector<LocatedError> errors = errors_of(path);
-        for (const LocatedError& error : errors) {
+        const Findings found = findings_in(path);
+        for (const LocatedError& error : found.errors) {
             print_error(fmt::format("{}\n", to_text(error)));
-            list.push_back(
-                {{"file", error.file}, {"line", error.line}, {"column", error.column}, {"message", error.message}});
+            faults.push_back(json_of(error));
         }
-        if (errors.empty() && !given.as_json) {
-            fmt::print("{}: ok\n", path);
+        for (const LocatedError& warning : found.warnings) {
+            print_warning(warning);
+            warnings.push_back(json_of(warning));
+        }
+        if (found.errors.empty() && !given.as_json) {
+            const std::size_t count = found.warnings.size();
+            fmt::print("{}: ok{}\n", path,
+                       count == 0 ? "" : fmt::format(", {} warning{}", count, count == 1 ? "" : "s"));
         }
     }
-    const ExitCode code = list.empty() ? ExitCode::done : ExitCode::bad_input;
+    const ExitCode code = faults.empty() ? ExitCode::done : ExitCode::bad_input;
     if (given.as_json) {
-        print_json({{"faults", std::move(list)}});
+        print_json({{"faults", std::move(faults)}, {"warnings", std::move(warnings)}});
     }
     return code;
 }
@@ -59,14 +98,15 @@ ExitCode run(const CheckArguments& given) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-    auto [command, given] = add_command(program, action, "check",
-                                        "Check problem files and report every error with its line and column", run);
-    command.add_option("PROBLEM", given.problems, "problem files");
+    auto [command, given] = add_command(
+        program, action, "check",
+        "Check problem, robot and campaign files and report every error and warning with its line and column", run);
+    command.add_option("PROBLEM", given.problems, "problem, robot or campaign files");
     CLI::Option* schema =
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
     require_one_of(*schema, {"problem", "robot", "campaign"});
-    add_json(command, given.as_json, "the errors");
+    add_json(command, given.as_json, "the errors and warnings");
 }
 
 }  // namespace downwash::cli

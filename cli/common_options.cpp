@@ -111,7 +111,7 @@ double arm_option(const std::optional<double>& arm_deg, const Problem& problem) 
     }
     constexpr double max_deg = 3600;
     if (!(std::abs(*arm_deg) <= max_deg)) {
-        throw UsageError("--arm-deg {}: expected degrees, at most {} either way", *arm_deg, max_deg);
+        throw UsageError("--arm-deg {}: expected an angle of at most {} degrees", *arm_deg, max_deg);
     }
     const double arm_rad = *arm_deg / degrees_per_radian;
     constexpr double tolerance_rad = 1e-9;

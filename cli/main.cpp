@@ -67,7 +67,7 @@ std::string explained(const CLI::App& command, const CLI::Error& error) {
             return fmt::format("{} is '{}': expected {}", spelled, excerpt(value.substr(3)), expected);
         }
         if (error.get_name() == "RequiredError") {
-            return fmt::format("{} is missing: expected {}", spelled, expected);
+            return fmt::format("{} is required: expected {}", spelled, expected);
         }
         if (error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch") {
             return fmt::format("{}; expected {}", message, expected);

@@ -36,6 +36,12 @@ void print_outdated(const LocatedError& key) noexcept {
     print_error(to_text(key) + "\n");
 }
 
+void print_warning(const LocatedError& warning) noexcept {
+    LocatedError shown = warning;
+    shown.message.insert(0, "warning: ");
+    print_error(to_text(shown) + "\n");
+}
+
 std::string text_of(const Json& document) {
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -20,6 +20,9 @@ void print_error(std::string_view text) noexcept;
 /// Reports on standard error a key that a file calls by a former name.
 void print_outdated(const LocatedError& key) noexcept;
 
+/// Reports on standard error what is likely not meant.
+void print_warning(const LocatedError& warning) noexcept;
+
 /// A document as commands print it with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
 [[nodiscard]] std::string text_of(const Json& document);
 

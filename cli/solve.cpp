@@ -62,7 +62,7 @@ ExitCode run(const SolveArguments& given) {
     const Interruption interruption;
     const Problem read = read_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
-        given.is_quiet ? nullptr : print_outdated);
+        given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
     const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
     SolveOptions options;

@@ -52,12 +52,18 @@ ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
     : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
 
 Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust,
-                     const std::function<void(const LocatedError&)>& on_outdated) {
+                     const std::function<void(const LocatedError&)>& on_outdated,
+                     const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     read_checked(reader, file, adjust);
     for (const LocatedError& key : reader.outdated_keys()) {
         if (on_outdated) {
             on_outdated(key);
+        }
+    }
+    if (on_warning) {
+        for (const LocatedError& warning : reader.placed(problem_warnings(reader.model()))) {
+            on_warning(warning);
         }
     }
     return reader.model();
@@ -70,7 +76,7 @@ PlannableProblem read_plannable_problem(const std::filesystem::path& file,
     return {reader.model(), model_of(check)};
 }
 
-Robot read_robot(const std::filesystem::path& file) {
+Robot read_robot(const std::filesystem::path& file, const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     reader.read(file, "robot");
     if (!reader.is_full()) {
@@ -78,6 +84,15 @@ Robot read_robot(const std::filesystem::path& file) {
         reader.add(further_robot_errors(reader.model().robot, wrong, "robot."));
     }
     throw_errors(reader);
+    if (on_warning) {
+        std::vector<KeyError> warnings = robot_warnings(reader.model().robot);
+        for (KeyError& warning : warnings) {
+            warning.key.insert(0, "robot.");
+        }
+        for (const LocatedError& warning : reader.placed(warnings)) {
+            on_warning(warning);
+        }
+    }
     return reader.model().robot;
 }
 

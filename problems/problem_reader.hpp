@@ -38,17 +38,21 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
 /// The result is complete and sound: problem_errors() finds nothing in it.
 /// @param adjust changes values before the problem is checked as a whole, for example with set_parameter()
 /// @param on_outdated is told of every key that the file calls by a former name; the key is read all the same
+/// @param on_warning is told of everything that problem_warnings() finds
 /// @throws ProblemFileError with every error that can be found in one reading (a hundred at most), and what adjust does
 [[nodiscard]] DOWNWASH_EXPORT Problem read_problem(const std::filesystem::path& file,
                                                    const std::function<void(Problem&)>& adjust = {},
-                                                   const std::function<void(const LocatedError&)>& on_outdated = {});
+                                                   const std::function<void(const LocatedError&)>& on_outdated = {},
+                                                   const std::function<void(const LocatedError&)>& on_warning = {});
 
 /// The same, with the flight model in the scene that was made for the checks.
 [[nodiscard]] DOWNWASH_EXPORT PlannableProblem read_plannable_problem(const std::filesystem::path& file,
                                                                       const std::function<void(Problem&)>& adjust = {});
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
-[[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file);
+/// @param on_warning is told of everything that robot_warnings() finds
+[[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file,
+                                               const std::function<void(const LocatedError&)>& on_warning = {});
 
 /// Sets one value as a problem file would, for example ("planner.variant", "mp-arm") or ("planner.seed", "7").
 /// The problem is not checked as a whole.

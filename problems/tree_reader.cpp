@@ -342,6 +342,19 @@ void TreeReader<Model>::add(const std::vector<KeyError>& errors) {
 }
 
 template <class Model>
+std::vector<LocatedError> TreeReader<Model>::placed(const std::vector<KeyError>& remarks) {
+    std::vector<Found> found;
+    for (const KeyError& remark : remarks) {
+        const Place place = place_of(remark.key);
+        file_ = place.file;
+        const std::string subject = shown(remark.key);
+        found.push_back({place, (subject.empty() ? "" : subject + " ") + remark.message});
+    }
+    file_ = 0;
+    return located(std::move(found));
+}
+
+template <class Model>
 std::vector<LocatedError> TreeReader<Model>::errors() const {
     return located(found_);
 }

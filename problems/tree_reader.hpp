@@ -35,6 +35,8 @@ class TreeReader {
     void add(const std::vector<KeyError>& errors);
     /// All errors, ordered by file and place; every call gives the same.
     [[nodiscard]] std::vector<LocatedError> errors() const;
+    /// Remarks on keys, each at its key or the nearest key around it; ordered like errors.
+    [[nodiscard]] std::vector<LocatedError> placed(const std::vector<KeyError>& remarks);
     /// Keys that were read under a former name, ordered like errors.
     [[nodiscard]] std::vector<LocatedError> outdated_keys() const { return located(outdated_); }
 

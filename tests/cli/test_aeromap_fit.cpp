@@ -72,7 +72,7 @@ TEST_CASE("Points can be left out and weighted") {
 
 TEST_CASE("A fit is drawn with its measurements and residuals") {
     const Workspace work;
-    const Words fit = words("aeromap fit", measured, "--model he --surface ceiling --source jirs2024 --plot");
+    const Words fit = words("aeromap fit", measured, "--model he --surface ceiling --source jirs2024 --out");
     CHECK_THAT(work.succeed(fit, work / "fit.svg").out, StartsWith("he: "));
     CHECK_THAT(read_file(work / "fit.svg"),
                Contains("<svg") && Contains("he fitted to 16 measurements") && Contains("measured minus model"));

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "program.hpp"
 
@@ -101,8 +104,8 @@ TEST_CASE("An error in an option names it and its value and says what was expect
         Contains("--threads: Value many not in range 1 to 256; expected --threads N: number of threads, 1 to 256"));
     CHECK_THAT(reason(work, words("solve", open_air, "--threads 0")),
                Contains("--threads") && Contains("0") && Contains("expected --threads N: number of threads, 1 to 256"));
-    CHECK_THAT(reason(work, words("solve")), Contains("PROBLEM is missing: expected PROBLEM: problem file"));
-    CHECK_THAT(reason(work, words("execute", open_air)), Contains("--plan is missing: expected --plan FILE"));
+    CHECK_THAT(reason(work, words("solve")), Contains("PROBLEM is required: expected PROBLEM: problem file"));
+    CHECK_THAT(reason(work, words("execute", open_air)), Contains("--plan is required: expected --plan FILE"));
     CHECK_THAT(reason(work, words("solve", open_air, "--seed")), Contains("--seed") && Contains("expected --seed N"));
     CHECK_THAT(reason(work, words("solve", open_air, open_air)), Contains("expected downwash solve [OPTIONS] PROBLEM"));
     // What follows -- is no option.
@@ -152,4 +155,48 @@ TEST_CASE("The arm is at the angle of the start unless told otherwise and never 
     CHECK_THAT(reason(work, words("aeromap hold", file, "--at 0 5 --arm-deg 0")), Contains("expected 30 to 150"));
     CHECK_THAT(reason(work, words("aeromap plot", file, "--what hold --arm-deg 0 -o hold.svg")),
                Contains("expected 30 to 150"));
+}
+
+TEST_CASE("Check warns of what is likely not meant and the exit code stays 0") {
+    const Workspace work;
+    const std::string robot = read_file(DOWNWASH_PROBLEMS "/robots/ars_lrm.yaml");
+    const std::string file = work / "robot.yaml";
+    for (const auto& [part, by, key] :
+         {std::tuple{"time_constant_s: 0.05", "time_constant_s: 0.4", "controller"},
+          {"radius_m: 0.1905", "radius_m: 0.33", "rotors.positions_m"},
+          {"power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154", "rotors.power_coefficient_w_n1p5"},
+          {"rate_kp: 14", "rate_kp: 0", "controller.attitude.rate_kp"}}) {
+        CAPTURE(by);
+        write_file(file, replaced(robot, part, by));
+        const auto warnings = work.json("check", file).at("warnings");
+        const auto names_key = [wanted = std::string(key)](const auto& warning) {
+            return warning.at("message").template get<std::string>().rfind(wanted + " ", 0) == 0;
+        };
+        REQUIRE(std::count_if(warnings.begin(), warnings.end(), names_key) == 1);
+        const auto& warning = *std::find_if(warnings.begin(), warnings.end(), names_key);
+        CHECK(warning.at("file") == file);
+        CHECK(warning.at("line").get<int>() > 1);
+    }
+    const std::string problem = work / "problem.yaml";
+    write_file(problem, problem_text("bridge_inspection") + "planner: {safety_margin_m: 0}\n");
+    const Result people = work.succeed("check", problem);
+    CHECK(people.out == problem + ": ok, 1 warning\n");
+    CHECK_THAT(people.err, Contains("warning: planner.safety_margin_m is 0"));
+    CHECK_THAT(work.run("solve", problem, "--variant mp-arm --max-iterations 1").err,
+               Contains("warning: planner.safety_margin_m is 0"));
+}
+
+TEST_CASE("No shipped problem or robot warns and campaigns are checked too") {
+    const Workspace work;
+    for (const auto& folder :
+         {std::filesystem::path(DOWNWASH_PROBLEMS), std::filesystem::path(DOWNWASH_PROBLEMS) / "robots",
+          std::filesystem::path(DOWNWASH_PROBLEMS).parent_path() / "bench" / "campaigns"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (entry.path().extension() == ".yaml") {
+                CAPTURE(entry.path());
+                CHECK(work.json("check", entry.path()) ==
+                      nlohmann::json{{"faults", nlohmann::json::array()}, {"warnings", nlohmann::json::array()}});
+            }
+        }
+    }
 }

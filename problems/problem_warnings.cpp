@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/simulation/goal.hpp"
+#include "downwash/simulation/loop_margins.hpp"
+#include "downwash/simulation/uncertainty.hpp"
+
+namespace downwash {
+namespace {
+
+/// A loop with less than this is next to unstable.
+constexpr double thin_gain_db = 2;
+constexpr double thin_phase_deg = 10;
+
+std::string rounded(double value) {
+    return to_text(value, 3);
+}
+
+/// What a hover in free air shows with the arm up, level and down, as far as its limits allow; of the first angle only.
+std::vector<KeyError> thin_margins(const Robot& robot) {
+    const std::string remedy =
+        "; less rotors.time_constant_s or controller.delay_s, or other gains: `downwash margins` shows all loops";
+    for (const double arm_deg : {-90, 0, 90}) {
+        const double arm_rad = arm_deg / degrees_per_radian;
+        if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {
+            continue;
+        }
+        const std::string where = " with the arm at " + rounded(arm_deg) + " deg";
+        try {
+            const auto loops = loop_margins(robot, arm_rad);
+            for (const LoopInput input : all_loop_inputs) {
+                const LoopMargins& margins = loops[static_cast<std::size_t>(input)];
+                const double phase_deg = margins.phase_margin_rad * degrees_per_radian;
+                if (margins.gain_margin_db < thin_gain_db || phase_deg < thin_phase_deg) {
+                    return {{"controller", "makes a hover in free air nearly unstable" + where + ": the loop of " +
+                                               std::string(name_of(input)) + " has margins of " +
+                                               rounded(margins.gain_margin_db) + " dB and " + rounded(phase_deg) +
+                                               " deg" + remedy}};
+                }
+            }
+        } catch (const InputError&) {
+            return {{"controller", "does not hold a hover in free air" + where + ": it is unstable there" + remedy}};
+        }
+    }
+    return {};
+}
+
+std::vector<KeyError> overlapping_discs(const Robot& robot) {
+    constexpr double level_share = 0.1;  // rotors farther apart in height than this share of a radius are coaxial
+    const auto& hubs = robot.rotors.positions_m;
+    const double radius_m = robot.rotors.radius_m;
+    for (std::size_t i = 0; i < hubs.size(); ++i) {
+        for (std::size_t j = i + 1; j < hubs.size(); ++j) {
+            const double apart_m = std::hypot(hubs[i][0] - hubs[j][0], hubs[i][1] - hubs[j][1]);
+            if (std::abs(hubs[i][2] - hubs[j][2]) <= level_share * radius_m && apart_m < 2 * radius_m * (1 - 1e-9)) {
+                return {{"rotors.positions_m", "puts the rotors " + std::to_string(i + 1) + " and " +
+                                                   std::to_string(j + 1) + " " + rounded(apart_m) +
+                                                   " m apart, less than two radii, " + rounded(2 * radius_m) +
+                                                   " m: their discs overlap"}};
+            }
+        }
+    }
+    return {};
+}
+
+std::vector<KeyError> gains_of_zero(const Robot& robot) {
+    std::vector<KeyError> warnings;
+    std::visit(
+        [&warnings](const auto& law) {
+            const std::pair<const char*, double> gains[] = {{"controller.position.kp", law.position_kp},
+                                                            {"controller.position.kd", law.position_kd},
+                                                            {"controller.height.kp", law.axis_gains(1).kp},
+                                                            {"controller.height.kd", law.axis_gains(1).kd},
+                                                            {"controller.attitude.kp", law.attitude_kp},
+                                                            {"controller.attitude.rate_kp", law.attitude_rate_kp},
+                                                            {"controller.arm.kp", law.arm_kp},
+                                                            {"controller.arm.kd", law.arm_kd}};
+            for (const auto& [key, gain] : gains) {
+                const bool is_inherited =
+                    std::string_view(key).find(".height.") != std::string_view::npos &&
+                    gain == (std::string_view(key).ends_with("kp") ? law.position_kp : law.position_kd);
+                if (gain == 0 && !is_inherited) {
+                    warnings.push_back({key, "is 0: nothing holds what it controls in place"});
+                }
+            }
+        },
+        robot.controller.law);
+    return warnings;
+}
+
+/// Momentum theory: an ideal rotor takes T^1.5 / sqrt(2 rho A).
+std::vector<KeyError> unusual_power(const Robot& robot) {
+    constexpr double air_kg_m3 = 1.225;
+    constexpr double most_times = 20;
+    const double area_m2 = std::numbers::pi * robot.rotors.radius_m * robot.rotors.radius_m;
+    const double ideal = 1 / std::sqrt(2 * air_kg_m3 * area_m2);
+    const double times = robot.rotors.power_coefficient_w_n1p5 / ideal;
+    if (times >= 1 && times <= most_times) {
+        return {};
+    }
+    return {{"rotors.power_coefficient_w_n1p5",
+             "is " + rounded(times) + " times that of an ideal rotor of this radius, " + rounded(ideal) +
+                 ": usual are 1.2 to 3 times; energies and plans for little energy are off by as much"}};
+}
+
+std::vector<KeyError> robot_remarks(const Robot& robot) {
+    std::vector<KeyError> all;
+    for (const auto& find : {thin_margins, overlapping_discs, gains_of_zero, unusual_power}) {
+        const std::vector<KeyError> found = find(robot);
+        all.insert(all.end(), found.begin(), found.end());
+    }
+    return all;
+}
+
+std::vector<KeyError> no_margin(const Problem& problem) {
+    if (problem.planner.safety_margin_m > 0 || problem.obstacles.empty()) {
+        return {};
+    }
+    return {{"planner.safety_margin_m",
+             "is 0: plans may pass obstacles at any distance above 0, and the least deviation is a collision"}};
+}
+
+/// A vehicle that need not move.
+std::vector<KeyError> goal_at_start(const Problem& problem) {
+    const Start& start = problem.start;
+    const PlantModel plant = make_plant_model(problem.robot.multirotor, problem.robot.arm, problem.robot.rotors);
+    const GoalError error = goal_error(problem.stops.empty() ? problem.goal : problem.stops.front(), plant,
+                                       {start.x_m, start.z_m, start.pitch_rad, start.arm_rad});
+    if (!is_met(error)) {
+        return {};
+    }
+    return {{"goal", "is met at the start already: its tolerance is larger than the way there"}};
+}
+
+/// An uncertainty in which nothing is uncertain.
+std::vector<KeyError> exact_uncertainty(const Problem& problem) {
+    if (!problem.uncertainty) {
+        return {};
+    }
+    const auto is_exact = [&](const WorldParameter& parameter) {
+        return ((*problem.uncertainty).*parameter.spread).form == Spread::Form::exact;
+    };
+    if (!std::ranges::all_of(world_parameters(), is_exact)) {
+        return {};
+    }
+    return {{"uncertainty", "leaves nothing uncertain: all worlds are alike, and a certificate says nothing"}};
+}
+
+}  // namespace
+
+std::vector<KeyError> robot_warnings(const Robot& robot) {
+    return robot_errors(robot).empty() ? robot_remarks(robot) : std::vector<KeyError>{};
+}
+
+std::vector<KeyError> problem_warnings(const Problem& problem) {
+    std::vector<KeyError> all = robot_warnings(problem.robot);
+    for (KeyError& warning : all) {
+        warning.key.insert(0, "robot.");
+    }
+    for (const auto& find : {no_margin, goal_at_start, exact_uncertainty}) {
+        const std::vector<KeyError> found = find(problem);
+        all.insert(all.end(), found.begin(), found.end());
+    }
+    return all;
+}
+
+}  // namespace downwash
