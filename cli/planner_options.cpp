@@ -44,6 +44,7 @@ CostFunction weighted_objective(const std::string& text) {
     };
     constexpr double max_weight = 1e6;
     std::vector<std::string_view> names;
+    names.reserve(all_objectives.size());
     for (const Objective objective : all_objectives) {
         names.push_back(name_of(objective));
     }

@@ -22,30 +22,39 @@ std::string rounded(double value) {
     return to_text(value, 3);
 }
 
+constexpr const char* margins_remedy =
+    "; less rotors.time_constant_s or controller.delay_s, or other gains: `downwash margins` shows all loops";
+
+std::string thin_loop_text(LoopInput input, const LoopMargins& margins, const std::string& where) {
+    return "makes a hover in free air nearly unstable" + where + ": the loop of " + std::string(name_of(input)) +
+           " has margins of " + rounded(margins.gain_margin_db) + " dB and " +
+           rounded(margins.phase_margin_rad * degrees_per_radian) + " deg" + margins_remedy;
+}
+
+std::string unstable_text(const std::string& where) {
+    return "does not hold a hover in free air" + where + ": it is unstable there" + margins_remedy;
+}
+
 /// What a hover in free air shows with the arm up, level and down, as far as its limits allow; of the first angle only.
 std::vector<KeyError> thin_margins(const Robot& robot) {
-    const std::string remedy =
-        "; less rotors.time_constant_s or controller.delay_s, or other gains: `downwash margins` shows all loops";
     for (const double arm_deg : {-90, 0, 90}) {
         const double arm_rad = arm_deg / degrees_per_radian;
         if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {
             continue;
         }
-        const std::string where = " with the arm at " + rounded(arm_deg) + " deg";
+        std::string where = " with the arm at ";
+        where.append(rounded(arm_deg)).append(" deg");
         try {
             const auto loops = loop_margins(robot, arm_rad);
             for (const LoopInput input : all_loop_inputs) {
                 const LoopMargins& margins = loops[static_cast<std::size_t>(input)];
-                const double phase_deg = margins.phase_margin_rad * degrees_per_radian;
-                if (margins.gain_margin_db < thin_gain_db || phase_deg < thin_phase_deg) {
-                    return {{"controller", "makes a hover in free air nearly unstable" + where + ": the loop of " +
-                                               std::string(name_of(input)) + " has margins of " +
-                                               rounded(margins.gain_margin_db) + " dB and " + rounded(phase_deg) +
-                                               " deg" + remedy}};
+                if (margins.gain_margin_db < thin_gain_db ||
+                    margins.phase_margin_rad * degrees_per_radian < thin_phase_deg) {
+                    return {{"controller", thin_loop_text(input, margins, where)}};
                 }
             }
         } catch (const InputError&) {
-            return {{"controller", "does not hold a hover in free air" + where + ": it is unstable there" + remedy}};
+            return {{"controller", unstable_text(where)}};
         }
     }
     return {};
