@@ -103,19 +103,35 @@ LinearLoop linearised(const Disturbed& tick) {
     return loop;
 }
 
-/// The loop's gain L at a frequency: the command that comes back, reversed, for one that goes in. With T from what is
-/// added to the command, u = y + d and y = T d, so that L = -T / (1 + T).
-Complex gain_at(const LinearLoop& loop, double angle_rad) {
-    const Eigen::Index size = loop.a.rows();
-    const Eigen::MatrixXcd resolvent =
-        std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - loop.a.cast<Complex>();
-    const Eigen::VectorXcd response = resolvent.partialPivLu().solve(loop.b.cast<Complex>());
-    const Complex t = (loop.c.cast<Complex>() * response)(0);
-    return -t / (1.0 + t);
-}
+/// A loop's answer at many frequencies: with A = U T U* (Schur), each takes the solution of a triangular system only.
+class FrequencyResponse {
+ public:
+    explicit FrequencyResponse(const LinearLoop& loop) {
+        const Eigen::ComplexSchur<Eigen::MatrixXd> schur(loop.a);
+        triangle_ = schur.matrixT();
+        in_ = schur.matrixU().adjoint() * loop.b;
+        out_ = loop.c * schur.matrixU();
+    }
+
+    /// The loop's gain L: the command that comes back, reversed, for one that goes in. With T from what is added to the
+    /// command, u = y + d and y = T d, so that L = -T / (1 + T).
+    [[nodiscard]] Complex gain_at(double angle_rad) const {
+        const Eigen::Index size = triangle_.rows();
+        const Eigen::MatrixXcd resolvent =
+            std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - triangle_;
+        const Complex t = out_ * resolvent.triangularView<Eigen::Upper>().solve(in_);
+        return -t / (1.0 + t);
+    }
+
+ private:
+    Eigen::MatrixXcd triangle_;
+    Eigen::VectorXcd in_;
+    Eigen::RowVectorXcd out_;
+};
 
 /// Margins from samples of L over rising frequencies, between which its logarithm is taken as linear.
 LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
+    const FrequencyResponse response(loop);
     constexpr int samples = 2000;
     constexpr double lowest_rad_s = 0.02;
     const double highest_rad_s = std::numbers::pi / tick_s;
@@ -125,7 +141,10 @@ LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
     for (int i = 0; i < samples; ++i) {
         const double share = static_cast<double>(i) / (samples - 1);
         const double frequency = lowest_rad_s * std::pow(highest_rad_s / lowest_rad_s, share);
-        const Complex gain = gain_at(loop, std::min(frequency * tick_s, std::numbers::pi));
+        Complex gain = response.gain_at(std::min(frequency * tick_s, std::numbers::pi));
+        if (i == samples - 1) {
+            gain = gain.real();  // at half the sampling frequency L is real: the curve ends on the axis
+        }
         if (i > 0) {
             const double size = std::log(std::abs(gain));
             const double size_before = std::log(std::abs(before));

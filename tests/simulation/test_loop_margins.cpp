@@ -45,6 +45,16 @@ TEST_CASE("The margins of the height loop are those of its transfer function") {
     CHECK(margins.delay_margin_s == Approx(phase / low).epsilon(1e-3));
 }
 
+TEST_CASE("A loop's gain margin counts where its curve ends, at half the sampling frequency") {
+    Robot robot = test_robot();
+    robot.controller.delay_s = 0;
+    gains_of(robot).position_kd = 20;  // 1/s; the other crossings are farther from -1
+    const LoopMargins margins = of(loop_margins(robot, quarter_turn), LoopInput::thrust);
+    const std::complex<double> end = height_loop(gains_of(robot), 0.01, 0, std::numbers::pi / 0.01);
+    REQUIRE(end.real() < 0);
+    CHECK(margins.gain_margin_db == Approx(-20 * std::log10(-end.real())).epsilon(1e-6));
+}
+
 TEST_CASE("A loop loses its margin with rotor lag and delay, and has none where it is unstable") {
     Robot robot = test_robot();
     const double at_once = of(loop_margins(robot, 0.0), LoopInput::pitch_torque).phase_margin_rad;
