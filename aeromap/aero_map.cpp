@@ -64,9 +64,9 @@ double map_cells(const std::vector<MapLayer>& layers, const Bounds& extent) {
 }
 
 AeroMap::AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads,
-                 const std::function<void(double)>& on_progress)
+                 const std::function<void(double)>& on_progress, const StopCondition& is_over)
     : AeroMap(Empty(), std::move(layers), plane, extent) {
-    build(threads, on_progress);
+    build(threads, on_progress, is_over);
 }
 
 AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent)
@@ -85,11 +85,11 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
     rows_ = static_cast<std::uint32_t>(rows);
 }
 
-void AeroMap::build(int threads, const std::function<void(double)>& on_progress) {
+void AeroMap::build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over) {
     std::vector<LayerGrid> grids;
     for (const MapLayer& layer : layers_) {
-        grids.push_back(
-            {*layer.effect, plane_, layer.lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_, rows_});
+        grids.push_back({*layer.effect, plane_, layer.lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_,
+                         rows_, is_over});
     }
     const std::size_t tasks_per_layer = (rows_ + rows_per_task - 1) / rows_per_task;
     std::vector<CellRows> parts(tasks_per_layer * grids.size());

@@ -12,6 +12,7 @@
 #include "downwash/aeromap/map_view.hpp"
 #include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
+#include "downwash/base/stop_condition.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 
 namespace downwash {
@@ -47,10 +48,11 @@ class DOWNWASH_EXPORT AeroMap {
     /// Builds every layer. The bytes do not depend on the number of threads.
     /// @param threads at least 1
     /// @param on_progress called from the calling thread with the share that is built
+    /// @throws WorkStopped when it is over before the map is built
     /// @throws InputError if the extent is empty or not finite, grid_m or an offset is out of range, or the map would
     /// have too many cells
     AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads = 1,
-            const std::function<void(double)>& on_progress = {});
+            const std::function<void(double)>& on_progress = {}, const StopCondition& is_over = {});
 
     /// The content of the map as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
@@ -123,7 +125,7 @@ class DOWNWASH_EXPORT AeroMap {
     AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent);
 
     [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
-    void build(int threads, const std::function<void(double)>& on_progress);
+    void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over);
     void add_raster(Raster raster);
     [[nodiscard]] bool is_sound(const Raster& raster) const;
     [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;

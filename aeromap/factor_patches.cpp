@@ -125,6 +125,7 @@ double FactorPatches::factor(double x_m, double z_m) {
 }
 
 double FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
+    throw_if_over(grid_.is_over);
     if (known_.size() >= max_known) {
         known_.clear();
     }

@@ -96,6 +96,7 @@ class RowsBuilder {
     /// Moving the disc by d changes its clearance by at most d: one place decides a whole block of cells when its
     /// clearance differs from the minimum by more than the block's half diagonal. Otherwise the block is halved.
     void classify(std::size_t i0, std::size_t i1, std::size_t k0, std::size_t k1) {
+        throw_if_over(grid_.is_over);
         const double half_x = 0.5 * (x_at(i1) - x_at(i0));
         const double half_z = 0.5 * (z_at(k1) - z_at(k0));
         const double reach = std::sqrt(half_x * half_x + half_z * half_z) + clearance_slack_m;

@@ -7,6 +7,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"
+#include "downwash/base/stop_condition.hpp"
 
 namespace downwash {
 
@@ -18,6 +19,7 @@ struct LayerGrid {
     double x_low_m, z_low_m;
     double side_m;
     std::size_t columns, rows;
+    const StopCondition& is_over;  ///< asked before K or a clearance is evaluated
 };
 
 /// Some rows of cells, as they will stand in the layer.
@@ -27,7 +29,7 @@ struct CellRows {
     std::vector<float> nodes;  ///< of one cell after the other
 };
 
-/// Rows [first, last) of a layer.
+/// Rows [first, last) of a layer. @throws WorkStopped when it is over before they are built
 [[nodiscard]] CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last);
 
 /// The longest cell side for which max_steps resolve the steepest curve of the effect, at least R / 50; at most 0.45

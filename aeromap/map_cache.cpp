@@ -110,15 +110,16 @@ bool MapCache::keep(const AeroMap& map) const noexcept {
 
 std::shared_ptr<const AeroMap> cached_map(const fs::path& folder, const std::vector<MapLayer>& layers,
                                           const PlaneOfMotion& plane, const Bounds& extent, int threads,
-                                          const std::function<void(double)>& on_progress) {
+                                          const std::function<void(double)>& on_progress,
+                                          const StopCondition& is_over) {
     if (folder.empty()) {
-        return std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress);
+        return std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress, is_over);
     }
     const MapCache cache(folder);
     if (auto map = cache.find(layers, plane, extent)) {
         return map;
     }
-    auto map = std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress);
+    auto map = std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress, is_over);
     cache.keep(*map);
     return map;
 }

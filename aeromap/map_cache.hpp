@@ -38,9 +38,11 @@ class DOWNWASH_EXPORT MapCache {
     std::filesystem::path folder_;
 };
 
-/// The map from the cache, or built and kept there. @param folder empty: no cache   @throws InputError as AeroMap
+/// The map from the cache, or built and kept there. @param folder empty: no cache
+/// @throws InputError, WorkStopped as AeroMap
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const AeroMap> cached_map(
     const std::filesystem::path& folder, const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
-    const Bounds& extent, int threads = 1, const std::function<void(double)>& on_progress = {});
+    const Bounds& extent, int threads = 1, const std::function<void(double)>& on_progress = {},
+    const StopCondition& is_over = {});
 
 }  // namespace downwash

@@ -24,7 +24,8 @@ struct BenchRunArguments {
 };
 
 ExitCode run(const BenchRunArguments& given) {
-    const Interruption interruption;
+    Interruption interruption;
+    interruption.expect_results();
     ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated);
     if (given.jobs) {
         read.campaign.jobs = *given.jobs;

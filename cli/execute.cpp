@@ -97,7 +97,7 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
 }
 
 ExitCode run(const ExecuteArguments& given) {
-    const Interruption interruption;
+    Interruption interruption;
     Problem read = read_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated);
@@ -109,6 +109,7 @@ ExitCode run(const ExecuteArguments& given) {
     if (world) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
+    interruption.expect_results();
     const RunRecord record = write_results(folder, read, given.problem, solution);
     write_page(folder, record, nullptr, cache_folder(given.no_cache), given.is_quiet, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -8,14 +10,19 @@
 
 namespace downwash::cli {
 
-/// During its lifetime the first SIGINT or SIGTERM requests a stop and a second one ends the program at once.
+/// During its lifetime SIGINT, SIGTERM and the end of the command's wall time end the program at once or, where there
+/// are results to save, request a stop. After a stop was requested a signal always ends the program at once.
 /// Create it before any other thread: threads inherit that these signals are blocked.
 class Interruption {
  public:
-    Interruption();
+    /// @param wall_limit_s counts from here on; empty: no limit
+    explicit Interruption(std::optional<double> wall_limit_s = std::nullopt);
     ~Interruption();
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
+
+    /// From now on there is something to save.
+    void expect_results() { has_results_ = true; }
 
     [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
@@ -23,10 +30,16 @@ class Interruption {
     [[nodiscard]] ExitCode code() const;
 
  private:
-    void wait();
+    using Clock = std::chrono::steady_clock;
 
+    void wait();
+    void end_by_limit();
+    void end_by_signal(int signal);
+
+    std::optional<Clock::time_point> deadline_;  ///< empty also after it has passed
     std::stop_source stop_;
     std::atomic<int> signal_ = 0;
+    std::atomic<bool> has_results_ = false;
     std::atomic<bool> is_over_ = false;
     std::thread thread_;
 };

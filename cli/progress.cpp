@@ -23,8 +23,9 @@ bool is_live_terminal() {
 
 std::string text_of(const Progress& progress) {
     const std::string best = progress.best_cost ? fmt::format("best cost {:.6g}", *progress.best_cost) : "no plan yet";
-    return fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s, progress.iterations,
-                       progress.nodes, progress.rejected, best);
+    const std::string goal = progress.goals > 1 ? fmt::format("goal {} of {}, ", progress.goal, progress.goals) : "";
+    return goal + fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s,
+                              progress.iterations, progress.nodes, progress.rejected, best);
 }
 
 /// A line with the time of day before it.

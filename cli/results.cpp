@@ -139,6 +139,12 @@ std::string verdict_on_search(const Solution& solution) {
                fmt::format("A way to the goal was found, but in {} of {} worlds the flight fails: it is not certified.",
                            solution.certificate->failures, solution.certificate->worlds);
     }
+    if (solution.planning.obstruction && solution.planning.obstruction->cause == "unfinished_flight") {
+        return stopped + "A way to the goal was found, but the time was over before its flight was.";
+    }
+    if (solution.plan && !solution.execution) {
+        return stopped + "There is a plan, but its flight was not finished.";
+    }
     if (solution.status == Status::approximate) {
         const auto& off_m = solution.planning.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to the goal" +
@@ -180,6 +186,8 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         if (o.cause == "certificate") {
             text += row("", "The planner discarded every plan: in worlds that the search had not seen");
             text += row("", "each failed too often. `downwash solve --remedies` tries what would help.");
+        } else if (o.cause == "unfinished_flight") {
+            text += row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
         } else if (o.cause == "direct_flight") {
             text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += row("", "the last one failed or came nearer to an obstacle than the margin.");

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "downwash/base/key_error.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
@@ -15,6 +16,7 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/problem_writer.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -24,6 +26,7 @@ struct SolveArguments {
     PlannerOptions planner;
     int threads = default_threads();
     std::optional<std::string> out;
+    std::optional<double> wall_limit_s;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
 };
 
@@ -58,11 +61,24 @@ void print_remedies(const Problem& problem, SolveOptions options) {
     }));
 }
 
+/// What is written has to be readable again.
+void require_readable(const Problem& problem) {
+    const std::size_t size = effective_yaml(problem, {}).size();
+    if (size > largest_document) {
+        throw_input_error(
+            fmt::format("has {} KiB with every default filled in: expected {} KiB or less; obstacles may stand in "
+                        "a mesh",
+                        size / 1024, largest_document / 1024),
+            "environment.obstacles");
+    }
+}
+
 ExitCode run(const SolveArguments& given) {
-    const Interruption interruption;
+    Interruption interruption(given.wall_limit_s);
     const Problem read = read_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
+    require_readable(read);
     const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
     SolveOptions options;
@@ -70,6 +86,7 @@ ExitCode run(const SolveArguments& given) {
     options.stop_at_first_solution = given.stop_at_first;
     options.keep_tree = true;
     options.stop = interruption.token();
+    interruption.expect_results();
     options.map_cache = cache_folder(given.no_cache);
     Solution solution;
     {
@@ -90,7 +107,7 @@ ExitCode run(const SolveArguments& given) {
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
         print_remedies(read, options);
     }
-    return solution.interrupted ? interruption.code() : exit_code_of(solution);
+    return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
 }
 
 }  // namespace
@@ -109,6 +126,10 @@ void add_solve(CLI::App& program, Action& action) {
     }
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
+    add_value(
+        command, "--wall-limit S", given.wall_limit_s,
+        "wall time of the whole command [s], reading and the aero map included; then the best plan so far is written")
+        ->check(CLI::PositiveNumber);
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

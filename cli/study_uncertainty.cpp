@@ -54,7 +54,8 @@ bench::StudySettings settings_of(const StudyUncertaintyArguments& given) {
 }
 
 ExitCode run(const StudyUncertaintyArguments& given) {
-    const Interruption interruption;
+    Interruption interruption;
+    interruption.expect_results();
     const std::vector<bench::StudyPart> parts = bench::parts_of(settings_of(given));
     const OutputFolder folder(given.out);
     {

@@ -70,7 +70,7 @@ std::vector<judge::Disagreement> compare_flight(const judge::PlanJudge& judge, c
 }
 
 ExitCode run(const ValidateArguments& given) {
-    const Interruption interruption;
+    Interruption interruption;
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
     check_options(given, problem);
     const Claims claims = read_claims(plan_file(given.plan), problem);

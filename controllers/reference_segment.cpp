@@ -35,18 +35,21 @@ double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, con
     return ratio_at(segment.at_tick(segment.ticks() * sample / samples_of(segment)), limits);
 }
 
-/// The largest ratio at samples between the ends.
+/// The largest ratio at samples between the ends, and that of the jerk.
 double worst_ratio(const ReferenceSegment& segment, const MotionLimits& limits) {
-    double worst = 0;
+    double worst = segment.peak_jerk_m_s3() / limits.max_jerk_m_s3;
     for (std::int64_t i = 1; i < samples_of(segment); ++i) {
         worst = std::max(worst, ratio_at_sample(segment, i, limits));
     }
     return worst;
 }
 
-/// Whether all samples between the ends keep the limits.
+/// Whether the jerk, and all samples between the ends, keep the limits.
 /// @param suspect the sample that is asked first, as it did not keep them last; becomes the one that does not
 bool keeps_limits_between(const ReferenceSegment& segment, const MotionLimits& limits, std::int64_t& suspect) {
+    if (segment.peak_jerk_m_s3() > kept * limits.max_jerk_m_s3) {
+        return false;
+    }
     const std::int64_t samples = samples_of(segment);
     if (suspect < samples && ratio_at_sample(segment, suspect, limits) > kept) {
         return false;
@@ -108,11 +111,29 @@ ReferencePoint ReferenceSegment::at_tick(std::int64_t tick) const noexcept {
     return point;
 }
 
+double ReferenceSegment::peak_jerk_m_s3() const noexcept {
+    constexpr int samples = 16;
+    double largest = 0;  // squared, per duration^3
+    for (int i = 0; i <= samples; ++i) {
+        const double s = static_cast<double>(i) / samples;
+        double square = 0;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double* c = coefficient_[axis];
+            const double jerk = 6 * c[3] + s * (24 * c[4] + s * (60 * c[5]));
+            square += jerk * jerk;
+        }
+        largest = std::max(largest, square);
+    }
+    return std::sqrt(largest) * inverse_duration_1_s_ * inverse_duration_1_s_ * inverse_duration_1_s_;
+}
+
 double rest_to_rest_duration_s(double distance_m, double arm_rad, const MotionLimits& limits) {
     constexpr double peak_speed = 15.0 / 8.0;
     constexpr double peak_acceleration = 5.7735026918962576;  // 10 / sqrt(3)
+    constexpr double peak_jerk = 60;
     return std::max({peak_speed * distance_m / limits.max_speed_m_s,
                      std::sqrt(peak_acceleration * distance_m / limits.max_acceleration_m_s2),
+                     std::cbrt(peak_jerk * distance_m / limits.max_jerk_m_s3),
                      peak_speed * arm_rad / limits.max_arm_rate_rad_s,
                      std::sqrt(peak_acceleration * arm_rad / limits.max_arm_acceleration_rad_s2)});
 }

@@ -13,6 +13,8 @@ struct MotionLimits {
     double max_acceleration_m_s2 = 0.5;
     double max_arm_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second
     double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
+    /// A multirotor turns to accelerate: its rotors swing as the jerk changes. 4 m/s^3 is PX4's MPC_JERK_AUTO.
+    double max_jerk_m_s3 = 4;
 };
 
 /// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
@@ -29,6 +31,10 @@ class DOWNWASH_EXPORT ReferenceSegment {
 
     /// The reference at the beginning of tick `tick`, 0 <= tick <= ticks(); exactly `from` and `to` at the ends.
     [[nodiscard]] ReferencePoint at_tick(std::int64_t tick) const noexcept;
+
+    /// The largest jerk in (x, z) at its ends and at samples between them (less than the largest of all by 1 % at
+    /// most) [m/s^3].
+    [[nodiscard]] double peak_jerk_m_s3() const noexcept;
 
     /// Of the powers of the time over the duration, (x, z, arm); see quintic_at().
     [[nodiscard]] const double (&coefficients() const noexcept)[3][6] { return coefficient_; }
@@ -57,14 +63,16 @@ struct ReferenceKnot {
 [[nodiscard]] DOWNWASH_EXPORT std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to,
                                                           const MotionLimits& limits, double tick_s);
 
-/// Whether speeds and accelerations at a point keep the limits. If they do not, no segment that ends there does.
+/// Whether speeds and accelerations at a point keep the limits; a point has no jerk. If they do not, no segment that
+/// ends there does.
 [[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferencePoint& point, const MotionLimits& limits);
 
 /// Whether a segment keeps the limits at all samples, its ends included.
 [[nodiscard]] DOWNWASH_EXPORT bool keeps_limits(const ReferenceSegment& segment, const MotionLimits& limits);
 
 /// Duration [s] of the rest-to-rest quintic over a distance [m] and an arm angle [rad] (peak speed 15/8 of the mean,
-/// peak acceleration 10 / sqrt(3) of distance / duration^2), before it is rounded up to ticks.
+/// peak acceleration 10 / sqrt(3) of distance / duration^2, peak jerk 60 of distance / duration^3), before it is
+/// rounded up to ticks.
 [[nodiscard]] DOWNWASH_EXPORT double rest_to_rest_duration_s(double distance_m, double arm_rad,
                                                              const MotionLimits& limits);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "downwash/judge/goals.hpp"
 #include "downwash/judge/reference.hpp"
@@ -46,11 +47,15 @@ class List {
     std::vector<Disagreement> found;
 };
 
-/// The greatest speeds and accelerations at the ticks of a piece of the reference.
+/// The greatest speeds, accelerations and jerks at the ticks of a piece of the reference.
 struct Peaks {
-    double speed = 0, acceleration = 0, arm_rate = 0, arm_acceleration = 0;
+    double speed = 0, acceleration = 0, jerk = 0, arm_rate = 0, arm_acceleration = 0;
 
-    void see(const ReferencePoint& p) {
+    /// @param before one tick ago
+    void see(const ReferencePoint& before, const ReferencePoint& p, double tick_s) {
+        jerk = std::max(
+            jerk, std::hypot(p.acceleration[0] - before.acceleration[0], p.acceleration[1] - before.acceleration[1]) /
+                      tick_s);
         speed = std::max(speed, std::hypot(p.velocity[0], p.velocity[1]));
         acceleration = std::max(acceleration, std::hypot(p.acceleration[0], p.acceleration[1]));
         arm_rate = std::max(arm_rate, std::abs(p.velocity[2]));
@@ -63,13 +68,16 @@ void check_limits(const Plan& plan, const MotionLimits& limits, List& list) {
     const std::vector<ReferenceKnot>& knots = plan.reference;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
         Peaks peaks;
-        for (std::int64_t tick = knots[i].tick; tick < knots[i + 1].tick; ++tick) {
-            peaks.see(reference.at(tick));
+        ReferencePoint before = knots[i].point;
+        peaks.see(before, before, plan.tick_s);
+        for (std::int64_t tick = knots[i].tick + 1; tick <= knots[i + 1].tick; ++tick) {
+            const ReferencePoint here = tick < knots[i + 1].tick ? reference.at(tick) : knots[i + 1].point;
+            peaks.see(std::exchange(before, here), here, plan.tick_s);
         }
-        peaks.see(knots[i + 1].point);
         const std::string piece = "plan.reference[" + std::to_string(i) + "] to [" + std::to_string(i + 1) + "]: ";
         list.limit(piece + "speed_m_s", peaks.speed, limits.max_speed_m_s);
         list.limit(piece + "acceleration_m_s2", peaks.acceleration, limits.max_acceleration_m_s2);
+        list.limit(piece + "jerk_m_s3", peaks.jerk, limits.max_jerk_m_s3);
         list.limit(piece + "arm_rate_rad_s", peaks.arm_rate, limits.max_arm_rate_rad_s);
         list.limit(piece + "arm_acceleration_rad_s2", peaks.arm_acceleration, limits.max_arm_acceleration_rad_s2);
     }

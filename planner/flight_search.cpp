@@ -92,7 +92,13 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     }
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
-        execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_);
+        try {
+            execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_,
+                                          [this] { return clock_.is_over(); });
+        } catch (const WorkStopped&) {
+            discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
+            return false;
+        }
     }
     known_at_s_ = clock_.seconds();
     if (execution_ && (execution_->outcome != Outcome::ok || execution_->min_clearance_m < settings.safety_margin_m)) {
@@ -139,6 +145,9 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
         solution_.planning.first_certified_wall_s = known_at_s_;
     }
     clock_.improved(known_at_s_, cost, iteration, executed_cost);
+    if (options_.on_plan) {
+        options_.on_plan({plan, cost, executed_cost});
+    }
 }
 
 void FlightSearch::account(std::uint64_t iterations, const FlightStatistics& statistics) {
@@ -181,7 +190,7 @@ void FlightSearch::run_controls() {
     ControlHooks hooks;
     hooks.keep_tree = options_.keep_tree;
     hooks.is_over = [&](std::uint64_t iteration) {
-        clock_.report(iteration, planned.statistics().edges, planned.statistics().rejections);
+        clock_.note(iteration, planned.statistics().edges, planned.statistics().rejections);
         return clock_.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
     };
     hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
@@ -218,7 +227,7 @@ void FlightSearch::run_tree() {
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_observer(
-        [&] { clock_.report(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections); });
+        [&] { clock_.note(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections); });
     planner.setup();
     planner.solve(ompl::base::PlannerTerminationCondition([this] { return clock_.is_over(); }));
 
@@ -240,9 +249,9 @@ void FlightSearch::run_tree() {
 }  // namespace
 
 Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                           const std::vector<Goal>& goals, double& wall_s) {
+                           const std::vector<Goal>& goals, double& wall_s, const StopCondition& is_over) {
     const Stopwatch clock;
-    Execution execution = execute(model, start, plan.reference, goals, true);
+    Execution execution = execute(model, start, plan.reference, goals, true, {}, is_over);
     wall_s = clock.seconds();
     return execution;
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/worlds.hpp"
 
@@ -9,14 +10,16 @@ namespace downwash::planning {
 
 /// Executes a plan with direct aerodynamics, from the start through all goals.
 /// @param wall_s set to how long that took [s]
+/// @throws WorkStopped when it is over before the flight ends
 [[nodiscard]] Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                                         const std::vector<Goal>& goals, double& wall_s);
+                                         const std::vector<Goal>& goals, double& wall_s, const StopCondition& is_over);
 
 /// MP-ARM-DA and MP-ARM-ADA: searches a flight to the goal of a problem without stops.
 /// @param part the problem up to that goal   @param whole the problem that it is a part of, or itself
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
 /// @param worlds that edges and plans have to survive; nullptr: everything is as believed
-void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution);
+DOWNWASH_EXPORT void search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
+                                    const AeroMap* map, const Course& before, ProblemWorlds* worlds,
+                                    const SolveOptions& options, Solution& solution);
 
 }  // namespace downwash::planning

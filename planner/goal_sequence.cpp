@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -12,7 +14,7 @@
 namespace downwash::planning {
 namespace {
 
-/// What is left of a search's limits when it has several goals.
+/// What is left of a search's limits.
 class Budget {
  public:
     explicit Budget(const PlannerSettings& settings) : iterations_(settings.max_iterations) {
@@ -21,23 +23,39 @@ class Budget {
         }
     }
 
-    /// Gives a search its share of what is left for so many.
-    void share(PlannerSettings& settings, std::size_t searches) const {
-        constexpr double min_s = 1e-6;
+    /// A part of what is left. Where iterations are limited they alone are divided: how far each part gets then does
+    /// not depend on how fast the machine is.
+    [[nodiscard]] Budget part(double share) const {
+        Budget some = *this;
         if (iterations_) {
-            settings.max_iterations = std::max<std::uint64_t>(1, *iterations_ / searches);
+            some.iterations_ = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(*iterations_)));
+        } else {
+            some.time_s_ = share * time_s_;
         }
-        if (std::isfinite(time_s_)) {
-            settings.time_limit_s = std::max(min_s, time_s_ / static_cast<double>(searches));
-        }
+        return some;
     }
 
-    void spend(const SearchRecord& record) {
-        if (iterations_) {
-            *iterations_ -= std::min(*iterations_, record.iterations);
-        }
-        time_s_ -= record.wall_s;
+    /// What part of this budget some work took; at most 1.
+    [[nodiscard]] double share_of(const SearchRecord& work) const {
+        const double share = iterations_ ? static_cast<double>(work.iterations) / static_cast<double>(*iterations_)
+                                         : work.wall_s / time_s_;
+        return std::min(share, 1.0);
     }
+
+    void limit(PlannerSettings& settings) const {
+        constexpr double min_s = 1e-6;
+        settings.max_iterations = iterations_;
+        settings.time_limit_s = std::isfinite(time_s_) ? std::optional(std::max(min_s, time_s_)) : std::nullopt;
+    }
+
+    void spend(const SearchRecord& work) {
+        if (iterations_) {
+            *iterations_ -= std::min(*iterations_, work.iterations);
+        }
+        time_s_ -= work.wall_s;
+    }
+
+    [[nodiscard]] bool is_used_up() const { return time_s_ <= 0 || (iterations_ && *iterations_ == 0); }
 
  private:
     std::optional<std::uint64_t> iterations_;
@@ -90,49 +108,247 @@ void add(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
     }
 }
 
+/// Adds the work of a part, whatever came of it.
 void add(SearchRecord& sum, const SearchRecord& part) {
     sum.wall_s += part.wall_s;
-    sum.flight_wall_s = part.flight_wall_s;
     sum.iterations += part.iterations;
     sum.edges_simulated += part.edges_simulated;
     sum.simulated_s += part.simulated_s;
     sum.states_checked += part.states_checked;
-    sum.nearest_approach_m = part.nearest_approach_m;
-    sum.obstruction = part.obstruction;
     for (const auto& [cause, count] : part.rejected) {
         sum.rejected[cause] += count;
     }
 }
 
-/// What the last part found, as plans of the whole.
-void take_improvements(SearchRecord& whole, const SearchRecord& last, double cost_before) {
-    if (last.first_solution_wall_s) {
-        whole.first_solution_wall_s = whole.wall_s + *last.first_solution_wall_s;
+/// Finds a whole way through all goals, then better ones.
+class GoalSequence {
+ public:
+    GoalSequence(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
+                 const PartSearch& search, Solution& solution)
+        : problem_(problem),
+          model_(model),
+          map_(map),
+          options_(options),
+          search_(search),
+          solution_(solution),
+          goals_(goals_of(problem)),
+          left_(problem.planner) {}
+
+    void run();
+
+ private:
+    /// One try to find a whole way.
+    struct Round {
+        std::uint32_t number;  ///< from 0; that one is content with the first way
+        Budget left;
+        Course course;
+        Solution way;                    ///< as far as it has come
+        std::vector<double> part_costs;  ///< of the parts that were found
+    };
+
+    [[nodiscard]] Round try_round(std::uint32_t number, const Budget& budget);
+    [[nodiscard]] bool search_part(Round& round);
+    [[nodiscard]] SolveOptions options_of_part(const Round& round);
+    [[nodiscard]] double share(std::size_t part) const;
+    [[nodiscard]] double cost_of_way(const Solution& way) const;
+    void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
+                           std::uint64_t iterations_before);
+    void take(Round round);
+
+    const Problem& problem_;
+    const FlightModel& model_;
+    const AeroMap* map_;
+    const SolveOptions& options_;
+    const PartSearch& search_;
+    Solution& solution_;
+    std::vector<Goal> goals_;
+    Budget left_;
+    std::uint64_t attempts_ = 0;      ///< plans that asked for a certificate
+    std::vector<double> part_costs_;  ///< of the best way
+    std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
+    double handed_over_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
+};
+
+/// The first round takes what it needs, each later one may take twice as much as the one before; the last one takes the
+/// rest.
+void GoalSequence::run() {
+    constexpr std::uint64_t least_iterations = 50;
+    constexpr double least_s = 0.1;
+    take(try_round(0, left_));
+    if (options_.stop_at_first_solution || solution_.status != Status::solved) {
+        return;
     }
-    if (last.first_certified_wall_s) {
-        whole.first_certified_wall_s = whole.wall_s + *last.first_certified_wall_s;
+    SearchRecord work = solution_.planning;
+    work.iterations = std::max(work.iterations, least_iterations);
+    work.wall_s = std::max(work.wall_s, least_s);
+    bool is_last = false;
+    for (std::uint32_t number = 1; !is_last && !left_.is_used_up() && !options_.stop.stop_requested(); ++number) {
+        work.iterations *= 2;
+        work.wall_s *= 2;
+        const double share = left_.share_of(work);
+        is_last = share > 0.5;
+        Round round = try_round(number, left_.part(is_last ? 1 : share));
+        if (round.way.status == Status::solved && cost_of_way(round.way) < cost_of_way(solution_)) {
+            take(std::move(round));
+        }
     }
-    for (const Improvement& improvement : last.improvements) {
-        whole.improvements.push_back({whole.wall_s + improvement.wall_s, whole.iterations + improvement.iteration,
-                                      cost_before + improvement.cost, improvement.flown_cost});
+    if (solution_.certificate) {
+        solution_.certificate->attempts = attempts_;
     }
 }
 
+GoalSequence::Round GoalSequence::try_round(std::uint32_t number, const Budget& budget) {
+    Round round{number, budget, Course::from_start(problem_, model_), {}, {}};
+    round.course.attempts = attempts_;
+    while (round.part_costs.size() < goals_.size() && search_part(round)) {
+    }
+    return round;
+}
+
+/// Searches the way to the next goal. False if none is found in time.
+bool GoalSequence::search_part(Round& round) {
+    const std::size_t number = round.part_costs.size();
+    const bool is_last = number + 1 == goals_.size();
+    Problem part = part_of(problem_, goals_[number], round.course);
+    part.planner.seed += round.number;
+    round.left.part(round.number == 0 ? 1 : share(number)).limit(part.planner);
+    Solution found;
+    search_(part, options_of_part(round), round.course, found);
+    round.left.spend(found.planning);
+    left_.spend(found.planning);
+
+    Solution& way = round.way;
+    way.planning.flight_wall_s = found.planning.flight_wall_s;
+    way.planning.nearest_approach_m = found.planning.nearest_approach_m;
+    way.planning.obstruction = found.planning.obstruction;
+    if (found.certificate) {
+        attempts_ = round.course.attempts = found.certificate->attempts;
+        way.certificate = found.certificate;
+    }
+    const double begun_at_s = solution_.planning.wall_s;
+    const std::uint64_t iterations_before = solution_.planning.iterations;
+    add(solution_.planning, found.planning);
+    add(way.tree, found.tree);
+    if (found.plan) {
+        way.plan = round.course.continued_by(*found.plan);
+        way.cost = round.course.cost + found.cost;
+    }
+    way.status = way.plan ? Status::approximate : Status::none;
+    if (found.status != Status::solved) {
+        return false;
+    }
+    if (way.plan->reference.back().tick > max_plan_ticks) {
+        ++solution_.planning.rejected["too_long"];
+        way.plan = round.course.plan;
+        way.cost = round.course.cost;
+        return false;
+    }
+    round.part_costs.push_back(found.cost);
+    if (is_last) {
+        way.status = Status::solved;
+        way.execution = std::move(found.execution);
+        note_improvements(round.course, found.planning, begun_at_s, iterations_before);
+        return true;
+    }
+    advance(round.course, goals_[number], *found.plan, found.cost, model_, map_,
+            problem_.planner.variant != Variant::mp_arm);
+    way.plan = round.course.plan;
+    return true;
+}
+
 /// Options under which a part reports its progress as that of the whole.
-SolveOptions options_of_part(const SolveOptions& options, const SearchRecord& before, double cost_before,
-                             bool is_last) {
-    SolveOptions inner = options;
-    if (options.on_progress) {
-        inner.on_progress = [&options, wall_s = before.wall_s, iterations = before.iterations, cost_before,
-                             is_last](Progress progress) {
-            progress.wall_s += wall_s;
-            progress.iterations += iterations;
-            progress.best_cost =
-                is_last && progress.best_cost ? std::optional(cost_before + *progress.best_cost) : std::nullopt;
-            options.on_progress(progress);
+SolveOptions GoalSequence::options_of_part(const Round& round) {
+    SolveOptions inner = options_;
+    inner.stop_at_first_solution = round.number == 0;
+    const std::size_t number = round.part_costs.size();
+    const bool is_last = number + 1 == goals_.size();
+    if (options_.on_progress) {
+        inner.on_progress = [this, &round, number, is_last](Progress progress) {
+            progress.wall_s += solution_.planning.wall_s;
+            progress.iterations += solution_.planning.iterations;
+            progress.goal = number + 1;
+            progress.goals = goals_.size();
+            const std::optional<double> best_of_part = std::exchange(progress.best_cost, std::nullopt);
+            if (solution_.status == Status::solved) {
+                progress.best_cost = solution_.cost;
+            }
+            if (is_last && best_of_part) {
+                const double whole = round.course.cost + *best_of_part;
+                progress.best_cost = std::min(progress.best_cost.value_or(whole), whole);
+            }
+            options_.on_progress(progress);
+        };
+    }
+    inner.on_plan = nullptr;
+    if (options_.on_plan && is_last) {
+        inner.on_plan = [this, &round](const FoundPlan& found) {
+            const double cost = round.course.cost + found.cost;
+            if (found.flown_cost.value_or(cost) < handed_over_) {
+                handed_over_ = found.flown_cost.value_or(cost);
+                options_.on_plan({round.course.continued_by(found.plan), cost, found.flown_cost});
+            }
         };
     }
     return inner;
+}
+
+/// Of what is left of a round, for a part: half of a round is shared equally, half by where it paid.
+double GoalSequence::share(std::size_t part) const {
+    const double all_gains = std::accumulate(gains_.begin(), gains_.end(), 0.0);
+    const auto weight = [&](std::size_t i) {
+        const double equal = 1 / static_cast<double>(goals_.size());
+        return 0.5 * equal + 0.5 * (all_gains > 0 ? gains_[i] / all_gains : equal);
+    };
+    double parts_left = 0;
+    for (std::size_t i = part; i < goals_.size(); ++i) {
+        parts_left += weight(i);
+    }
+    return weight(part) / parts_left;
+}
+
+/// Where it was flown with direct aerodynamics, there.
+double GoalSequence::cost_of_way(const Solution& way) const {
+    return way.execution ? cost_of(*way.execution, problem_.planner.objective) : way.cost;
+}
+
+/// What the search for the last part found, as ways through all goals.
+/// @param begun_at_s,iterations_before of the whole when it began
+void GoalSequence::note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
+                                     std::uint64_t iterations_before) {
+    SearchRecord& whole = solution_.planning;
+    const auto note_first = [begun_at_s](std::optional<double>& at_s, const std::optional<double>& in_part_s) {
+        if (!at_s && in_part_s) {
+            at_s = begun_at_s + *in_part_s;
+        }
+    };
+    note_first(whole.first_solution_wall_s, last.first_solution_wall_s);
+    note_first(whole.first_certified_wall_s, last.first_certified_wall_s);
+    for (const Improvement& found : last.improvements) {
+        const double cost = before.cost + found.cost;
+        if (solution_.status != Status::solved || found.flown_cost.value_or(cost) < cost_of_way(solution_)) {
+            whole.improvements.push_back(
+                {begun_at_s + found.wall_s, iterations_before + found.iteration, cost, found.flown_cost});
+        }
+    }
+}
+
+/// Takes a way as the best one.
+void GoalSequence::take(Round round) {
+    gains_.resize(goals_.size());
+    for (std::size_t i = 0; i < part_costs_.size(); ++i) {
+        gains_[i] = std::max(0.0, part_costs_[i] - round.part_costs[i]);
+    }
+    part_costs_ = std::move(round.part_costs);
+    Solution& way = round.way;
+    solution_.status = way.status;
+    solution_.cost = way.cost;
+    solution_.plan = std::move(way.plan);
+    solution_.tree = std::move(way.tree);
+    solution_.certificate = way.certificate;
+    solution_.execution = std::move(way.execution);
+    solution_.planning.flight_wall_s = way.planning.flight_wall_s;
+    solution_.planning.nearest_approach_m = way.planning.nearest_approach_m;
+    solution_.planning.obstruction = way.planning.obstruction;
 }
 
 }  // namespace
@@ -157,54 +373,7 @@ Plan Course::continued_by(const Plan& next) const {
 
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
                    const PartSearch& search, Solution& solution) {
-    const std::vector<Goal> goals = goals_of(problem);
-    Budget budget(problem.planner);
-    Course course = Course::from_start(problem, model);
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-        const bool is_last = i + 1 == goals.size();
-        Problem part = part_of(problem, goals[i], course);
-        budget.share(part.planner, goals.size() - i);
-        Solution found;
-        search(part, options_of_part(options, solution.planning, course.cost, is_last), course, found);
-        budget.spend(found.planning);
-
-        if (found.certificate) {
-            course.attempts = found.certificate->attempts;
-            solution.certificate = found.certificate;
-        }
-
-        const bool is_solved = found.status == Status::solved;
-        if (is_last && is_solved) {
-            take_improvements(solution.planning, found.planning, course.cost);
-        }
-        add(solution.planning, found.planning);
-        add(solution.tree, found.tree);
-        if (found.plan) {
-            solution.plan = course.continued_by(*found.plan);
-            solution.cost = course.cost + found.cost;
-        }
-        solution.status = solution.plan ? Status::approximate : Status::none;
-        if (!is_solved) {
-            return;
-        }
-        if (solution.plan->reference.back().tick > max_plan_ticks) {
-            ++solution.planning.rejected["too_long"];
-            solution.planning.improvements.clear();
-            solution.planning.first_solution_wall_s.reset();
-            solution.planning.first_certified_wall_s.reset();
-            solution.status = Status::approximate;
-            solution.plan = course.plan;
-            solution.cost = course.cost;
-            return;
-        }
-        if (is_last) {
-            solution.status = Status::solved;
-            solution.execution = std::move(found.execution);
-            return;
-        }
-        advance(course, goals[i], *found.plan, found.cost, model, map, problem.planner.variant != Variant::mp_arm);
-        solution.plan = course.plan;
-    }
+    GoalSequence(problem, model, map, options, search, solution).run();
 }
 
 }  // namespace downwash::planning

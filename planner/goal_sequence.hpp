@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/problem.hpp"
@@ -18,7 +19,7 @@ struct Course {
     double cost = 0;
 
     /// The course before the first goal.
-    [[nodiscard]] static Course from_start(const Problem& problem, const FlightModel& model);
+    [[nodiscard]] DOWNWASH_EXPORT static Course from_start(const Problem& problem, const FlightModel& model);
 
     /// The course and a plan that begins where it ends, as one plan.
     [[nodiscard]] Plan continued_by(const Plan& next) const;
@@ -29,9 +30,10 @@ struct Course {
 /// direct aerodynamics, the execution of course and plan together.
 using PartSearch = std::function<void(const Problem& part, const SolveOptions&, const Course& before, Solution&)>;
 
-/// Searches goal by goal, each from the whole vehicle that holds at the one before, with an equal share of what is left
-/// of time and iterations. The order is kept, and every part is found by itself: the whole is not the best of all ways
-/// through the goals. Ends with the first part for which no plan is found; what there is up to there is `approximate`.
+/// Searches goal by goal, each from the whole vehicle that holds at the one before: in a first round until there is a
+/// whole way, then in rounds that take twice as long each, for cheaper ways. More of a round's time goes to the parts
+/// that became cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the
+/// best of all ways through the goals. If the first round finds no whole way, what it has is `approximate`.
 /// @param map of the planner's own model; nullptr for none
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
                    const PartSearch& search, Solution& solution);

@@ -15,7 +15,7 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     GeometricHooks hooks;
     hooks.keep_tree = options.keep_tree;
     hooks.is_over = [&](const GeometricProgress& progress) {
-        search.report(progress.iteration, progress.nodes, progress.rejected);
+        search.note(progress.iteration, progress.nodes, progress.rejected);
         return search.is_over() ||
                (problem.planner.max_iterations && progress.iteration >= *problem.planner.max_iterations);
     };
@@ -45,6 +45,9 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     solution.status = result.status;
     solution.plan = std::move(result.plan);
     solution.cost = result.cost;
+    if (options.on_plan && solution.status == Status::solved) {
+        options.on_plan({*solution.plan, solution.cost, {}});
+    }
 }
 
 }  // namespace downwash::planning

@@ -68,6 +68,7 @@ void slow_down(Problem& problem) {
     motion.max_speed_m_s /= 2;
     motion.max_arm_rate_rad_s /= 2;
     motion.max_acceleration_m_s2 /= 4;
+    motion.max_jerk_m_s3 /= 8;
     motion.max_arm_acceleration_rad_s2 /= 4;
 }
 

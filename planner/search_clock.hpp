@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <thread>
 
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve_options.hpp"
@@ -33,8 +34,12 @@ class SearchClock {
     /// Since construction [s].
     [[nodiscard]] double seconds() const { return clock_.seconds(); }
 
-    /// Whether time, the caller or a first solution ends the search.
-    [[nodiscard]] bool is_over() const {
+    /// Whether time, the caller or a first solution ends the search. Long work asks it all the time, from any thread:
+    /// solve()'s own tells the caller how the search goes.
+    [[nodiscard]] bool is_over() {
+        if (std::this_thread::get_id() == thread_) {
+            report();
+        }
         return options_.stop.stop_requested() || (limit_s_ && clock_.seconds() >= *limit_s_) ||
                (options_.stop_at_first_solution && !solution_.planning.improvements.empty());
     }
@@ -51,26 +56,35 @@ class SearchClock {
         solution_.planning.improvements.push_back({at_s, iteration, cost, flown_cost});
     }
 
-    /// Tells the caller how the search goes, up to ten times a second.
-    void report(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
-        constexpr double period_s = 0.1;
-        const double now_s = clock_.seconds();
-        if (!options_.on_progress || now_s < reported_s_ + period_s) {
-            return;
-        }
-        reported_s_ = now_s;
-        const auto& improvements = solution_.planning.improvements;
-        options_.on_progress({now_s, iterations, nodes, rejected,
-                              improvements.empty() ? std::nullopt : std::optional(improvements.back().cost)});
+    /// How far the search has come.
+    void note(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
+        progress_.iterations = iterations;
+        progress_.nodes = nodes;
+        progress_.rejected = rejected;
+        report();
     }
 
  private:
+    /// Tells the caller how the search goes, ten times a second.
+    void report() {
+        constexpr double period_s = 0.1;
+        const double now_s = clock_.seconds();
+        if (!options_.on_progress || now_s < progress_.wall_s + period_s) {
+            return;
+        }
+        progress_.wall_s = now_s;
+        const auto& improvements = solution_.planning.improvements;
+        progress_.best_cost = improvements.empty() ? std::nullopt : std::optional(improvements.back().cost);
+        options_.on_progress(progress_);
+    }
+
     const PlannerSettings& settings_;
     const SolveOptions& options_;
     Solution& solution_;
     Stopwatch clock_;
     std::optional<double> limit_s_;
-    double reported_s_ = 0;
+    Progress progress_;  ///< as reported last
+    std::thread::id thread_ = std::this_thread::get_id();
 };
 
 }  // namespace downwash::planning

@@ -1,6 +1,7 @@
 #include "downwash/planner/solve.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "downwash/planner/flight_search.hpp"
@@ -11,26 +12,34 @@ namespace downwash {
 
 namespace {
 
+/// When to give up the flight of a plan that was not flown yet. A stop that came before leaves it a moment, which is
+/// plenty in most scenes: whoever interrupts wants to know what the plan is worth.
+StopCondition end_of_last_flight(const std::stop_token& stop) {
+    constexpr double moment_s = 0.1;
+    if (stop.stop_requested()) {
+        return [since = planning::Stopwatch()] { return since.seconds() >= moment_s; };
+    }
+    return [stop] { return stop.stop_requested(); };
+}
+
 /// @param since_call counts from the caller's call on, checks included
-Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& asked,
-                       const planning::Stopwatch& since_call) {
+/// @throws WorkStopped when a stop is requested in the middle of anything; the solution has what there is
+void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options, const planning::Stopwatch& since_call,
+                  Solution& solution) {
     const Problem& problem = plannable.problem;
     const auto& model = plannable.model;
-    SolveOptions options = asked;
-    options.threads = std::max(1, options.threads);
-    Solution solution;
-    solution.variant = problem.planner.variant;
-    solution.algorithm = problem.planner.algorithm;
-    solution.objective = problem.planner.objective;
-    solution.seed = problem.planner.seed;
-    solution.threads = options.threads;
-
+    const StopCondition is_stopped = [&options] { return options.stop.stop_requested(); };
     std::shared_ptr<const AeroMap> map;
     if (problem.planner.variant == Variant::mp_arm_ada && problem.aero.enabled) {
         const planning::Stopwatch clock;
-        map = options.map
-                  ? options.map
-                  : model->make_map(problem.bounds, options.threads, options.on_map_progress, options.map_cache);
+        if (options.map && !model->is_mine(*options.map, problem.bounds)) {
+            throw std::invalid_argument(
+                "SolveOptions::map is of another scene, robot, model or bounds: expected a map of the same problem, or "
+                "none");
+        }
+        map = options.map ? options.map
+                          : model->make_map(problem.bounds, options.threads, options.on_map_progress, options.map_cache,
+                                            is_stopped);
         solution.planning.map_wall_s = clock.seconds();
         solution.map = map;
     }
@@ -56,16 +65,34 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         planning::solve_in_turn(problem, *model, map.get(), options, search, solution);
     }
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
-        solution.execution = planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan,
-                                                        goals_of(problem), solution.planning.flight_wall_s);
+        solution.execution =
+            planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan, goals_of(problem),
+                                       solution.planning.flight_wall_s, end_of_last_flight(options.stop));
     }
     if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
         // The others know nothing of worlds: what becomes of their plan is for comparison.
-        const auto flown_map =
-            problem.aero.enabled ? model->make_map(problem.bounds, options.threads, {}, options.map_cache) : nullptr;
+        const auto flown_map = problem.aero.enabled
+                                   ? model->make_map(problem.bounds, options.threads, {}, options.map_cache, is_stopped)
+                                   : nullptr;
         planning::ProblemWorlds fresh(problem, model, flown_map, options);
-        solution.certificate =
-            fresh.certify(*solution.plan, goals_of(problem).size(), 1, [&] { return options.stop.stop_requested(); });
+        solution.certificate = fresh.certify(*solution.plan, goals_of(problem).size(), 1, is_stopped);
+    }
+}
+
+Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& asked,
+                       const planning::Stopwatch& since_call) {
+    const PlannerSettings& settings = plannable.problem.planner;
+    SolveOptions options = asked;
+    options.threads = std::max(1, options.threads);
+    Solution solution;
+    solution.variant = settings.variant;
+    solution.algorithm = settings.algorithm;
+    solution.objective = settings.objective;
+    solution.seed = settings.seed;
+    solution.threads = options.threads;
+    try {
+        plan_and_fly(plannable, options, since_call, solution);
+    } catch (const WorkStopped&) {  // there is what was found before
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <stop_token>
 
 #include "downwash/aeromap/aero_map.hpp"
+#include "downwash/controllers/plan.hpp"
 
 namespace downwash {
 
@@ -17,21 +19,33 @@ struct Progress {
     std::uint64_t iterations = 0;
     std::uint64_t nodes = 0;
     std::uint64_t rejected = 0;       ///< edges rejected so far, for any reason
-    std::optional<double> best_cost;  ///< empty before the first solution
+    std::optional<double> best_cost;  ///< of the whole way; empty before the first solution
+    std::size_t goal = 1;             ///< the goal to which a way is searched, from 1
+    std::size_t goals = 1;            ///< how many there are
 };
 
-/// How a program takes part in a search.
+/// A plan that a search has just found, better than all before.
+struct FoundPlan {
+    const Plan& plan;                  ///< through all goals; valid during the call
+    double cost = 0;                   ///< by the planner's own model
+    std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
+};
+
+/// How a program takes part in a search. Its functions must not throw.
 struct SolveOptions {
     int threads = 1;       ///< for flights and the aero map, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
-    std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, up to ten times a second
+    std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, ten times a second
+    /// Called by solve()'s thread with each plan that counts and is better than the last: of MP-ARM once, in the end.
+    std::function<void(const FoundPlan&)> on_plan;
     /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
     /// is reused.
     std::function<void(double)> on_map_progress;
     bool stop_at_first_solution = false;
-    bool keep_tree = false;              ///< also gives the search tree
-    std::shared_ptr<const AeroMap> map;  ///< reuses a map of the same problem; built when empty
-    std::filesystem::path map_cache;     ///< folder in which maps are kept between runs; empty: nowhere
+    bool keep_tree = false;  ///< also gives the search tree
+    std::shared_ptr<const AeroMap>
+        map;  ///< reuses a map of the same problem, else std::invalid_argument; built when empty
+    std::filesystem::path map_cache;  ///< folder in which maps are kept between runs; empty: nowhere
 };
 
 }  // namespace downwash

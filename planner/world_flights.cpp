@@ -31,11 +31,17 @@ double min_clearance_m(const FlightJob& job) {
     return least_m;
 }
 
-FlightRules rules_with_clearance() {
-    FlightRules rules = rules_of_execution();
-    rules.finds_min_clearance = true;
-    return rules;
-}
+/// Sets what long work asks, for a scope.
+class AskingScope {
+ public:
+    AskingScope(StopCondition& asked, const StopCondition& is_over) : asked_(asked) { asked_ = is_over; }
+    ~AskingScope() { asked_ = nullptr; }
+    AskingScope(const AskingScope&) = delete;
+    AskingScope& operator=(const AskingScope&) = delete;
+
+ private:
+    StopCondition& asked_;
+};
 
 }  // namespace
 
@@ -50,20 +56,24 @@ WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightM
       pools_(goals_.size()) {}
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache)
+                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache,
+                           const StopCondition& is_over)
     : WorldFlights(problem, std::move(model), std::move(map), CeilingPart(), threads) {
     if (map_ != nullptr) {
         ceiling_.model = model_->ceilings_only();
         if (ceiling_.model != nullptr) {
-            ceiling_.map = ceiling_.model->make_map(problem.bounds, threads, {}, map_cache);
+            ceiling_.map = ceiling_.model->make_map(problem.bounds, threads, {}, map_cache, is_over);
         }
     }
 }
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
-        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules_with_clearance(), &goals_[goal],
-                                                    threads_, best_instructions(), &ceiling_);
+        FlightRules rules = rules_of_execution();
+        rules.finds_min_clearance = true;
+        rules.is_over = [this] { return is_over_ && is_over_(); };
+        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_,
+                                                    best_instructions(), &ceiling_);
     }
     return *pools_[goal];
 }
@@ -120,7 +130,9 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     }
 }
 
-std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds) {
+std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds,
+                                           const StopCondition& is_over) {
+    const AskingScope scope(is_over_, is_over);
     const std::vector<std::optional<FlightState>> starts = starts_in(worlds);
     std::vector<WorldFlight> flights(worlds.size(), {Rejection::unstable, 0});
     std::vector<FlightJob> jobs;
@@ -139,6 +151,7 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
     }
     const Plan held = with_hover(plan, visited.back(), *model_);
     advance(jobs, held, knot, held.reference.size() - 1, visits - 1);
+    throw_if_over(is_over);  // then some were interrupted
     const bool misses_a_goal = hovers.size() + 1 < visits;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Rejection rejection = jobs[i].rejection();

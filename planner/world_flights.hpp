@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/stop_condition.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/simulation/flight_batch.hpp"
@@ -25,21 +26,27 @@ struct WorldFlight {
 class DOWNWASH_EXPORT WorldFlights {
  public:
     /// @param map of the planner's own model; nullptr for none: then surfaces do not act
-    /// @param threads at least 1; nothing but the time depends on it   @param map_cache see FlightModel::make_map
+    /// @param threads at least 1; nothing but the time depends on it   @param map_cache,is_over see
+    /// FlightModel::make_map
     /// @pre problem outlives it
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                 int threads = 1, const std::filesystem::path& map_cache = {});
+                 int threads = 1, const std::filesystem::path& map_cache = {}, const StopCondition& is_over = {});
     /// The same with maps that are there already. @param ceiling that of another WorldFlights of the same problem
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                  CeilingPart ceiling, int threads);
+
+    ~WorldFlights() = default;
+    WorldFlights(const WorldFlights&) = delete;
+    WorldFlights& operator=(const WorldFlights&) = delete;
 
     /// Vehicles that have hovered at the problem's start, or that start there moving; nothing for those that do not
     /// stay there.
     [[nodiscard]] std::vector<std::optional<FlightState>> starts_in(std::span<const FlownWorld> worlds);
 
     /// Flies a plan in each of the worlds. @param plan through the first `visits` goals of the problem
-    [[nodiscard]] std::vector<WorldFlight> fly(const Plan& plan, std::size_t visits,
-                                               std::span<const FlownWorld> worlds);
+    /// @throws WorkStopped when it is over before all flights have ended
+    [[nodiscard]] std::vector<WorldFlight> fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds,
+                                               const StopCondition& is_over = {});
 
     /// Moves vehicles on along a plan, from one of its knots to another; a flight that ended stays as it is.
     /// @param goal number of the goal at which they hover in the end; empty: they are not judged
@@ -60,6 +67,7 @@ class DOWNWASH_EXPORT WorldFlights {
     CeilingPart ceiling_;
     std::vector<Goal> goals_;
     int threads_;
+    StopCondition is_over_;                           ///< of fly(), while it goes on
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 

@@ -71,7 +71,8 @@ std::vector<double> search_quantiles(std::uint64_t number) {
 ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,
                              std::shared_ptr<const AeroMap> map, const SolveOptions& options)
     : problem_(problem),
-      flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache),
+      flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache,
+               [stop = options.stop] { return stop.stop_requested(); }),
       threads_(options.threads) {}
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
@@ -138,7 +139,8 @@ FlownWorld ProblemWorlds::world(std::uint64_t index) const {
     return make_world(problem_.robot, draw_world(*problem_.uncertainty, problem_.robot, problem_.planner.seed, index));
 }
 
-void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples) {
+void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
+                                 const StopCondition& is_over) {
     std::vector<FlownWorld> worlds;
     worlds.reserve(samples.size());
     for (const WorldSample& sample : samples) {
@@ -150,31 +152,33 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
         if (!starts[i]) {
             return;
         }
-        const Execution flight =
-            execute(flights_.model(), *starts[i], whole.reference, goals, true, {&worlds[i], &flights_.ceiling()});
+        const Execution flight = execute(flights_.model(), *starts[i], whole.reference, goals, true,
+                                         {&worlds[i], &flights_.ceiling()}, is_over);
         samples[i].outcome = flight.outcome;
         samples[i].min_clearance_m = flight.min_clearance_m;
     });
 }
 
-Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
-                                   const std::function<bool()>& is_over) {
-    const PlannerSettings& settings = problem_.planner;
+/// Adds flights in new worlds to a record, until it is known whether the plan passes. @throws WorkStopped
+/// @return whether direct flights agree that it does
+bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+                                        const StopCondition& is_over, CertificateRecord& record) {
     constexpr std::uint64_t worlds_per_attempt = 1'000'000;
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
     constexpr std::size_t flown_directly = 2;
-    CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
-    bool is_checked = false;
-    while (!is_over()) {
+    for (;;) {
+        throw_if_over(is_over);
         const std::uint64_t wanted = record.worlds_wanted();
         if (wanted == 0) {
-            // It passes, or fails too often. The map is not the last word where the flights came nearest.
-            if (is_checked || !record.passes()) {
-                break;
+            if (!record.passes()) {
+                return false;
             }
+            // The map is not the last word where the flights came nearest.
             std::vector<WorldSample> nearest = record.nearest_successes(flown_directly);
-            fly_directly(whole, visits, nearest);
-            is_checked = !record.replace(nearest);
+            fly_directly(whole, visits, nearest, is_over);
+            if (!record.replace(nearest)) {
+                return true;
+            }
             continue;
         }
         std::vector<FlownWorld> worlds;
@@ -182,10 +186,21 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::u
         for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
             worlds.push_back(world(first + i));
         }
-        const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds);
+        const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds, is_over);
         for (std::size_t i = 0; i < flights.size(); ++i) {
             record.add({first + i, outcome_of(flights[i].rejection), flights[i].min_clearance_m});
         }
+    }
+}
+
+Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+                                   const StopCondition& is_over) {
+    const PlannerSettings& settings = problem_.planner;
+    CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
+    bool is_checked = false;
+    try {
+        is_checked = fly_for_certificate(whole, visits, attempt, is_over, record);
+    } catch (const WorkStopped&) {  // it has what was flown so far
     }
     return record.certificate(is_checked);
 }

@@ -10,10 +10,13 @@
 
 namespace downwash::planning {
 
+class CertificateRecord;
+
 /// The worlds of a search and the certificates of its plans.
 class ProblemWorlds {
  public:
-    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps
+    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps, stop
+    /// @throws WorkStopped when a stop is requested before the maps are built
     /// @pre problem outlives it, and has an uncertainty
     ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                   const SolveOptions& options);
@@ -28,16 +31,18 @@ class ProblemWorlds {
     /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that is_over ends in the
     /// middle of that has not passed.
     /// @param whole through the first `visits` goals of the problem   @param attempt from 1
-    /// @param is_over asked every tenth of a second or so
     [[nodiscard]] Certificate certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
-                                      const std::function<bool()>& is_over);
+                                      const StopCondition& is_over);
 
  private:
     [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
                                                                          std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
+    [[nodiscard]] bool fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+                                           const StopCondition& is_over, CertificateRecord& record);
     /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
-    void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples);
+    void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
+                      const StopCondition& is_over);
 
     const Problem& problem_;
     WorldFlights flights_;

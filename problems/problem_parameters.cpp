@@ -127,6 +127,9 @@ void add_motion(Rows& rows) {
         "motion.max_acceleration_m_s2", "acceleration", 100,
         [](auto& p) -> auto& { return p.motion.max_acceleration_m_s2; }));
     rows.push_back(positive(
+        "motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000,
+        [](auto& p) -> auto& { return p.motion.max_jerk_m_s3; }));
+    rows.push_back(positive(
         "motion.max_arm_rate_deg_s", "rate of the arm's joint", 3600,
         [](auto& p) -> auto& { return p.motion.max_arm_rate_rad_s; }));
     rows.push_back(positive(

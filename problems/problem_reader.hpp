@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -11,6 +12,9 @@
 #include "downwash/problems/problem_model.hpp"
 
 namespace downwash {
+
+/// Larger problem and robot files are refused unread [bytes].
+inline constexpr std::size_t largest_document = 4 * 1024 * 1024;
 
 /// Something wrong, or outdated, in a problem or robot file.
 struct LocatedError {

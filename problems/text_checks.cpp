@@ -3,6 +3,7 @@
 #include <string>
 
 #include "downwash/base/text.hpp"
+#include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/yaml_document.hpp"
 
 namespace downwash::problems {

@@ -7,6 +7,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
 #include "downwash/problems/key_remedy.hpp"
+#include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
 
 namespace downwash::problems {

@@ -39,8 +39,6 @@ struct YamlError : std::runtime_error {
     Mark mark;
 };
 
-/// Larger files are refused unread [bytes].
-inline constexpr std::size_t largest_document = 1024 * 1024;
 /// Deeper nesting is refused.
 inline constexpr int deepest_nesting = 32;
 

@@ -8,8 +8,9 @@ namespace {
 
 constexpr double wanted_step_s = 0.5;
 
-/// Peak of the acceleration over a step by its mean: the velocity follows 3 s^2 - 2 s^3.
-constexpr double peak_acceleration = 1.5;
+/// Peaks over a step: the velocity follows 3 s^2 - 2 s^3.
+constexpr double peak_acceleration = 1.5;  // of gain / duration
+constexpr double peak_jerk = 6;            // of gain / duration^2
 
 /// Shortens a vector to a length; leaves shorter ones alone.
 void shorten(double& x, double& z, double length) {
@@ -37,7 +38,8 @@ ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
     : limits_(limits),
       ticks_(std::max<std::int64_t>(1, std::llround(wanted_step_s / tick_s))),
       duration_s_(static_cast<double>(ticks_) * tick_s),
-      speed_gain_m_s_(limits.max_acceleration_m_s2 * duration_s_ / peak_acceleration),
+      speed_gain_m_s_(std::min(limits.max_acceleration_m_s2 * duration_s_ / peak_acceleration,
+                               limits.max_jerk_m_s3 * duration_s_ * duration_s_ / peak_jerk)),
       arm_gain_rad_s_(limits.max_arm_acceleration_rad_s2 * duration_s_ / peak_acceleration) {}
 
 ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double velocity[3]) const noexcept {

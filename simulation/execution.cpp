@@ -16,6 +16,9 @@ namespace {
 
 using Given = controllers::Actuation<double>;
 
+/// Few: among thousands of obstacles a tick takes milliseconds.
+constexpr std::int64_t ticks_between_questions = 8;
+
 constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
 
 /// Writes the log of one flight while it is flown.
@@ -168,7 +171,8 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
 
 template <class Factor, class Ceiling>
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                       std::span<const Goal> goals, bool aero, const FlightWorld& in, Factor factor, Ceiling ceiling) {
+                       std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
+                       Factor factor, Ceiling ceiling) {
     const FlownWorld* const world = flown_world(model, in.world);
     Execution execution;
     execution.aero = aero;
@@ -187,6 +191,9 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         }
         const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
                                const FlightState& next, const ReferencePoint& next_reference) {
+            if (recorder.ticks() % ticks_between_questions == 0) {
+                throw_if_over(is_over);
+            }
             reference = next_reference;
             return recorder.after_tick(before, at, given, next, next_reference);
         };
@@ -277,10 +284,10 @@ bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& st
 }
 
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                  std::span<const Goal> goals, bool aero, const FlightWorld& in) {
+                  std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over) {
     assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
     return with_effects(model, aero, in, [&](auto effect, auto ceiling) {
-        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, effect, ceiling);
+        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, effect, ceiling);
     });
 }
 

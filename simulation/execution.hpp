@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/stop_condition.hpp"
 #include "downwash/controllers/reference_segment.hpp"
 #include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/goal.hpp"
@@ -80,9 +81,11 @@ struct Execution : FlightSums {
 /// apart
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 /// @param in the world of the flight; of its ceiling part only the model is asked
+/// @throws WorkStopped when it is over before the flight ends
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
                                                 const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,
-                                                bool aero, const FlightWorld& in = {});
+                                                bool aero, const FlightWorld& in = {},
+                                                const StopCondition& is_over = {});
 
 /// The same for one goal.
 [[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,

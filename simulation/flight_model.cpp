@@ -39,8 +39,14 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
 
 std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,
                                                      const std::function<void(double)>& on_progress,
-                                                     const std::filesystem::path& cache) const {
-    return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress);
+                                                     const std::filesystem::path& cache,
+                                                     const StopCondition& is_over) const {
+    return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
+}
+
+bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
+    return map_key(map.layers(), map.plane(), map.extent()) ==
+           map_key(layers_, plane_, rotor_extent(robot_.rotors, bounds));
 }
 
 std::shared_ptr<const FlightModel> FlightModel::ceilings_only() const {

@@ -55,10 +55,14 @@ class DOWNWASH_EXPORT FlightModel {
     }
 
     /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
-    /// @param on_progress see AeroMap   @param cache folder in which maps are kept between runs; empty: nowhere
+    /// @param on_progress,is_over see AeroMap   @param cache folder in which maps are kept between runs; empty: nowhere
     [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds, int threads = 1,
                                                           const std::function<void(double)>& on_progress = {},
-                                                          const std::filesystem::path& cache = {}) const;
+                                                          const std::filesystem::path& cache = {},
+                                                          const StopCondition& is_over = {}) const;
+
+    /// Whether a map is the one that make_map() makes for these bounds.
+    [[nodiscard]] bool is_mine(const AeroMap& map, const Bounds& bounds) const;
 
     /// The vehicle at a pose with the speeds u of its coordinates [m/s, m/s, rad/s, rad/s], controller rested, no
     /// energy spent.

@@ -55,6 +55,17 @@ TEST_CASE("Two signals end the program at once and leave no half file") {
     }
 }
 
+TEST_CASE("The end of the wall time writes the best plan so far, and is no signal") {
+    const Workspace work;
+    const Result result = work.run(words("solve", problem_file("open_air"), "--time-limit 600 --wall-limit 5 --out x"));
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Catch::StartsWith("Interrupted. Solved. "));
+    CHECK(work.files("x").size() == files_of_a_run);
+    const Result at_once = work.run(words("solve", problem_file("open_air"), "--wall-limit 1e-9 --out y"));
+    CHECK(at_once.code == 1);
+    CHECK_THAT(at_once.err, Catch::Contains("--wall-limit expects more"));
+}
+
 namespace {
 
 /// While it lives, no file may grow beyond so many bytes, those of programs started meanwhile included (ulimit -f).

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <stop_token>
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
@@ -104,6 +106,69 @@ TEST_CASE("the parts of a tour are planned from the vehicle that the part before
     CHECK(solution.execution->outcome == Outcome::ok);
     // The reported flight is integrated with finer steps.
     CHECK(solution.execution_cost == Approx(solution.cost).epsilon(1e-6));
+}
+
+TEST_CASE("a tour has a whole way as soon as one that ends with it, and better ways follow") {
+    for (const Variant variant : {Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        Problem problem = tour(variant);
+        problem.planner.max_iterations = 600;
+        SolveOptions first_only;
+        first_only.stop_at_first_solution = true;
+        const Solution first = solve(problem, first_only);
+        REQUIRE(first.status == Status::solved);
+        CHECK(first.planning.iterations < 300);
+
+        std::vector<Plan> plans;
+        std::vector<double> costs;
+        SolveOptions watching;
+        watching.on_plan = [&](const FoundPlan& found) {
+            plans.push_back(found.plan);
+            costs.push_back(found.flown_cost.value_or(found.cost));
+        };
+        const Solution best = solve(problem, watching);
+        REQUIRE(plans.size() > 1);
+        CHECK(test::same_bytes(plans.front(), *first.plan));
+        CHECK(test::same_bytes(plans.back(), *best.plan));
+        CHECK(std::is_sorted(costs.begin(), costs.end(), std::greater<>()));
+        CHECK(best.cost < first.cost);
+        CHECK(best.planning.iterations <= 600);
+        REQUIRE(best.planning.improvements.size() > 1);
+        CHECK(best.planning.improvements.front().cost == first.planning.improvements.front().cost);
+    }
+}
+
+TEST_CASE("a tour that is interrupted after its first whole way gives a whole way") {
+    Problem problem = tour(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 400;
+    problem.planner.time_limit_s.reset();
+    for (int reports_to_go = 0; reports_to_go < 12; reports_to_go += 3) {
+        CAPTURE(reports_to_go);
+        std::stop_source stop;
+        SolveOptions options;
+        options.stop = stop.get_token();
+        bool has_plan = false;
+        int left = reports_to_go;
+        options.on_plan = [&](const FoundPlan&) {
+            has_plan = true;
+            if (left == 0) {
+                stop.request_stop();
+            }
+        };
+        options.on_progress = [&](const Progress& progress) {
+            CHECK(progress.goals == 3);
+            CHECK(progress.goal >= 1);
+            CHECK(progress.goal <= 3);
+            CHECK(progress.best_cost.has_value() == has_plan);
+            if (has_plan && --left <= 0) {
+                stop.request_stop();
+            }
+        };
+        const Solution solution = solve(problem, options);
+        REQUIRE(solution.status == Status::solved);
+        REQUIRE(solution.execution->goals.size() == 3);
+        CHECK(solution.execution->outcome == Outcome::ok);
+    }
 }
 
 TEST_CASE("a tour comes out the same byte by byte") {

@@ -7,6 +7,7 @@
 #include "../support/error_of.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/solve.hpp"
 
 using namespace downwash;
@@ -35,12 +36,24 @@ Problem right_under_the_ceiling() {
     return problem;
 }
 
-/// The same problem's map as if other obstacles were there: plans that fly through it may do otherwise when flown
-/// directly.
 std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obstacle> obstacles) {
     Problem other = problem;
     other.obstacles = std::move(obstacles);
     return make_flight_model(other)->make_map(problem.bounds);
+}
+
+/// Searches with a map as if other obstacles were there: plans that fly through it may do otherwise when flown
+/// directly.
+Solution solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles) {
+    const auto model = make_flight_model(problem);
+    const auto map = map_as_if(problem, std::move(obstacles));
+    Solution solution;
+    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model),
+                             nullptr, {}, solution);
+    if (solution.execution) {
+        solution.execution_cost = cost_of(*solution.execution, problem.planner.objective);
+    }
+    return solution;
 }
 
 }  // namespace
@@ -107,6 +120,44 @@ TEST_CASE("a search tells how far its aero map is, and nothing of a map that it 
     options.map.reset();
     static_cast<void>(solve(with(Variant::mp_arm_da, problem), options));
     CHECK(shares.empty());
+}
+
+TEST_CASE("a stop is noticed while the aero map is built") {
+    std::stop_source stop;
+    SolveOptions options;
+    options.stop = stop.get_token();
+    std::size_t reports = 0;
+    options.on_map_progress = [&](double) {
+        ++reports;
+        stop.request_stop();
+    };
+    const Solution solution = solve(with(Variant::mp_arm_ada), options);
+    CHECK(reports == 1);
+    CHECK(solution.interrupted);
+    CHECK(solution.status == Status::none);
+    CHECK(solution.map == nullptr);
+    CHECK_FALSE(solution.plan);
+}
+
+TEST_CASE("every better plan is handed over as soon as it counts") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        std::vector<double> costs;
+        Plan last;
+        SolveOptions options;
+        options.on_plan = [&](const FoundPlan& found) {
+            costs.push_back(found.cost);
+            last = found.plan;
+        };
+        const Solution solution = solve(with(variant, 1000, 100), options);
+        REQUIRE(solution.status == Status::solved);
+        REQUIRE(!costs.empty());
+        CHECK(costs.back() == solution.cost);
+        CHECK(test::same_bytes(last, *solution.plan));
+        if (variant == Variant::mp_arm_ada) {
+            CHECK(costs.size() == solution.planning.improvements.size());
+        }
+    }
 }
 
 TEST_CASE("improvements only ever get cheaper and the last one is the plan's cost") {
@@ -322,11 +373,27 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     CHECK_FALSE(solved.planning.obstruction);
 }
 
+TEST_CASE("a map of another scene, vehicle, model or place is refused") {
+    const Problem problem = with(Variant::mp_arm_ada);
+    const auto changed = [&](const auto& change) {
+        Problem other = problem;
+        change(other);
+        SolveOptions options;
+        options.map = make_flight_model(other)->make_map(other.bounds);
+        return options;
+    };
+    CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.obstacles[0].center_world_m[2] += 0.001; })),
+                    std::invalid_argument);
+    CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.robot.rotors.radius_m *= 1.01; })),
+                    std::invalid_argument);
+    CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.bounds.x_high_m += 1; })), std::invalid_argument);
+    CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.aero.grid_m *= 0.5; })), std::invalid_argument);
+    CHECK(solve(problem, changed([](Problem& other) { other.planner.seed = 7; })).status == Status::solved);
+}
+
 TEST_CASE("where every plan was discarded, the direct flight is what stopped the search") {
     Problem problem = right_under_the_ceiling();
-    SolveOptions deceived;
-    deceived.map = map_as_if(problem, {});
-    const Solution solution = solve(problem, deceived);
+    const Solution solution = solve_deceived(problem, {});
     CHECK(solution.status != Status::solved);
     CHECK(solution.planning.rejected.at("direct_flight") > 0);
     REQUIRE(solution.planning.obstruction);
@@ -340,12 +407,10 @@ TEST_CASE("a plan that is cheaper in the planner's model only, and not when flow
     problem.goal.configuration->tolerance_z_m = 1.3;
     problem.goal.hold_s = 20;
     problem.planner.max_iterations = 800;
-    SolveOptions deceived;
-    deceived.map = map_as_if(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
     std::size_t compared = 0;
     for (problem.planner.seed = 1; problem.planner.seed <= 3; ++problem.planner.seed) {
         CAPTURE(problem.planner.seed);
-        const Solution solution = solve(problem, deceived);
+        const Solution solution = solve_deceived(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
         REQUIRE(solution.status == Status::solved);
         const auto& improvements = solution.planning.improvements;
         for (std::size_t i = 1; i < improvements.size(); ++i, ++compared) {

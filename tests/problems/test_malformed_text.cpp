@@ -60,9 +60,9 @@ TEST_CASE("files that cannot be read are errors") {
     folder.write("problem.yaml", edited(good_problem, "robot.yaml", "folder.yaml"));
     CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:3:8: robot 'folder.yaml' cannot be read: it is a directory, expected a file");
-    folder.write("large.yaml", std::string(1100000, ' '));
+    folder.write("large.yaml", std::string(4300000, ' '));
     CHECK(folder.errors_of("large.yaml") ==
-          "large.yaml:1:1: is larger than 1024 KiB: expected a problem or robot file");
+          "large.yaml:1:1: is larger than 4096 KiB: expected a problem or robot file");
     CHECK_THROWS_AS(read_problem("/dev/zero"), ProblemFileError);
 }
 

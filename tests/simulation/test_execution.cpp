@@ -47,6 +47,24 @@ TEST_CASE("a plan far from surfaces ends at its goal and logs a row per tick, ho
     CHECK(free.min_clearance_m == std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE("an execution that is over before its end is no execution") {
+    const Problem problem = test::with_place(2, 2.5);
+    const auto model = make_flight_model(problem);
+    int questions = 0;
+    const auto after = [&](int count) {
+        questions = 0;
+        return [&questions, count] { return ++questions > count; };
+    };
+    const auto fly_until = [&](const StopCondition& is_over) {
+        return execute(*model, start_state(*model, problem.start), from_start(problem, {2, 2.5, 1}, 1300),
+                       std::span(&problem.goal, 1), true, {}, is_over);
+    };
+    CHECK_THROWS_AS(fly_until(after(2)), WorkStopped);
+    CHECK(questions == 3);
+    CHECK(fly_until(after(100000)).outcome == Outcome::ok);
+    CHECK(questions > 100);
+}
+
 TEST_CASE("a reference through a wall ends in a collision, or before it where a rotor disc leaves the flyable area") {
     Problem problem = test::walled_problem();
     problem.goal = test::configuration_goal(2, 2);
