@@ -75,9 +75,10 @@ void require_readable(const Problem& problem) {
 
 ExitCode run(const SolveArguments& given) {
     Interruption interruption(given.wall_limit_s);
-    const Problem read = read_problem(
+    const PlannableProblem plannable = read_plannable_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
+    const Problem& read = plannable.problem;
     require_readable(read);
     const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
 
@@ -94,7 +95,7 @@ ExitCode run(const SolveArguments& given) {
         display.say(announcement(read));
         options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
-        solution = downwash::solve(read, options);
+        solution = downwash::solve(plannable, options);
     }
     const RunRecord record = write_results(folder, read, given.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // whoever interrupted does not want to wait for a map

@@ -139,13 +139,15 @@ class GoalSequence {
  private:
     /// One try to find a whole way.
     struct Round {
-        std::uint32_t number;  ///< from 0; that one is content with the first way
+        std::uint32_t number;  ///< from 0; each draws other samples
         Budget left;
         Course course;
         Solution way;                    ///< as far as it has come
         std::vector<double> part_costs;  ///< of the parts that were found
     };
 
+    [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
+    [[nodiscard]] bool has_way() const { return solution_.status == Status::solved; }
     [[nodiscard]] Round try_round(std::uint32_t number, const Budget& budget);
     [[nodiscard]] bool search_part(Round& round);
     [[nodiscard]] SolveOptions options_of_part(const Round& round);
@@ -169,20 +171,29 @@ class GoalSequence {
     double handed_over_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
 
-/// The first round takes what it needs, each later one may take twice as much as the one before; the last one takes the
-/// rest.
+/// Until there is a whole way, a round may take a third of all, and one more with other samples the rest: a goal may be
+/// out of reach from where the first way to the goal before it ends. Then each round may take twice as much as all
+/// before the first way or, after that, as the one before; the last one takes the rest.
 void GoalSequence::run() {
     constexpr std::uint64_t least_iterations = 50;
     constexpr double least_s = 0.1;
-    take(try_round(0, left_));
-    if (options_.stop_at_first_solution || solution_.status != Status::solved) {
+    constexpr double first_try = 1.0 / 3;
+    std::uint32_t number = 0;
+    take(try_round(number++, left_.part(first_try)));
+    if (!has_way() && !is_over()) {
+        Round second = try_round(number++, left_);
+        if (second.part_costs.size() >= part_costs_.size()) {
+            take(std::move(second));
+        }
+    }
+    if (options_.stop_at_first_solution || !has_way()) {
         return;
     }
     SearchRecord work = solution_.planning;
     work.iterations = std::max(work.iterations, least_iterations);
     work.wall_s = std::max(work.wall_s, least_s);
     bool is_last = false;
-    for (std::uint32_t number = 1; !is_last && !left_.is_used_up() && !options_.stop.stop_requested(); ++number) {
+    for (; !is_last && !is_over(); ++number) {
         work.iterations *= 2;
         work.wall_s *= 2;
         const double share = left_.share_of(work);
@@ -211,7 +222,7 @@ bool GoalSequence::search_part(Round& round) {
     const bool is_last = number + 1 == goals_.size();
     Problem part = part_of(problem_, goals_[number], round.course);
     part.planner.seed += round.number;
-    round.left.part(round.number == 0 ? 1 : share(number)).limit(part.planner);
+    round.left.part(has_way() ? share(number) : 1).limit(part.planner);
     Solution found;
     search_(part, options_of_part(round), round.course, found);
     round.left.spend(found.planning);
@@ -259,7 +270,7 @@ bool GoalSequence::search_part(Round& round) {
 /// Options under which a part reports its progress as that of the whole.
 SolveOptions GoalSequence::options_of_part(const Round& round) {
     SolveOptions inner = options_;
-    inner.stop_at_first_solution = round.number == 0;
+    inner.stop_at_first_solution = !has_way();
     const std::size_t number = round.part_costs.size();
     const bool is_last = number + 1 == goals_.size();
     if (options_.on_progress) {
@@ -269,7 +280,7 @@ SolveOptions GoalSequence::options_of_part(const Round& round) {
             progress.goal = number + 1;
             progress.goals = goals_.size();
             const std::optional<double> best_of_part = std::exchange(progress.best_cost, std::nullopt);
-            if (solution_.status == Status::solved) {
+            if (has_way()) {
                 progress.best_cost = solution_.cost;
             }
             if (is_last && best_of_part) {
@@ -325,7 +336,7 @@ void GoalSequence::note_improvements(const Course& before, const SearchRecord& l
     note_first(whole.first_certified_wall_s, last.first_certified_wall_s);
     for (const Improvement& found : last.improvements) {
         const double cost = before.cost + found.cost;
-        if (solution_.status != Status::solved || found.flown_cost.value_or(cost) < cost_of_way(solution_)) {
+        if (!has_way() || found.flown_cost.value_or(cost) < cost_of_way(solution_)) {
             whole.improvements.push_back(
                 {begun_at_s + found.wall_s, iterations_before + found.iteration, cost, found.flown_cost});
         }
@@ -335,7 +346,7 @@ void GoalSequence::note_improvements(const Course& before, const SearchRecord& l
 /// Takes a way as the best one.
 void GoalSequence::take(Round round) {
     gains_.resize(goals_.size());
-    for (std::size_t i = 0; i < part_costs_.size(); ++i) {
+    for (std::size_t i = 0; has_way() && i < goals_.size(); ++i) {
         gains_[i] = std::max(0.0, part_costs_[i] - round.part_costs[i]);
     }
     part_costs_ = std::move(round.part_costs);

@@ -33,7 +33,7 @@ using PartSearch = std::function<void(const Problem& part, const SolveOptions&, 
 /// Searches goal by goal, each from the whole vehicle that holds at the one before: in a first round until there is a
 /// whole way, then in rounds that take twice as long each, for cheaper ways. More of a round's time goes to the parts
 /// that became cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the
-/// best of all ways through the goals. If the first round finds no whole way, what it has is `approximate`.
+/// best of all ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
                    const PartSearch& search, Solution& solution);

@@ -42,6 +42,21 @@ ProblemCheck read_checked(ProblemTreeReader& reader, const std::filesystem::path
     return check;
 }
 
+/// Tells of outdated keys and warnings. @param on_outdated,on_warning may be empty
+void tell(ProblemTreeReader& reader, const std::function<void(const LocatedError&)>& on_outdated,
+          const std::function<void(const LocatedError&)>& on_warning) {
+    for (const LocatedError& key : reader.outdated_keys()) {
+        if (on_outdated) {
+            on_outdated(key);
+        }
+    }
+    if (on_warning) {
+        for (const LocatedError& warning : reader.placed(problem_warnings(reader.model()))) {
+            on_warning(warning);
+        }
+    }
+}
+
 }  // namespace
 
 std::string to_text(const LocatedError& error) {
@@ -56,23 +71,16 @@ Problem read_problem(const std::filesystem::path& file, const std::function<void
                      const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     read_checked(reader, file, adjust);
-    for (const LocatedError& key : reader.outdated_keys()) {
-        if (on_outdated) {
-            on_outdated(key);
-        }
-    }
-    if (on_warning) {
-        for (const LocatedError& warning : reader.placed(problem_warnings(reader.model()))) {
-            on_warning(warning);
-        }
-    }
+    tell(reader, on_outdated, on_warning);
     return reader.model();
 }
 
-PlannableProblem read_plannable_problem(const std::filesystem::path& file,
-                                        const std::function<void(Problem&)>& adjust) {
+PlannableProblem read_plannable_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust,
+                                        const std::function<void(const LocatedError&)>& on_outdated,
+                                        const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     const ProblemCheck check = read_checked(reader, file, adjust);
+    tell(reader, on_outdated, on_warning);
     return {reader.model(), model_of(check)};
 }
 

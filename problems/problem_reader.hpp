@@ -50,8 +50,10 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
                                                    const std::function<void(const LocatedError&)>& on_warning = {});
 
 /// The same, with the flight model in the scene that was made for the checks.
-[[nodiscard]] DOWNWASH_EXPORT PlannableProblem read_plannable_problem(const std::filesystem::path& file,
-                                                                      const std::function<void(Problem&)>& adjust = {});
+[[nodiscard]] DOWNWASH_EXPORT PlannableProblem
+read_plannable_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust = {},
+                       const std::function<void(const LocatedError&)>& on_outdated = {},
+                       const std::function<void(const LocatedError&)>& on_warning = {});
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
 /// @param on_warning is told of everything that robot_warnings() finds

@@ -22,7 +22,9 @@ TEST_CASE("a step is the whole number of ticks nearest to half a second") {
 }
 
 TEST_CASE("from rest a step gains two thirds of what the greatest acceleration would") {
-    const ReferenceSteps steps(limits, 0.01);
+    MotionLimits any_jerk = limits;
+    any_jerk.max_jerk_m_s3 = 100;
+    const ReferenceSteps steps(any_jerk, 0.01);
     const double wanted[3] = {10, 0, -10};
     const ReferencePoint next = steps.after(ReferencePoint{}, wanted);
     CHECK(next.velocity[0] == Approx(1.0 / 6));
@@ -34,6 +36,16 @@ TEST_CASE("from rest a step gains two thirds of what the greatest acceleration w
     const ReferenceSegment segment(ReferencePoint{}, next, steps.ticks(), 0.01);
     CHECK(segment.at_tick(25).acceleration[0] == Approx(0.5));
     CHECK(segment.at_tick(25).acceleration[2] == Approx(-1.5));
+}
+
+TEST_CASE("from rest a step gains a sixth of what the greatest jerk would in its time squared") {
+    MotionLimits smooth = limits;
+    smooth.max_jerk_m_s3 = 1.2;
+    const ReferenceSteps steps(smooth, 0.01);
+    const double wanted[3] = {10, 0, 0};
+    const ReferencePoint next = steps.after(ReferencePoint{}, wanted);
+    CHECK(next.velocity[0] == Approx(1.2 * 0.5 * 0.5 / 6));
+    CHECK(ReferenceSegment(ReferencePoint{}, next, steps.ticks(), 0.01).peak_jerk_m_s3() == Approx(1.2));
 }
 
 TEST_CASE("whatever is asked for, every tick keeps the limits") {
