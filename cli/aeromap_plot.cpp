@@ -148,7 +148,7 @@ std::string picture(const PlotRequest& request, const PictureSettings& settings)
 ExitCode run(const PlotArguments& given) {
     require_sound_options(given);
     const PictureSettings settings{picture_format("--out", given.output),
-                                   given.width_px.value_or(PictureSettings{}.width_px)};
+                                   given.width_px.value_or(PictureSettings{}.width_px), default_threads()};
     require_writable_result(given.output, "--out");
     write_result(given.output, picture(given, settings), "--out");
     if (!given.is_quiet) {

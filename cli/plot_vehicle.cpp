@@ -11,6 +11,7 @@
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/vehicle_table.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/report/factor_field.hpp"
 #include "downwash/simulation/hold_map.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -102,7 +103,7 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 FieldFigure force_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     FieldFigure figure = effect_figure(request, problem, make_flight_model(problem), extent,
                                        "Thrust of the whole vehicle at constant command", &VehicleEffect::force_factor);
-    figure.scale = factor_scale("force factor", 1, max_size(figure));
+    figure.scale = factor_scale("force factor", factor_range(figure, problem.bounds));
     return figure;
 }
 

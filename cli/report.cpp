@@ -7,6 +7,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_figures.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -26,9 +27,10 @@ struct ReportArguments {
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
 
-void write_pictures(const ReportArguments& given, const ShownRun& run) {
-    const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
-    const std::vector<CurveFigure> plots = time_figures(run.record);
+void write_pictures(const ReportArguments& given, const RunRecord& run) {
+    const auto model = make_flight_model(run.problem);
+    const FieldFigure flight = snapshot_figure(run, *model);
+    const std::vector<CurveFigure> plots = time_figures(run);
     struct Wanted {
         bool is_wanted;
         PictureFormat format;
@@ -40,7 +42,8 @@ void write_pictures(const ReportArguments& given, const ShownRun& run) {
                              {given.as_png, PictureFormat::png, ".png"},
                              {given.as_pdf, PictureFormat::pdf, ".pdf"}}) {
         if (as.is_wanted) {
-            const PictureSettings settings{as.format, given.width_px.value_or(PictureSettings{}.width_px)};
+            const PictureSettings settings{as.format, given.width_px.value_or(PictureSettings{}.width_px),
+                                           given.threads};
             pictures.emplace_back(std::string("flight") + as.extension, draw(flight, settings));
             pictures.emplace_back(std::string("plots") + as.extension, draw(plots, settings));
         }
@@ -56,14 +59,12 @@ ExitCode run(const ReportArguments& given) {
     if (given.width_px && !given.wants_pictures()) {
         throw UsageError("--width goes with pictures only: expected --svg, --png or --pdf with it");
     }
-    if (!given.wants_pictures()) {
-        require_pages();
-    }
-    const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
-                                     given.is_quiet, given.threads);
     if (given.wants_pictures()) {
-        write_pictures(given, shown);
+        write_pictures(given, read_run(run_folder(given.folder)));
     } else {
+        require_pages();
+        const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
+                                         given.is_quiet, given.threads);
         const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / "report.html";
         write_result(page, run_page(shown.record, *shown.model, shown.map.get()));
         fmt::print("{}\n", page.string());

@@ -23,12 +23,12 @@ constexpr char hatch_color[] = "'#9a9a9a'";
 
 /// Samples with a number of points per pixel of the axes, up to a maximum in all.
 FieldSamples sampled_for(const FieldFigure& figure, const FieldLayout& layout, double points_per_px,
-                         std::size_t max_points, bool at_corners) {
+                         std::size_t max_points, bool at_corners, int threads) {
     const double height_px = layout.top - layout.bottom;
     const double points = layout.width() * height_px * points_per_px * points_per_px;
     const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(max_points) / points));
     const auto count = [scale](double px) { return static_cast<std::size_t>(std::max(2L, std::lround(scale * px))); };
-    return sampled(figure, count(layout.width()), count(height_px), at_corners);
+    return sampled(figure, count(layout.width()), count(height_px), at_corners, threads);
 }
 
 bool is_undefined(float place) {
@@ -178,7 +178,7 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
 
     // The legend determines the layout, and the layout how finely the field is sampled. The legend also says whether
     // the field is defined everywhere, which a coarse sampling finds out first.
-    const FieldSamples glance = sampled(figure, 300, 300, false);
+    const FieldSamples glance = sampled(figure, 300, 300, false, settings.threads);
     const bool has_undefined = std::any_of(glance.places.begin(), glance.places.end(), is_undefined);
     const bool has_field = !std::all_of(glance.places.begin(), glance.places.end(), is_undefined);
     Legend legend;
@@ -212,10 +212,10 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     if (has_field) {
         constexpr std::size_t max_image_points = 1'500'000, max_contour_points = 300'000;
         const double points_per_px = settings.format == PictureFormat::png ? 1 : 2;
-        image = sampled_for(figure, layout, points_per_px, max_image_points, false);
+        image = sampled_for(figure, layout, points_per_px, max_image_points, false, settings.threads);
         plot.add(image.source() + " with image");
         if (figure.has_contour_lines) {
-            add_contours(script, figure, sampled_for(figure, layout, 0.5, max_contour_points, true));
+            add_contours(script, figure, sampled_for(figure, layout, 0.5, max_contour_points, true, settings.threads));
             plot.add_lines("$contours", "linewidth 0.5 linecolor rgb '#404040'");
         }
         if (has_undefined) {

@@ -37,7 +37,8 @@ struct FieldFigure {
     std::string z_label = "z [m]";
     Bounds extent;  ///< what is shown; not empty, neither side 40 times as long as the other
     ColorScale scale;
-    /// The field at (x, z); NaN where it is not defined. Called for some hundred thousand points of the extent.
+    /// The field at (x, z); NaN where it is not defined. Called for some million points of the extent, from
+    /// several threads at a time if the settings allow them.
     std::function<double(double x_m, double z_m)> value;
     std::string undefined_name = "not flyable";  ///< legend of the area where the field is not defined
     bool has_contour_lines = true;

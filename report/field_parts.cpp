@@ -6,6 +6,7 @@
 #include <string>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -52,7 +53,8 @@ std::string FieldSamples::source(bool is_surface) const {
                        x_m, z_m, is_surface ? ",0" : "", dx_m, dz_m);
 }
 
-FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners) {
+FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners,
+                     int threads) {
     FieldSamples samples;
     const Bounds& extent = figure.extent;
     samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);
@@ -61,14 +63,15 @@ FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t
     samples.rows = rows + (at_corners ? 1 : 0);
     samples.x_m = extent.x_low_m + (at_corners ? 0 : samples.dx_m / 2);
     samples.z_m = extent.z_low_m + (at_corners ? 0 : samples.dz_m / 2);
-    samples.places.reserve(samples.columns * samples.rows);
-    for (std::size_t k = 0; k < samples.rows; ++k) {
+    samples.places.resize(samples.columns * samples.rows);
+    run_parallel(samples.rows, threads, [&](std::size_t k) {
         const double z_m = samples.z_m + static_cast<double>(k) * samples.dz_m;
         for (std::size_t i = 0; i < samples.columns; ++i) {
             const double x_m = samples.x_m + static_cast<double>(i) * samples.dx_m;
-            samples.places.push_back(static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m))));
+            samples.places[k * samples.columns + i] =
+                static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m)));
         }
-    }
+    });
     return samples;
 }
 

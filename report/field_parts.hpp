@@ -39,6 +39,7 @@ struct FieldSamples {
 };
 
 /// In the middles of columns x rows cells of the extent, or in the corners between them.
-[[nodiscard]] FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners);
+[[nodiscard]] FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners,
+                                   int threads);
 
 }  // namespace downwash

@@ -20,7 +20,7 @@ FieldFigure sample_figure() {
     figure.title = "A pole and a box";
     figure.subtitle = "for the test";
     figure.extent = {-4, 4, -2, 2};
-    figure.scale = factor_scale("K [1]", 1, 2);
+    figure.scale = factor_scale("K [1]", {1, 2});
     figure.value = [](double x_m, double z_m) {
         const double r = std::hypot(x_m, z_m);
         return r < 0.5 ? undefined : 1 + 0.25 / (r * r);
