@@ -22,14 +22,15 @@ struct ReportArguments {
     bool as_svg = false, as_png = false, as_pdf = false;
     std::optional<int> width_px;
     int threads = default_threads();
-    bool no_cache = false, is_quiet = false;
+    bool no_labels = false, no_cache = false, is_quiet = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
 
 void write_pictures(const ReportArguments& given, const RunRecord& run) {
     const auto model = make_flight_model(run.problem);
-    const FieldFigure flight = snapshot_figure(run, *model);
+    FieldFigure flight = snapshot_figure(run, *model);
+    flight.has_names = !given.no_labels;
     const std::vector<CurveFigure> plots = time_figures(run);
     struct Wanted {
         bool is_wanted;
@@ -59,6 +60,9 @@ ExitCode run(const ReportArguments& given) {
     if (given.width_px && !given.wants_pictures()) {
         throw UsageError("--width goes with pictures only: expected --svg, --png or --pdf with it");
     }
+    if (given.no_labels && !given.wants_pictures()) {
+        throw UsageError("--no-labels goes with pictures only: expected --svg, --png or --pdf with it");
+    }
     if (given.wants_pictures()) {
         write_pictures(given, read_run(run_folder(given.folder)));
     } else {
@@ -87,6 +91,7 @@ void add_report(CLI::App& program, Action& action) {
     command.add_flag("--png", given.as_png, "pictures as PNG");
     command.add_flag("--pdf", given.as_pdf, "pictures as PDF");
     add_width(command, given.width_px);
+    add_no_labels(command, given.no_labels);
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

@@ -111,6 +111,7 @@ ColorScale factor_scale(std::string label, const AxisRange& range) {
         scale.colors.push_back(above_one[i].color);
     }
     scale.limits.push_back(1 + above_one[above - 1].to);
+    scale.neutral = 1;
     return scale;
 }
 
@@ -142,6 +143,7 @@ ColorScale signed_scale(std::string label, double reach, int classes) {
     scale.label = std::move(label);
     scale.limits.resize(2 * size);
     scale.colors.resize(2 * size - 1, neutral);
+    scale.neutral = 0;
     for (std::size_t i = 0; i < size; ++i) {
         scale.limits[size - 1 - i] = -steps[i];
         scale.limits[size + i] = steps[i];

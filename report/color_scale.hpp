@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +17,8 @@ struct ColorScale {
     std::vector<Color> colors;   ///< of the classes; at least two
     /// Names of the classes, shown at the colour bar instead of the limits. May be empty.
     std::vector<std::string> names;
+    /// The value where nothing happens, such as a thrust ratio of 1. Labels cover its class only.
+    std::optional<double> neutral = {};
 };
 
 /// The position of a value on the colour bar: i at limits[i], linear between them, clamped to the ends.

@@ -199,7 +199,9 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     add_axes(script, figure, layout);
     add_color_bar(script, figure, layout);
     add_obstacle_data(script, outlines);
-    add_obstacle_names(script, figure, outlines, layout);
+    if (figure.has_names) {
+        add_obstacle_names(script, figure, outlines, layout);
+    }
     add_mark_data(script, figure);
     const Bounds& extent = figure.extent;
     add_data(script, "$all",

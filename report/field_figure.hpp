@@ -43,6 +43,7 @@ struct FieldFigure {
     std::string undefined_name = "not flyable";  ///< legend of the area where the field is not defined
     bool has_contour_lines = true;
     std::vector<ObstacleOutline> obstacles;
+    bool has_names = true;  ///< of obstacles, as far as there is room beside field, lines and points
     std::vector<FigureLines> lines;
     std::vector<FigurePoints> points;
 };
