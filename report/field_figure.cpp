@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "downwash/base/text.hpp"
@@ -106,12 +107,26 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const Bounds& e
     }
 }
 
+std::string_view dash_of(LineDash dash) {
+    switch (dash) {
+        case LineDash::solid:
+            return "";
+        case LineDash::dashed:
+            return " dashtype (16,9)";
+        case LineDash::dotted:
+            return " dashtype (3,5)";
+        case LineDash::dash_dotted:
+            return " dashtype (24,6,3,6)";
+    }
+    return "";
+}
+
 void add_marks(Plot& plot, const FieldFigure& figure) {
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
         const FigureLines& lines = figure.lines[i];
         plot.add_lines(fmt::format("$line{}", i),
                        fmt::format("linewidth {}{} linecolor rgb {}", lines.width_px,
-                                   lines.is_dashed ? " dashtype (16,9)" : "", in_quotes(lines.color)),
+                                   dash_of(lines.dash), in_quotes(lines.color)),
                        lines.name);
     }
     for (std::size_t i = 0; i < figure.points.size(); ++i) {

@@ -12,13 +12,16 @@
 
 namespace downwash {
 
+/// How lines are broken. Obstacles beside the plane are dashed, too.
+enum class LineDash { solid, dashed, dotted, dash_dotted };
+
 /// Lines over a field, for example a boundary or streamlines, with one entry in the legend.
 struct FigureLines {
     std::string name;  ///< empty: not in the legend
     std::vector<Ring> pieces;
     Color color{};
     double width_px = 2;
-    bool is_dashed = false;
+    LineDash dash = LineDash::solid;
     bool has_arrows = false;  ///< one in the middle of each piece, pointing along it
 };
 

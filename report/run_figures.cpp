@@ -232,9 +232,13 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
         robot.add_to(flown, flight["x_m"][row], flight["z_m"][row], flight["pitch_rad"][row], flight["arm_rad"][row]);
     }
     figure.lines = {
-        {"planned: the reference, drawn level", planned, planned_color, 1, true},
-        {"", {planned_way(run)}, planned_color, 1, true},
-        {"way of the end effector", {way(flight["ee_x_m"], flight["ee_z_m"])}, end_effector_color, 1.5, true},
+        {"planned: the reference, drawn level", planned, planned_color, 1.3, LineDash::dotted},
+        {"", {planned_way(run)}, planned_color, 1.3, LineDash::dotted},
+        {"way of the end effector",
+         {way(flight["ee_x_m"], flight["ee_z_m"])},
+         end_effector_color,
+         1.6,
+         LineDash::dash_dotted},
         {"flown", flown, flown_color, 1.6},
         {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
     figure.points = goal_points(run.problem);

@@ -96,3 +96,11 @@ TEST_CASE("a curve is dotted outside the range in which it is known, and the leg
     figure.curves = {{"known nowhere here", {{0, 1}, {1, 1.1}}, AxisRange{5, 6}}};
     CHECK_NOTHROW(draw(figure, {PictureFormat::svg, 800}));
 }
+
+TEST_CASE("a curve that lies over another is broken, so that both can be seen") {
+    CurveFigure figure;
+    figure.curves = {{"below", {{0, 1}, {1, 2}}}, {"above", {{0, 1}, {1, 2}}}};
+    CHECK_THAT(draw(figure, {PictureFormat::svg, 600}), Catch::Matchers::Contains("dasharray"));
+    figure.curves[1].points[1].y = 2.5;
+    CHECK_THAT(draw(figure, {PictureFormat::svg, 600}), !Catch::Matchers::Contains("dasharray='"));
+}

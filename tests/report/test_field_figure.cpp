@@ -28,7 +28,7 @@ FieldFigure sample_figure() {
     figure.obstacles = {{"box_of_bricks", true, {{{2, -1}, {3, -1}, {3, 1}, {2, 1}}}, {}},
                         {"sheet", true, {}, {{{-3, 0}, {-2, 1}}}},
                         {"beside", false, {{{-1, -1}, {1, -1}, {1, 1}}}, {}}};
-    figure.lines = {{"a boundary", {{{-4, 1}, {0, 1.5}, {4, 1}}}, {200, 0, 0}, 2, true, true}};
+    figure.lines = {{"a boundary", {{{-4, 1}, {0, 1.5}, {4, 1}}}, {200, 0, 0}, 2, LineDash::dashed, true}};
     figure.points = {{"a point", {{1, 1}}, {0, 0, 200}}};
     return figure;
 }
