@@ -23,7 +23,7 @@ FieldFigure sample_figure() {
     figure.scale = factor_scale("K [1]", {1, 2});
     figure.value = [](double x_m, double z_m) {
         const double r = std::hypot(x_m, z_m);
-        return r < 0.5 ? undefined : 1 + 0.25 / (r * r);
+        return r < 0.5 ? undefined : 1 + 0.01 / (r * r);
     };
     figure.obstacles = {{"box_of_bricks", true, {{{2, -1}, {3, -1}, {3, 1}, {2, 1}}}, {}},
                         {"sheet", true, {}, {{{-3, 0}, {-2, 1}}}},
