@@ -36,24 +36,22 @@ Color spread(const std::array<Color, size>& row, std::size_t i, std::size_t n) {
 
 constexpr double factor_rounding = 1e-6;  // of given maps, which may store float
 
-/// The classes of thrust ratios away from 1, as distances from it. The colours are fixed: each class has its own in every
-/// picture. Blues and YlOrBr of ColorBrewer (Brewer 2002), told apart by people who do not tell red from green.
+/// The classes of thrust ratios away from 1, as distances from it. The colours are fixed: each class has its own in
+/// every picture. Blues and YlOrBr of ColorBrewer (Brewer 2002), told apart by people who do not tell red from green.
 struct FactorClass {
     double from, to;
     Color color;
 };
-constexpr std::array above_one{
-    FactorClass{0.01, 0.02, color_of(0xc6dbef)}, FactorClass{0.02, 0.05, color_of(0x9ecae1)},
-    FactorClass{0.05, 0.1, color_of(0x6baed6)},  FactorClass{0.1, 0.2, color_of(0x4292c6)},
-    FactorClass{0.2, 0.3, color_of(0x2171b5)},   FactorClass{0.3, 0.5, color_of(0x08519c)},
-    FactorClass{0.5, 1, color_of(0x08306b)},     FactorClass{1, 2, color_of(0x062350)},
-    FactorClass{2, 5, color_of(0x04183a)},       FactorClass{5, 10, color_of(0x020d21)},
-    FactorClass{10, 100, color_of(0x000000)}};
-constexpr std::array below_one{
-    FactorClass{0.01, 0.02, color_of(0xfee391)}, FactorClass{0.02, 0.05, color_of(0xfec44f)},
-    FactorClass{0.05, 0.1, color_of(0xfe9929)},  FactorClass{0.1, 0.2, color_of(0xec7014)},
-    FactorClass{0.2, 0.3, color_of(0xcc4c02)},   FactorClass{0.3, 0.5, color_of(0x993404)},
-    FactorClass{0.5, 1, color_of(0x662506)}};
+constexpr std::array above_one{FactorClass{0.01, 0.02, color_of(0xc6dbef)}, FactorClass{0.02, 0.05, color_of(0x9ecae1)},
+                               FactorClass{0.05, 0.1, color_of(0x6baed6)},  FactorClass{0.1, 0.2, color_of(0x4292c6)},
+                               FactorClass{0.2, 0.3, color_of(0x2171b5)},   FactorClass{0.3, 0.5, color_of(0x08519c)},
+                               FactorClass{0.5, 1, color_of(0x08306b)},     FactorClass{1, 2, color_of(0x062350)},
+                               FactorClass{2, 5, color_of(0x04183a)},       FactorClass{5, 10, color_of(0x020d21)},
+                               FactorClass{10, 100, color_of(0x000000)}};
+constexpr std::array below_one{FactorClass{0.01, 0.02, color_of(0xfee391)}, FactorClass{0.02, 0.05, color_of(0xfec44f)},
+                               FactorClass{0.05, 0.1, color_of(0xfe9929)},  FactorClass{0.1, 0.2, color_of(0xec7014)},
+                               FactorClass{0.2, 0.3, color_of(0xcc4c02)},   FactorClass{0.3, 0.5, color_of(0x993404)},
+                               FactorClass{0.5, 1, color_of(0x662506)}};
 constexpr std::size_t usual_classes_above = 7;  // up to 2, the default of aero.max_factor
 
 /// The number of classes that reach to a distance from 1.

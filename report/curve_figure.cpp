@@ -178,8 +178,7 @@ class Panel {
         const auto below = std::count_if(curves.begin(), curves.begin() + static_cast<std::ptrdiff_t>(i),
                                          [&curve](const Curve& earlier) { return coincide(earlier, curve); });
         const std::size_t dash = i / colors.size() + static_cast<std::size_t>(below);
-        const std::string style =
-            fmt::format("linewidth 2{} linecolor rgb {}", dashes[dash % dashes.size()], color);
+        const std::string style = fmt::format("linewidth 2{} linecolor rgb {}", dashes[dash % dashes.size()], color);
         if (std::any_of(points.begin(), points.end(), is_known)) {
             add(known_rows, "using 1:2 with lines " + style);
         }

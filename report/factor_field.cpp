@@ -8,8 +8,7 @@ namespace downwash {
 std::function<double(double, double)> factor_field(const MapLayer& layer, const PlaneOfMotion& plane) {
     return [layer, plane](double x_m, double z_m) {
         const Vector3 hub_m = plane.to_world(x_m, layer.lateral_m, z_m);
-        return layer.effect->is_flyable(hub_m) ? layer.effect->factor(hub_m)
-                                               : std::numeric_limits<double>::quiet_NaN();
+        return layer.effect->is_flyable(hub_m) ? layer.effect->factor(hub_m) : std::numeric_limits<double>::quiet_NaN();
     };
 }
 

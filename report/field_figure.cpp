@@ -124,10 +124,10 @@ std::string_view dash_of(LineDash dash) {
 void add_marks(Plot& plot, const FieldFigure& figure) {
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
         const FigureLines& lines = figure.lines[i];
-        plot.add_lines(fmt::format("$line{}", i),
-                       fmt::format("linewidth {}{} linecolor rgb {}", lines.width_px,
-                                   dash_of(lines.dash), in_quotes(lines.color)),
-                       lines.name);
+        plot.add_lines(
+            fmt::format("$line{}", i),
+            fmt::format("linewidth {}{} linecolor rgb {}", lines.width_px, dash_of(lines.dash), in_quotes(lines.color)),
+            lines.name);
     }
     for (std::size_t i = 0; i < figure.points.size(); ++i) {
         plot.add_points(fmt::format("$point{}", i),

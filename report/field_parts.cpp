@@ -53,8 +53,7 @@ std::string FieldSamples::source(bool is_surface) const {
                        x_m, z_m, is_surface ? ",0" : "", dx_m, dz_m);
 }
 
-FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners,
-                     int threads) {
+FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners, int threads) {
     FieldSamples samples;
     const Bounds& extent = figure.extent;
     samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);

@@ -58,8 +58,7 @@ bool crosses(const Ring& line, bool is_closed, const Bounds& box) {
 }
 
 bool any_crosses(const std::vector<Ring>& lines, bool are_closed, const Bounds& box) {
-    return std::any_of(lines.begin(), lines.end(),
-                       [&](const Ring& line) { return crosses(line, are_closed, box); });
+    return std::any_of(lines.begin(), lines.end(), [&](const Ring& line) { return crosses(line, are_closed, box); });
 }
 
 bool covers_area(const std::vector<Ring>& fill, const Bounds& box) {
@@ -125,11 +124,12 @@ class Placement {
     /// Whether no name, leader or taken line is in a box.
     [[nodiscard]] bool is_free(const Bounds& box) const {
         return holds(ground_.area, box) &&
-               std::none_of(labels_.begin(), labels_.end(),
-                            [&](const PlacedLabel& label) {
-                                return meet(label.box, box) ||
-                                       (label.leader && crosses({label.leader->first, label.leader->second}, false, box));
-                            }) &&
+               std::none_of(
+                   labels_.begin(), labels_.end(),
+                   [&](const PlacedLabel& label) {
+                       return meet(label.box, box) ||
+                              (label.leader && crosses({label.leader->first, label.leader->second}, false, box));
+                   }) &&
                std::none_of(ground_.taken.begin(), ground_.taken.end(),
                             [&](const Ring& line) { return covers_line(line, box); });
     }
@@ -204,12 +204,12 @@ class Placement {
     }
 
     [[nodiscard]] bool is_free_of_lines(const Bounds& piece) const {
-        return std::none_of(labels_.begin(), labels_.end(),
-                            [&](const PlacedLabel& label) {
-                                return meet(label.box, piece) ||
-                                       (label.leader &&
-                                        crosses({label.leader->first, label.leader->second}, false, piece));
-                            }) &&
+        return std::none_of(
+                   labels_.begin(), labels_.end(),
+                   [&](const PlacedLabel& label) {
+                       return meet(label.box, piece) ||
+                              (label.leader && crosses({label.leader->first, label.leader->second}, false, piece));
+                   }) &&
                std::none_of(ground_.taken.begin(), ground_.taken.end(),
                             [&](const Ring& line) { return crosses(line, false, piece); });
     }

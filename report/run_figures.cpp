@@ -223,24 +223,23 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
     figure.obstacles = obstacle_outlines(model.effect(0).scene(), run.problem.plane, 0);
     figure.value = factor_field(model.layer(0), model.plane());
     figure.has_contour_lines = false;
-    figure.scale =
-        factor_scale("aero factor K of rotor 1 there", factor_range(figure, rotor_extent(model.robot().rotors, run.problem.bounds)));
+    figure.scale = factor_scale("aero factor K of rotor 1 there",
+                                factor_range(figure, rotor_extent(model.robot().rotors, run.problem.bounds)));
 
     Pieces flown, planned;
     for (const std::size_t row : rows) {
         robot.add_to(planned, flight["ref_x_m"][row], flight["ref_z_m"][row], 0, flight["ref_arm_rad"][row]);
         robot.add_to(flown, flight["x_m"][row], flight["z_m"][row], flight["pitch_rad"][row], flight["arm_rad"][row]);
     }
-    figure.lines = {
-        {"planned: the reference, drawn level", planned, planned_color, 1.3, LineDash::dotted},
-        {"", {planned_way(run)}, planned_color, 1.3, LineDash::dotted},
-        {"way of the end effector",
-         {way(flight["ee_x_m"], flight["ee_z_m"])},
-         end_effector_color,
-         1.6,
-         LineDash::dash_dotted},
-        {"flown", flown, flown_color, 1.6},
-        {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
+    figure.lines = {{"planned: the reference, drawn level", planned, planned_color, 1.3, LineDash::dotted},
+                    {"", {planned_way(run)}, planned_color, 1.3, LineDash::dotted},
+                    {"way of the end effector",
+                     {way(flight["ee_x_m"], flight["ee_z_m"])},
+                     end_effector_color,
+                     1.6,
+                     LineDash::dash_dotted},
+                    {"flown", flown, flown_color, 1.6},
+                    {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
     figure.points = goal_points(run.problem);
     return figure;
 }

@@ -36,8 +36,7 @@ TEST_CASE("a contour of K near a pipe is smooth: it has no kinks that interpolat
         double max_m = 0;
         for (int i = -12; i <= 12; ++i) {
             const double x_m = i * step_m;
-            max_m = std::max(max_m,
-                             std::abs(height_m(x_m - step_m) - 2 * height_m(x_m) + height_m(x_m + step_m)));
+            max_m = std::max(max_m, std::abs(height_m(x_m - step_m) - 2 * height_m(x_m) + height_m(x_m + step_m)));
         }
         return max_m;
     };

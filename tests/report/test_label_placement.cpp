@@ -53,8 +53,8 @@ void walk(const Ring& line, double step_m, const Visit& visit) {
 }  // namespace
 
 TEST_CASE("a name goes into its shape where it fits, else beside it") {
-    const auto labels = place_labels({solid(80, rectangle(100, 300, 100, 200)), solid(80, rectangle(500, 510, 300, 310))},
-                                     plain_ground());
+    const auto labels = place_labels(
+        {solid(80, rectangle(100, 300, 100, 200)), solid(80, rectangle(500, 510, 300, 310))}, plain_ground());
     REQUIRE(labels.size() == 2);
     CHECK(labels[0].is_inside);
     CHECK((labels[0].box.x_low_m + labels[0].box.x_high_m) / 2 == Approx(200));
@@ -147,9 +147,9 @@ TEST_CASE("in pictures of every shipped problem no name covers vehicle, paths, g
                 }
             }
             for (const PlanePoint& goal : figure.points.empty() ? Ring{} : figure.points[0].points) {
-                REQUIRE_FALSE(holds({box.x_low_m - 5 * px_m, box.x_high_m + 5 * px_m, box.z_low_m - 5 * px_m,
-                                     box.z_high_m + 5 * px_m},
-                                    goal));
+                REQUIRE_FALSE(holds(
+                    {box.x_low_m - 5 * px_m, box.x_high_m + 5 * px_m, box.z_low_m - 5 * px_m, box.z_high_m + 5 * px_m},
+                    goal));
             }
         }
     }

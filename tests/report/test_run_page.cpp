@@ -138,7 +138,8 @@ TEST_CASE("a page has the classes and colours of the pictures of the same proble
     CHECK(shown["limits"] == json(scale.limits));
     REQUIRE(shown["colors"].size() == scale.colors.size());
     for (std::size_t i = 0; i < scale.colors.size(); ++i) {
-        const auto rgb = static_cast<std::uint32_t>(std::stoul(shown["colors"][i].get<std::string>().substr(1), nullptr, 16));
+        const auto rgb =
+            static_cast<std::uint32_t>(std::stoul(shown["colors"][i].get<std::string>().substr(1), nullptr, 16));
         CHECK(color_of(rgb) == scale.colors[i]);
     }
 }
