@@ -29,7 +29,7 @@ void require_drawable(const Bounds& extent) {
 }
 
 FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend) {
-    constexpr double left_px = 80, right_px = 24, below_axes_px = 128;
+    constexpr double left_px = 80, right_px = 24, below_axes_px = 138;
     constexpr double max_height = 1.2;  // of the axes, in their widths
     const Bounds& extent = figure.extent;
     const double ratio = (extent.z_high_m - extent.z_low_m) / (extent.x_high_m - extent.x_low_m);
@@ -43,7 +43,7 @@ FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Leg
     layout.top = layout.bottom + width_px * ratio;
     layout.height = std::round(layout.top + above_axes_px);
     layout.legend_top = layout.top + legend.height_px(room_px) + 2;
-    layout.bar_bottom = 48;
+    layout.bar_bottom = 56;
     layout.room = room_px;
     return layout;
 }
