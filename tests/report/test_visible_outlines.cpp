@@ -120,7 +120,7 @@ void collect(const pugi::xml_node& node, Drawn& drawn) {
 }
 
 constexpr int width_px = 900;
-constexpr double axes_left_px = 80, axes_width_px = 796, below_axes_px = 128;
+constexpr double axes_left_px = 80, axes_width_px = 796, below_axes_px = 138;
 
 /// What the picture of outlines in an extent shows of them.
 Drawn drawn(std::vector<ObstacleOutline> outlines, const Bounds& extent) {
