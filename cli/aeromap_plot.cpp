@@ -66,7 +66,7 @@ struct OptionUse {
     const char* use;  ///< for people
 };
 
-constexpr std::array<OptionUse, 12> option_uses{{
+constexpr std::array<OptionUse, 13> option_uses{{
     {"--what", &Shown::problem, "PROBLEM"},
     {"--rotor", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
     {"--lateral", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
@@ -74,6 +74,7 @@ constexpr std::array<OptionUse, 12> option_uses{{
     {"--pitch-deg", &Shown::vehicle, "PROBLEM and --what force or torque"},
     {"--x", &Shown::problem, "PROBLEM"},
     {"--z", &Shown::problem, "PROBLEM"},
+    {"--no-labels", &Shown::problem, "PROBLEM"},
     {"--surface", &Shown::data, "--data"},
     {"--source", &Shown::data, "--data"},
     {"--max-factor", &Shown::models, "--model"},
@@ -142,13 +143,15 @@ std::string picture(const PlotRequest& request, const PictureSettings& settings)
     }
     const Problem problem = read_problem(request.problem, {}, print_outdated);
     const FieldKind& kind = entry_named(field_kinds, request.what, "--what");
-    return draw(kind.make(request, problem, shown_extent(request, problem)), settings);
+    FieldFigure figure = kind.make(request, problem, shown_extent(request, problem));
+    figure.has_names = !request.no_labels;
+    return draw(figure, settings);
 }
 
 ExitCode run(const PlotArguments& given) {
     require_sound_options(given);
     const PictureSettings settings{picture_format("--out", given.output),
-                                   given.width_px.value_or(PictureSettings{}.width_px)};
+                                   given.width_px.value_or(PictureSettings{}.width_px), default_threads()};
     require_writable_result(given.output, "--out");
     write_result(given.output, picture(given, settings), "--out");
     if (!given.is_quiet) {
@@ -197,6 +200,7 @@ void add_aeromap_plot(CLI::App& aeromap, Action& action) {
         ->expected(1, 2);
     add_out(plot, "FILE", given.output, "the picture, .svg, .png or .pdf")->required();
     add_width(plot, given.width_px);
+    add_no_labels(plot, given.no_labels);
     add_quiet(plot, given.is_quiet);
 }
 

@@ -79,6 +79,10 @@ void add_width(CLI::App& command, std::optional<int>& width_px) {
         ->check(CLI::Range(min_picture_width_px, max_picture_width_px));
 }
 
+void add_no_labels(CLI::App& command, bool& no_labels) {
+    command.add_flag("--no-labels", no_labels, "leave out the names of obstacles in pictures");
+}
+
 void require_coordinate(double coordinate_m, const std::string& where) {
     constexpr double max_m = 1e6;
     if (!(std::abs(coordinate_m) <= max_m)) {

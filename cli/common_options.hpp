@@ -53,6 +53,7 @@ CLI::Option* add_run(CLI::App& command, std::string& folder);
 /// See arm_option().
 CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg);
 void add_width(CLI::App& command, std::optional<int>& width_px);
+void add_no_labels(CLI::App& command, bool& no_labels);
 
 /// -o,--out. @param placeholder FILE or DIR   @param detail what it holds, and where it is without the option
 template <class Value>

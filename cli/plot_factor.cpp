@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "downwash/base/text.hpp"
@@ -9,12 +8,11 @@
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/effects/effect_models.hpp"
+#include "downwash/report/factor_field.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::cli {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The effects that a picture shows: all, or those of one side.
 AeroSettings shown_settings(const PlotRequest& request, AeroSettings aero) {
@@ -62,20 +60,6 @@ std::string model_text(const PlotRequest& request, const AeroSettings& aero) {
     return request.what == "ground" ? ground : ceiling;
 }
 
-/// K at (x, z) of a layer: from a map if that is faster, otherwise evaluated directly.
-std::function<double(double, double)> field_of(const MapLayer& layer, const PlaneOfMotion& plane,
-                                               const Bounds& extent) {
-    constexpr double max_cells = 2e6;
-    if (map_cells({layer}, extent) <= max_cells) {
-        const auto map = std::make_shared<const AeroMap>(std::vector{layer}, plane, extent);
-        return [map](double x_m, double z_m) { return map->is_flyable(0, x_m, z_m) ? map->factor(0, x_m, z_m) : nan; };
-    }
-    return [layer, plane](double x_m, double z_m) {
-        const Vector3 hub_m = plane.to_world(x_m, layer.lateral_m, z_m);
-        return layer.effect->is_flyable(hub_m) ? layer.effect->factor(hub_m) : nan;
-    };
-}
-
 }  // namespace
 
 std::string undefined_name(const Problem& problem) {
@@ -91,10 +75,9 @@ FieldFigure factor_figure(const PlotRequest& request, const Problem& problem, co
     figure.subtitle = fmt::format("rotor hub {}; {}", place_text(layer.lateral_m), model_text(request, problem.aero));
     figure.extent = extent;
     figure.undefined_name = undefined_name(problem);
-    figure.value = field_of(layer, problem.plane, extent);
-    constexpr int steps = 400;
-    const AxisRange range = value_range(figure.value, extent, steps, 1);
-    figure.scale = factor_scale("K, thrust over that in free air at the same command [1]", range.low, range.high);
+    figure.value = factor_field(layer, problem.plane);
+    figure.scale = factor_scale("K, thrust over that in free air at the same command [1]",
+                                factor_range(figure, rotor_extent(problem.robot.rotors, problem.bounds)));
     figure.obstacles = obstacle_outlines(*scene, problem.plane, layer.lateral_m);
     return figure;
 }

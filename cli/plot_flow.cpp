@@ -51,9 +51,9 @@ FieldFigure potential_flow_figure(const PlotRequest& request) {
     figure.subtitle = "thesis (2.10) to (2.12): a source at each hub; the ground between them is a plane of symmetry";
     figure.x_label = "x/R [1]";
     figure.z_label = "z/R [1]";
-    figure.lines.push_back({"rotor", {{{-1, height}, {1, height}}}, {0, 0, 0}, 5, false, false});
-    figure.lines.push_back({"image of the rotor", {{{-1, -height}, {1, -height}}}, {120, 120, 120}, 5, false, false});
-    figure.lines.push_back({"ground", {{{-1.6 * top, 0}, {1.6 * top, 0}}}, {0, 110, 60}, 3, false, false});
+    figure.lines.push_back({"rotor", {{{-1, height}, {1, height}}}, {0, 0, 0}, 5});
+    figure.lines.push_back({"image of the rotor", {{{-1, -height}, {1, -height}}}, {120, 120, 120}, 5});
+    figure.lines.push_back({"ground", {{{-1.6 * top, 0}, {1.6 * top, 0}}}, {0, 110, 60}, 3});
     return figure;
 }
 

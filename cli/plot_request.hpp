@@ -26,7 +26,7 @@ struct PlotRequest {
     bool is_flow = false;
     std::string output;
     std::optional<int> width_px;
-    bool is_quiet = false;
+    bool no_labels = false, is_quiet = false;
 };
 
 /// A picture of a problem. @throws UsageError when the request does not fit the problem

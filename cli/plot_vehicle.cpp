@@ -11,6 +11,7 @@
 #include "downwash/cli/plot_request.hpp"
 #include "downwash/cli/vehicle_table.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/report/factor_field.hpp"
 #include "downwash/simulation/hold_map.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -59,7 +60,7 @@ double max_size(const FieldFigure& figure) {
 
 /// The bounds of the centre of mass, cut to the shown part of the plane.
 FigureLines bounds_lines(const Bounds& bounds, const Bounds& shown) {
-    FigureLines lines{"bounds of the problem", {}, {40, 40, 40}, 1.5, true, false};
+    FigureLines lines{"bounds of the problem", {}, {40, 40, 40}, 1.5, LineDash::dashed, false};
     const double x_low_m = std::max(bounds.x_low_m, shown.x_low_m),
                  x_high_m = std::min(bounds.x_high_m, shown.x_high_m);
     const double z_low_m = std::max(bounds.z_low_m, shown.z_low_m),
@@ -102,7 +103,7 @@ HoldVerdict verdict_at(const FlightModel& model, const HoldMap& map, double x_m,
 FieldFigure force_figure(const PlotRequest& request, const Problem& problem, const Bounds& extent) {
     FieldFigure figure = effect_figure(request, problem, make_flight_model(problem), extent,
                                        "Thrust of the whole vehicle at constant command", &VehicleEffect::force_factor);
-    figure.scale = factor_scale("force factor", 1, max_size(figure));
+    figure.scale = factor_scale("force factor", factor_range(figure, problem.bounds));
     return figure;
 }
 
@@ -133,7 +134,7 @@ FieldFigure hold_figure(const PlotRequest& request, const Problem& problem, cons
                        {{190, 190, 190}, {117, 72, 144}, {222, 119, 96}, {250, 222, 140}, {196, 226, 190}});
     figure.has_contour_lines = false;
     figure.lines.push_back(bounds_lines(problem.bounds, extent));
-    FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, false, false};
+    FigureLines boundary{"stability boundary", {}, {140, 20, 20}, 2.5, LineDash::solid, false};
     for (const std::vector<HoldPoint>& line : stability_boundary(*model, *map)) {
         std::vector<PlanePoint>& piece = boundary.pieces.emplace_back();
         std::transform(line.begin(), line.end(), std::back_inserter(piece), [](const HoldPoint& at) {

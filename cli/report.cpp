@@ -7,6 +7,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_figures.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -21,14 +22,16 @@ struct ReportArguments {
     bool as_svg = false, as_png = false, as_pdf = false;
     std::optional<int> width_px;
     int threads = default_threads();
-    bool no_cache = false, is_quiet = false;
+    bool no_labels = false, no_cache = false, is_quiet = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
 
-void write_pictures(const ReportArguments& given, const ShownRun& run) {
-    const FieldFigure flight = snapshot_figure(run.record, *run.model, run.map.get());
-    const std::vector<CurveFigure> plots = time_figures(run.record);
+void write_pictures(const ReportArguments& given, const RunRecord& run) {
+    const auto model = make_flight_model(run.problem);
+    FieldFigure flight = snapshot_figure(run, *model);
+    flight.has_names = !given.no_labels;
+    const std::vector<CurveFigure> plots = time_figures(run);
     struct Wanted {
         bool is_wanted;
         PictureFormat format;
@@ -40,7 +43,8 @@ void write_pictures(const ReportArguments& given, const ShownRun& run) {
                              {given.as_png, PictureFormat::png, ".png"},
                              {given.as_pdf, PictureFormat::pdf, ".pdf"}}) {
         if (as.is_wanted) {
-            const PictureSettings settings{as.format, given.width_px.value_or(PictureSettings{}.width_px)};
+            const PictureSettings settings{as.format, given.width_px.value_or(PictureSettings{}.width_px),
+                                           given.threads};
             pictures.emplace_back(std::string("flight") + as.extension, draw(flight, settings));
             pictures.emplace_back(std::string("plots") + as.extension, draw(plots, settings));
         }
@@ -56,14 +60,15 @@ ExitCode run(const ReportArguments& given) {
     if (given.width_px && !given.wants_pictures()) {
         throw UsageError("--width goes with pictures only: expected --svg, --png or --pdf with it");
     }
-    if (!given.wants_pictures()) {
-        require_pages();
+    if (given.no_labels && !given.wants_pictures()) {
+        throw UsageError("--no-labels goes with pictures only: expected --svg, --png or --pdf with it");
     }
-    const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
-                                     given.is_quiet, given.threads);
     if (given.wants_pictures()) {
-        write_pictures(given, shown);
+        write_pictures(given, read_run(run_folder(given.folder)));
     } else {
+        require_pages();
+        const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
+                                         given.is_quiet, given.threads);
         const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / "report.html";
         write_result(page, run_page(shown.record, *shown.model, shown.map.get()));
         fmt::print("{}\n", page.string());
@@ -86,6 +91,7 @@ void add_report(CLI::App& program, Action& action) {
     command.add_flag("--png", given.as_png, "pictures as PNG");
     command.add_flag("--pdf", given.as_pdf, "pictures as PDF");
     add_width(command, given.width_px);
+    add_no_labels(command, given.no_labels);
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

@@ -34,30 +34,33 @@ Color spread(const std::array<Color, size>& row, std::size_t i, std::size_t n) {
     return {mixed(a.red, b.red), mixed(a.green, b.green), mixed(a.blue, b.blue)};
 }
 
-/// Limits on both sides of a neutral class: all `steps` above, the first ones of them below.
-ColorScale about(double middle, std::string label, const std::vector<double>& steps, std::size_t below) {
-    ColorScale scale;
-    scale.label = std::move(label);
-    for (std::size_t i = below; i-- > 0;) {
-        scale.limits.push_back(middle - steps[i]);
-    }
-    for (const double step : steps) {
-        scale.limits.push_back(middle + step);
-    }
-    for (std::size_t i = below - 1; i-- > 0;) {
-        scale.colors.push_back(spread(blues, i, below - 1));
-    }
-    scale.colors.push_back(neutral);
-    for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
-        scale.colors.push_back(spread(reds, i, steps.size() - 1));
-    }
-    return scale;
-}
+constexpr double factor_rounding = 1e-6;  // of given maps, which may store float
 
-/// The number of classes for values up to `reach`, at least three.
-std::size_t steps_up_to(const std::vector<double>& steps, double reach) {
-    const auto first = std::lower_bound(steps.begin(), steps.end(), reach * (1 - 1e-9));
-    return std::clamp<std::size_t>(static_cast<std::size_t>(first - steps.begin()) + 1, 3, steps.size());
+/// The classes of thrust ratios away from 1, as distances from it. The colours are fixed: each class has its own in
+/// every picture. Blues and YlOrBr of ColorBrewer (Brewer 2002), told apart by people who do not tell red from green.
+struct FactorClass {
+    double from, to;
+    Color color;
+};
+constexpr std::array above_one{FactorClass{0.01, 0.02, color_of(0xc6dbef)}, FactorClass{0.02, 0.05, color_of(0x9ecae1)},
+                               FactorClass{0.05, 0.1, color_of(0x6baed6)},  FactorClass{0.1, 0.2, color_of(0x4292c6)},
+                               FactorClass{0.2, 0.3, color_of(0x2171b5)},   FactorClass{0.3, 0.5, color_of(0x08519c)},
+                               FactorClass{0.5, 1, color_of(0x08306b)},     FactorClass{1, 2, color_of(0x062350)},
+                               FactorClass{2, 5, color_of(0x04183a)},       FactorClass{5, 10, color_of(0x020d21)},
+                               FactorClass{10, 100, color_of(0x000000)}};
+constexpr std::array below_one{FactorClass{0.01, 0.02, color_of(0xfee391)}, FactorClass{0.02, 0.05, color_of(0xfec44f)},
+                               FactorClass{0.05, 0.1, color_of(0xfe9929)},  FactorClass{0.1, 0.2, color_of(0xec7014)},
+                               FactorClass{0.2, 0.3, color_of(0xcc4c02)},   FactorClass{0.3, 0.5, color_of(0x993404)},
+                               FactorClass{0.5, 1, color_of(0x662506)}};
+constexpr std::size_t usual_classes_above = 7;  // up to 2, the default of aero.max_factor
+
+/// The number of classes that reach to a distance from 1.
+template <std::size_t size>
+std::size_t classes_up_to(const std::array<FactorClass, size>& classes, double distance) {
+    const auto last = std::find_if(classes.begin(), classes.end() - 1, [distance](const FactorClass& factors) {
+        return factors.to >= distance - factor_rounding;
+    });
+    return static_cast<std::size_t>(last - classes.begin()) + 1;
 }
 
 /// The smallest 1, 2 or 5 times a power of ten that is not below a step.
@@ -89,25 +92,24 @@ double position_on(const ColorScale& scale, double value) {
     return static_cast<double>(upper - limits.begin() - 1) + (value - low) / (*upper - low);
 }
 
-ColorScale factor_scale(std::string label, double low, double high) {
-    const std::vector<double> steps{0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 5, 10, 100};
-    std::vector<double> above(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps_up_to(steps, high - 1)));
-    constexpr double rounding = 1e-6;  // of maps, which store float
-    if (low < 1 - rounding) {
-        constexpr std::size_t steps_to_zero = 8;
-        const std::size_t below = std::min(steps_up_to(steps, 1 - low), steps_to_zero);
-        if (above.size() < below) {
-            above.assign(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(below));
-        }
-        return about(1, std::move(label), above, below);
+ColorScale factor_scale(std::string label, const AxisRange& range) {
+    const bool has_below = range.low < 1 - factor_rounding;
+    const std::size_t below = has_below ? classes_up_to(below_one, 1 - range.low) : 0;
+    const std::size_t above = std::max(usual_classes_above, classes_up_to(above_one, range.high - 1));
+    ColorScale scale;
+    scale.label = std::move(label);
+    for (std::size_t i = below; i-- > 0;) {
+        scale.limits.push_back(1 - below_one[i].to);
+        scale.colors.push_back(below_one[i].color);
     }
-    ColorScale scale{std::move(label), {1}, {Color{255, 255, 255}}, {}};
-    for (const double step : above) {
-        scale.limits.push_back(1 + step);
+    scale.limits.push_back(has_below ? 1 - below_one[0].from : 1);
+    scale.colors.push_back({255, 255, 255});
+    for (std::size_t i = 0; i < above; ++i) {
+        scale.limits.push_back(1 + above_one[i].from);
+        scale.colors.push_back(above_one[i].color);
     }
-    for (std::size_t i = 0; i + 1 < above.size(); ++i) {
-        scale.colors.push_back(spread(viridis, i, above.size() - 1));
-    }
+    scale.limits.push_back(1 + above_one[above - 1].to);
+    scale.neutral = 1;
     return scale;
 }
 
@@ -134,7 +136,21 @@ ColorScale signed_scale(std::string label, double reach, int classes) {
         const double digit = next / std::pow(10, std::floor(std::log10(next) + 1e-9));
         steps.insert(steps.begin(), digit > 4 && digit < 6 ? next * 0.4 : next * 0.5);
     }
-    return about(0, std::move(label), steps, steps.size());
+    const std::size_t size = steps.size();
+    ColorScale scale;
+    scale.label = std::move(label);
+    scale.limits.resize(2 * size);
+    scale.colors.resize(2 * size - 1, neutral);
+    scale.neutral = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        scale.limits[size - 1 - i] = -steps[i];
+        scale.limits[size + i] = steps[i];
+    }
+    for (std::size_t i = 0; i + 1 < size; ++i) {
+        scale.colors[size - 2 - i] = spread(blues, i, size - 1);
+        scale.colors[size + i] = spread(reds, i, size - 1);
+    }
+    return scale;
 }
 
 ColorScale scale_of_kinds(std::string label, std::vector<std::string> names, std::vector<Color> colors) {

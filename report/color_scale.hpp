@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,16 +17,19 @@ struct ColorScale {
     std::vector<Color> colors;   ///< of the classes; at least two
     /// Names of the classes, shown at the colour bar instead of the limits. May be empty.
     std::vector<std::string> names;
+    /// The value where nothing happens, such as a thrust ratio of 1. Labels cover its class only.
+    std::optional<double> neutral = {};
 };
 
 /// The position of a value on the colour bar: i at limits[i], linear between them, clamped to the ends.
 /// NaN for NaN.
 [[nodiscard]] DOWNWASH_EXPORT double position_on(const ColorScale& scale, double value);
 
-/// A scale for factors near one, finest at one, that covers `low` to `high`. Without values below one it runs from
-/// white through viridis (perceptually uniform, legible to the colour-blind); otherwise it is blue below one and red
-/// above.
-[[nodiscard]] DOWNWASH_EXPORT ColorScale factor_scale(std::string label, double low, double high);
+/// The scale of thrust ratios, finest at one: white near one, ever darker blues above, from yellow to brown below.
+/// A value has the same colour on every such scale. All reach from 1 to 2; only values beyond add classes, those below
+/// one a neutral class from 0.99 to 1.01.
+/// @param range of all values of the problem, not only of the shown ones, so that a zoom changes nothing
+[[nodiscard]] DOWNWASH_EXPORT ColorScale factor_scale(std::string label, const AxisRange& range);
 
 /// Equal classes through viridis over [low, high], with limits at round numbers. @pre low < high, both finite
 [[nodiscard]] DOWNWASH_EXPORT ColorScale linear_scale(std::string label, double low, double high);

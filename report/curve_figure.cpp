@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array colors{color_of(0x0072b2), color_of(0xd55e00), color_of(0x009e73), color_of(0xcc79a7),
                             color_of(0x000000), color_of(0xe69f00), color_of(0x56b4e9), color_of(0x969696)};
-constexpr std::array<std::string_view, 4> dashes{"", " dashtype (24,8)", " dashtype (8,6)", " dashtype (24,8,6,8)"};
+constexpr std::array<std::string_view, 4> dashes{"", " dashtype (26,12)", " dashtype (9,7)", " dashtype (26,8,5,8)"};
 constexpr char dotted[] = "linewidth 1.6 dashtype (2,5)";
 constexpr std::array<int, 6> point_types{7, 5, 9, 13, 6, 4};
 
@@ -50,6 +50,27 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
         }
     }
     throw_if_any(std::move(errors));
+}
+
+/// Whether two curves lie one over the other for the most part: their mean distance is at most a hundredth of the range.
+bool coincide(const Curve& a, const Curve& b) {
+    constexpr double max_share = 0.01;
+    if (a.points.size() != b.points.size()) {
+        return false;
+    }
+    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+    for (std::size_t i = 0; i < a.points.size(); ++i) {
+        const double y = a.points[i].y, distance = std::abs(y - b.points[i].y);
+        if (a.points[i].x != b.points[i].x) {
+            return false;
+        }
+        if (std::isfinite(distance)) {
+            low = std::min(low, y);
+            high = std::max(high, y);
+            sum += distance;
+        }
+    }
+    return sum <= max_share * (high - low) * static_cast<double>(a.points.size());
 }
 
 /// The range of the y axis for the data, with a margin.
@@ -117,7 +138,7 @@ class Panel {
         add_range(script, "y", figure_.y_range.value_or(needed_range(figure_)));
         script.add("set xlabel {} offset 0,0.3", in_quotes(figure_.x_label));
         // As an axis label it would leave the picture if the numbers at the axis are long.
-        constexpr double y_label_px = 16;
+        constexpr double y_label_px = 14;
         script.add("set label {} at screen {:.6f},{:.6f} center rotate by 90", in_quotes(figure_.y_label),
                    script.screen_x(y_label_px), script.screen_y(bottom_px + below_axes_px + axes_px / 2));
         script.add(data_);
@@ -164,8 +185,12 @@ class Panel {
             other_rows += !is_known(points[k]) || is_beside_other ? row : "\n";
         }
         const std::string color = in_quotes(colors[i % colors.size()]);
-        const std::string style =
-            fmt::format("linewidth 2{} linecolor rgb {}", dashes[i / colors.size() % dashes.size()], color);
+        // A curve over others is broken, so that they show through its gaps.
+        const auto& curves = figure_.curves;
+        const auto below = std::count_if(curves.begin(), curves.begin() + static_cast<std::ptrdiff_t>(i),
+                                         [&curve](const Curve& earlier) { return coincide(earlier, curve); });
+        const std::size_t dash = i / colors.size() + static_cast<std::size_t>(below);
+        const std::string style = fmt::format("linewidth 2{} linecolor rgb {}", dashes[dash % dashes.size()], color);
         if (std::any_of(points.begin(), points.end(), is_known)) {
             add(known_rows, "using 1:2 with lines " + style);
         }
@@ -204,7 +229,7 @@ class Panel {
 }  // namespace
 
 std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings) {
-    constexpr double left_px = 84, right_px = 24;
+    constexpr double left_px = 100, right_px = 24;
     if (figures.empty()) {
         throw_input_error("there is no figure to draw: expected at least one", "figures");
     }

@@ -30,7 +30,8 @@ struct MeasuredPoints {
 };
 
 /// A diagram of curves and measured points over one quantity. Eight colours repeat (Okabe and Ito 2008, legible to the
-/// colour-blind); dashes distinguish curves of equal colour.
+/// colour-blind); dashes distinguish curves of equal colour, and
+/// let a curve show through one that lies over it.
 struct CurveFigure {
     std::string title;
     std::string subtitle;

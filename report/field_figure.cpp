@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "downwash/base/text.hpp"
@@ -23,12 +24,12 @@ constexpr char hatch_color[] = "'#9a9a9a'";
 
 /// Samples with a number of points per pixel of the axes, up to a maximum in all.
 FieldSamples sampled_for(const FieldFigure& figure, const FieldLayout& layout, double points_per_px,
-                         std::size_t max_points, bool at_corners) {
+                         std::size_t max_points, bool at_corners, int threads) {
     const double height_px = layout.top - layout.bottom;
     const double points = layout.width() * height_px * points_per_px * points_per_px;
     const double scale = points_per_px * std::min(1., std::sqrt(static_cast<double>(max_points) / points));
     const auto count = [scale](double px) { return static_cast<std::size_t>(std::max(2L, std::lround(scale * px))); };
-    return sampled(figure, count(layout.width()), count(height_px), at_corners);
+    return sampled(figure, count(layout.width()), count(height_px), at_corners, threads);
 }
 
 bool is_undefined(float place) {
@@ -106,13 +107,27 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const Bounds& e
     }
 }
 
+std::string_view dash_of(LineDash dash) {
+    switch (dash) {
+        case LineDash::solid:
+            return "";
+        case LineDash::dashed:
+            return " dashtype (16,9)";
+        case LineDash::dotted:
+            return " dashtype (3,5)";
+        case LineDash::dash_dotted:
+            return " dashtype (24,6,3,6)";
+    }
+    return "";
+}
+
 void add_marks(Plot& plot, const FieldFigure& figure) {
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
         const FigureLines& lines = figure.lines[i];
-        plot.add_lines(fmt::format("$line{}", i),
-                       fmt::format("linewidth {}{} linecolor rgb {}", lines.width_px,
-                                   lines.is_dashed ? " dashtype (16,9)" : "", in_quotes(lines.color)),
-                       lines.name);
+        plot.add_lines(
+            fmt::format("$line{}", i),
+            fmt::format("linewidth {}{} linecolor rgb {}", lines.width_px, dash_of(lines.dash), in_quotes(lines.color)),
+            lines.name);
     }
     for (std::size_t i = 0; i < figure.points.size(); ++i) {
         plot.add_points(fmt::format("$point{}", i),
@@ -178,7 +193,7 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
 
     // The legend determines the layout, and the layout how finely the field is sampled. The legend also says whether
     // the field is defined everywhere, which a coarse sampling finds out first.
-    const FieldSamples glance = sampled(figure, 300, 300, false);
+    const FieldSamples glance = sampled(figure, 300, 300, false, settings.threads);
     const bool has_undefined = std::any_of(glance.places.begin(), glance.places.end(), is_undefined);
     const bool has_field = !std::all_of(glance.places.begin(), glance.places.end(), is_undefined);
     Legend legend;
@@ -199,7 +214,9 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     add_axes(script, figure, layout);
     add_color_bar(script, figure, layout);
     add_obstacle_data(script, outlines);
-    add_obstacle_names(script, figure, outlines, layout);
+    if (figure.has_names) {
+        add_obstacle_names(script, figure, outlines, layout);
+    }
     add_mark_data(script, figure);
     const Bounds& extent = figure.extent;
     add_data(script, "$all",
@@ -212,10 +229,10 @@ std::string draw(const FieldFigure& figure, const PictureSettings& settings) {
     if (has_field) {
         constexpr std::size_t max_image_points = 1'500'000, max_contour_points = 300'000;
         const double points_per_px = settings.format == PictureFormat::png ? 1 : 2;
-        image = sampled_for(figure, layout, points_per_px, max_image_points, false);
+        image = sampled_for(figure, layout, points_per_px, max_image_points, false, settings.threads);
         plot.add(image.source() + " with image");
         if (figure.has_contour_lines) {
-            add_contours(script, figure, sampled_for(figure, layout, 0.5, max_contour_points, true));
+            add_contours(script, figure, sampled_for(figure, layout, 0.5, max_contour_points, true, settings.threads));
             plot.add_lines("$contours", "linewidth 0.5 linecolor rgb '#404040'");
         }
         if (has_undefined) {

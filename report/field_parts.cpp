@@ -6,6 +6,7 @@
 #include <string>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -28,7 +29,7 @@ void require_drawable(const Bounds& extent) {
 }
 
 FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend) {
-    constexpr double left_px = 80, right_px = 24, below_axes_px = 128;
+    constexpr double left_px = 80, right_px = 24, below_axes_px = 138;
     constexpr double max_height = 1.2;  // of the axes, in their widths
     const Bounds& extent = figure.extent;
     const double ratio = (extent.z_high_m - extent.z_low_m) / (extent.x_high_m - extent.x_low_m);
@@ -42,7 +43,7 @@ FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Leg
     layout.top = layout.bottom + width_px * ratio;
     layout.height = std::round(layout.top + above_axes_px);
     layout.legend_top = layout.top + legend.height_px(room_px) + 2;
-    layout.bar_bottom = 48;
+    layout.bar_bottom = 56;
     layout.room = room_px;
     return layout;
 }
@@ -52,7 +53,7 @@ std::string FieldSamples::source(bool is_surface) const {
                        x_m, z_m, is_surface ? ",0" : "", dx_m, dz_m);
 }
 
-FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners) {
+FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners, int threads) {
     FieldSamples samples;
     const Bounds& extent = figure.extent;
     samples.dx_m = (extent.x_high_m - extent.x_low_m) / static_cast<double>(columns);
@@ -61,14 +62,15 @@ FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t
     samples.rows = rows + (at_corners ? 1 : 0);
     samples.x_m = extent.x_low_m + (at_corners ? 0 : samples.dx_m / 2);
     samples.z_m = extent.z_low_m + (at_corners ? 0 : samples.dz_m / 2);
-    samples.places.reserve(samples.columns * samples.rows);
-    for (std::size_t k = 0; k < samples.rows; ++k) {
+    samples.places.resize(samples.columns * samples.rows);
+    run_parallel(samples.rows, threads, [&](std::size_t k) {
         const double z_m = samples.z_m + static_cast<double>(k) * samples.dz_m;
         for (std::size_t i = 0; i < samples.columns; ++i) {
             const double x_m = samples.x_m + static_cast<double>(i) * samples.dx_m;
-            samples.places.push_back(static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m))));
+            samples.places[k * samples.columns + i] =
+                static_cast<float>(position_on(figure.scale, figure.value(x_m, z_m)));
         }
-    }
+    });
     return samples;
 }
 

@@ -25,7 +25,8 @@ struct FieldLayout {
 /// @throws InputError when the extent cannot be drawn to scale
 void require_drawable(const Bounds& extent);
 
-[[nodiscard]] FieldLayout layout_of(const FieldFigure& figure, int picture_width_px, const Legend& legend);
+[[nodiscard]] DOWNWASH_EXPORT FieldLayout layout_of(const FieldFigure& figure, int picture_width_px,
+                                                    const Legend& legend);
 
 /// Values at regular points, row by row from the lower left, as positions on the colour bar.
 struct FieldSamples {
@@ -39,6 +40,7 @@ struct FieldSamples {
 };
 
 /// In the middles of columns x rows cells of the extent, or in the corners between them.
-[[nodiscard]] FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners);
+[[nodiscard]] FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners,
+                                   int threads);
 
 }  // namespace downwash

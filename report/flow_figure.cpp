@@ -67,7 +67,7 @@ FieldFigure flow_figure(const PlanarVelocity& velocity, const Bounds& extent, co
         const double w = velocity(x_m, z_m)[1];
         return std::isfinite(w) ? w : std::numeric_limits<double>::quiet_NaN();
     };
-    FigureLines lines{"streamlines", {}, {40, 40, 40}, 1.2, false, true};
+    FigureLines lines{"streamlines", {}, {40, 40, 40}, 1.2, LineDash::solid, true};
     const double step = std::hypot(extent.x_high_m - extent.x_low_m, extent.z_high_m - extent.z_low_m) / steps_across;
     for (const PlanePoint& start : starts) {
         lines.pieces.push_back(streamline(velocity, start, extent, step));

@@ -3,136 +3,114 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
+#include <utility>
+
+#include "downwash/report/planar_geometry.hpp"
 
 namespace downwash {
 namespace {
 
-using Ring = std::vector<PixelPoint>;
+bool meet(const Bounds& a, const Bounds& b) {
+    return a.x_low_m < b.x_high_m && b.x_low_m < a.x_high_m && a.z_low_m < b.z_high_m && b.z_low_m < a.z_high_m;
+}
 
-/// The part of a ring on one side of an upright or level line, by Sutherland and Hodgman 1974.
-Ring clipped(const Ring& ring, const std::function<double(const PixelPoint&)>& inside) {
-    Ring part;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        const double da = inside(a), db = inside(b);
-        if (da >= 0) {
-            part.push_back(a);
+bool holds(const Bounds& outer, const Bounds& inner) {
+    return outer.x_low_m <= inner.x_low_m && outer.x_high_m >= inner.x_high_m && outer.z_low_m <= inner.z_low_m &&
+           outer.z_high_m >= inner.z_high_m;
+}
+
+PlanePoint middle_of(const Bounds& box) {
+    return {(box.x_low_m + box.x_high_m) / 2, (box.z_low_m + box.z_high_m) / 2};
+}
+
+Bounds around(const PlanePoint& middle, double width_m, double height_m) {
+    return {middle.x_m - width_m / 2, middle.x_m + width_m / 2, middle.z_m - height_m / 2, middle.z_m + height_m / 2};
+}
+
+Bounds box_of(const std::vector<Ring>& lines) {
+    Bounds box{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    for (const Ring& line : lines) {
+        for (const PlanePoint& p : line) {
+            box = {std::min(box.x_low_m, p.x_m), std::max(box.x_high_m, p.x_m), std::min(box.z_low_m, p.z_m),
+                   std::max(box.z_high_m, p.z_m)};
         }
-        if ((da >= 0) != (db >= 0)) {
-            const double s = da / (da - db);
-            part.push_back({a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)});
-        }
-    }
-    return part;
-}
-
-Ring clipped(Ring ring, const PixelBox& area) {
-    ring = clipped(ring, [&](const PixelPoint& p) { return p.x - area.left; });
-    ring = clipped(ring, [&](const PixelPoint& p) { return area.right - p.x; });
-    ring = clipped(ring, [&](const PixelPoint& p) { return p.y - area.bottom; });
-    return clipped(ring, [&](const PixelPoint& p) { return area.top - p.y; });
-}
-
-double area_of(const Ring& ring) {
-    double twice = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        twice += a.x * b.y - a.y * b.x;
-    }
-    return std::abs(twice) / 2;
-}
-
-PixelBox box_of(const Ring& ring) {
-    PixelBox box{ring[0].x, ring[0].x, ring[0].y, ring[0].y};
-    for (const PixelPoint& p : ring) {
-        box = {std::min(box.left, p.x), std::max(box.right, p.x), std::min(box.bottom, p.y), std::max(box.top, p.y)};
     }
     return box;
 }
 
-bool is_inside(const Ring& ring, const PixelPoint& p) {
+/// Whether a point is in the area of rings; holes are rings, too.
+bool is_inside(const std::vector<Ring>& rings, const PlanePoint& p) {
     bool inside = false;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) {
-            inside = !inside;
+    for (const Ring& ring : rings) {
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const PlanePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+            if ((a.z_m > p.z_m) != (b.z_m > p.z_m) &&
+                p.x_m < a.x_m + (p.z_m - a.z_m) / (b.z_m - a.z_m) * (b.x_m - a.x_m)) {
+                inside = !inside;
+            }
         }
     }
     return inside;
 }
 
-/// The point of a ring nearest to p.
-PixelPoint nearest_point(const Ring& ring, const PixelPoint& p) {
-    PixelPoint nearest = ring[0];
-    double min_distance = std::hypot(nearest.x - p.x, nearest.y - p.y);
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
-        const double along = squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0., 1.) : 0;
-        const PixelPoint candidate{a.x + along * dx, a.y + along * dy};
-        if (const double distance = std::hypot(candidate.x - p.x, candidate.y - p.y); distance < min_distance) {
-            min_distance = distance;
-            nearest = candidate;
-        }
-    }
-    return nearest;
+bool crosses(const Ring& line, bool is_closed, const Bounds& box) {
+    return !clipped_line(line, is_closed, box).empty();
 }
 
-PixelBox around(const PixelPoint& middle, double width, double height) {
-    return {middle.x - width / 2, middle.x + width / 2, middle.y - height / 2, middle.y + height / 2};
+bool any_crosses(const std::vector<Ring>& lines, bool are_closed, const Bounds& box) {
+    return std::any_of(lines.begin(), lines.end(), [&](const Ring& line) { return crosses(line, are_closed, box); });
 }
 
-/// Whether nine points of a box satisfy something.
-template <class Predicate>
-bool all_points(const PixelBox& box, Predicate holds) {
-    for (const double s : {0., 0.5, 1.}) {
-        for (const double t : {0., 0.5, 1.}) {
-            if (!holds(PixelPoint{box.left + s * (box.right - box.left), box.bottom + t * (box.top - box.bottom)})) {
-                return false;
+bool covers_area(const std::vector<Ring>& fill, const Bounds& box) {
+    return any_crosses(fill, true, box) || is_inside(fill, middle_of(box));
+}
+
+bool is_loop(const Ring& line) {
+    return line.size() > 3 && line.front().x_m == line.back().x_m && line.front().z_m == line.back().z_m;
+}
+
+bool covers_line(const Ring& line, const Bounds& box) {
+    return crosses(line, false, box) || (is_loop(line) && is_inside({line}, middle_of(box)));
+}
+
+PlanePoint nearest_in(const Bounds& box, const PlanePoint& p) {
+    return {std::clamp(p.x_m, box.x_low_m, box.x_high_m), std::clamp(p.z_m, box.z_low_m, box.z_high_m)};
+}
+
+/// The shortest line from a box to lines.
+std::pair<PlanePoint, PlanePoint> shortest_line(const Bounds& box, const std::vector<Ring>& lines) {
+    std::pair<PlanePoint, PlanePoint> shortest;
+    double min_m = HUGE_VAL;
+    const PlanePoint middle = middle_of(box);
+    for (const Ring& line : lines) {
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const PlanePoint &a = line[i], &b = line[i + 1];
+            const double dx = b.x_m - a.x_m, dz = b.z_m - a.z_m, squared = dx * dx + dz * dz;
+            const double along = ((middle.x_m - a.x_m) * dx + (middle.z_m - a.z_m) * dz) / (squared > 0 ? squared : 1);
+            for (const double part : {0., std::clamp(along, 0., 1.), 1.}) {
+                const PlanePoint to{a.x_m + part * dx, a.z_m + part * dz};
+                const PlanePoint from = nearest_in(box, to);
+                if (const double length_m = std::hypot(to.x_m - from.x_m, to.z_m - from.z_m); length_m < min_m) {
+                    min_m = length_m;
+                    shortest = {from, to};
+                }
             }
         }
     }
-    return true;
-}
-
-bool has_point_in(const PixelBox& box, const Ring& ring) {
-    return !all_points(box, [&](const PixelPoint& p) { return !is_inside(ring, p); });
+    return shortest;
 }
 
 class Placement {
  public:
-    Placement(const std::vector<NamedShape>& shapes, const PixelBox& area, double height_px,
-              const std::function<int(const PixelPoint&)>& color_at)
-        : area_(area), height_px_(height_px), color_at_(color_at) {
-        for (const NamedShape& shape : shapes) {
-            Visible visible{shape.width_px, shape.is_filled, {}};
-            double largest = 3;  // smaller parts are invisible
-            for (const Ring& ring : shape.rings) {
-                Ring part = clipped(ring, area);
-                if (part.empty()) {
-                    continue;
-                }
-                const PixelBox box = box_of(part);
-                // Lines have no area, only a length.
-                const double size = area_of(part) + std::hypot(box.right - box.left, box.top - box.bottom);
-                if (size > largest) {
-                    largest = size;
-                    visible.main = part;
-                }
-                pieces_.push_back({visible_.size(), shape.is_filled, std::move(part)});
-            }
-            visible_.push_back(std::move(visible));
-        }
-    }
+    Placement(const std::vector<NamedShape>& shapes, const LabelGround& ground) : shapes_(shapes), ground_(ground) {}
 
     std::vector<PlacedLabel> place() {
         // Names inside their shapes come first, so that names beside shapes can avoid them.
         for (const auto find : {&Placement::find_inside, &Placement::find_beside}) {
-            for (std::size_t i = 0; i < visible_.size(); ++i) {
+            for (std::size_t i = 0; i < shapes_.size(); ++i) {
                 const bool is_placed = std::any_of(labels_.begin(), labels_.end(),
                                                    [i](const PlacedLabel& label) { return label.shape == i; });
-                if (!is_placed && !visible_[i].main.empty()) {
+                if (!is_placed && !(shapes_[i].fill.empty() && shapes_[i].edges.empty())) {
                     (this->*find)(i);
                 }
             }
@@ -141,185 +119,160 @@ class Placement {
     }
 
  private:
-    /// A shape that may be visible.
-    struct Visible {
-        double width_px;
-        bool is_filled;
-        Ring main;  ///< its largest part within the area; empty when nothing can be seen
-    };
-    /// A part of a shape within the area.
-    struct Piece {
-        std::size_t shape;
-        bool is_filled;
-        Ring ring;
-    };
+    [[nodiscard]] double pixels(double count) const { return count / ground_.px_per_m; }
 
-    [[nodiscard]] bool is_free(const PixelBox& box) const {
-        return area_.holds(box) && std::none_of(labels_.begin(), labels_.end(),
-                                                [&](const PlacedLabel& label) { return label.box.meets(box); });
+    /// Whether no name, leader or taken line is in a box.
+    [[nodiscard]] bool is_free(const Bounds& box) const {
+        return holds(ground_.area, box) &&
+               std::none_of(
+                   labels_.begin(), labels_.end(),
+                   [&](const PlacedLabel& label) {
+                       return meet(label.box, box) ||
+                              (label.leader && crosses({label.leader->first, label.leader->second}, false, box));
+                   }) &&
+               std::none_of(ground_.taken.begin(), ground_.taken.end(),
+                            [&](const Ring& line) { return covers_line(line, box); });
     }
 
-    /// Whether the background of a box is of one colour.
-    [[nodiscard]] bool is_plain(const PixelBox& box) const {
-        constexpr double step_px = 6;
-        const int color = color_at_(box.middle());
-        for (double y = box.bottom; y <= box.top; y += step_px) {
-            for (double x = box.left; x <= box.right; x += step_px) {
-                if (color_at_({x, y}) != color) {
+    /// Whether a box is beside all shapes, on one background on which names may stand.
+    [[nodiscard]] bool is_on_ground(const Bounds& box) const {
+        if (std::any_of(shapes_.begin(), shapes_.end(), [&](const NamedShape& shape) {
+                return covers_area(shape.fill, box) || any_crosses(shape.edges, false, box);
+            })) {
+            return false;
+        }
+        const double step_m = pixels(2);
+        const int background = ground_.background(middle_of(box));
+        const auto count = [step_m](double size_m) { return static_cast<int>(std::ceil(size_m / step_m)); };
+        const int columns = count(box.x_high_m - box.x_low_m), rows = count(box.z_high_m - box.z_low_m);
+        for (int k = 0; k <= rows && background >= 0; ++k) {
+            for (int i = 0; i <= columns; ++i) {
+                const PlanePoint at{box.x_low_m + (box.x_high_m - box.x_low_m) * i / columns,
+                                    box.z_low_m + (box.z_high_m - box.z_low_m) * k / rows};
+                if (ground_.background(at) != background) {
                     return false;
                 }
             }
         }
-        return true;
-    }
-
-    /// Whether the outline of a shape passes through a box.
-    [[nodiscard]] bool crosses_lines(const PixelBox& box) const {
-        constexpr double step_px = 3;
-        for (const auto& [shape, is_filled, ring] : pieces_) {
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                const PixelPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
-                const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / step_px);
-                for (double k = 0; k < steps; ++k) {
-                    if (box.holds(PixelPoint{a.x + k / steps * (b.x - a.x), a.y + k / steps * (b.y - a.y)})) {
-                        return true;
-                    }
-                }
-            }
-        }
-        return false;
-    }
-
-    /// Whether a box lies on no filled shape, its own included.
-    [[nodiscard]] bool is_off_shapes(const PixelBox& box) const {
-        return std::none_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
-            return piece.is_filled && box_of(piece.ring).meets(box) &&
-                   (has_point_in(box, piece.ring) || std::any_of(piece.ring.begin(), piece.ring.end(),
-                                                                 [&](const PixelPoint& p) { return box.holds(p); }));
-        });
+        return background >= 0;
     }
 
     void find_inside(std::size_t i) {
-        constexpr double room = 4;
-        const Visible& shape = visible_[i];
-        const PixelBox bounds = box_of(shape.main);
-        const PixelPoint middle = bounds.middle();
-        const double inset = height_px_ / 2 + room;
-        std::vector<double> heights{middle.y};
-        if (!shape.is_filled) {
-            // Names of outlines stay near the edge if possible: the inside may belong to other shapes.
-            heights = {bounds.top - inset, bounds.bottom + inset};
-            for (double y = bounds.top - 2 * inset; y > bounds.bottom + inset; y -= inset) {
-                heights.push_back(y);
-            }
-        }
-        for (const double y : heights) {
-            for (const double x : {middle.x, (middle.x + bounds.left) / 2, (middle.x + bounds.right) / 2,
-                                   bounds.left + shape.width_px / 2 + room, bounds.right - shape.width_px / 2 - room}) {
-                const PixelBox box = around({x, y}, shape.width_px, height_px_);
-                const bool fits = all_points(box, [&](const PixelPoint& p) { return is_inside(shape.main, p); });
-                if (fits && is_free(box) &&
-                    (shape.is_filled ? !covers_other(box, i) : is_off_shapes(box) && is_plain(box))) {
-                    labels_.push_back({i, box, shape.is_filled, !shape.is_filled && crosses_lines(box), {}});
+        const NamedShape& shape = shapes_[i];
+        const double width_m = shape.name_width_m + pixels(4);
+        for (const Ring& part : shape.fill) {
+            const Bounds bounds = box_of({part});
+            const auto [x_m, z_m] = middle_of(bounds);
+            for (const double at_m : {x_m, (x_m + bounds.x_low_m) / 2, (x_m + bounds.x_high_m) / 2,
+                                      bounds.x_low_m + width_m / 2, bounds.x_high_m - width_m / 2}) {
+                const Bounds box = around({at_m, z_m}, width_m, ground_.height_m);
+                if (is_inside(shape.fill, middle_of(box)) && !any_crosses(shape.fill, true, box) && is_free(box) &&
+                    !covers_others(box, i)) {
+                    labels_.push_back({i, box, true, {}});
                     return;
                 }
             }
         }
     }
 
-    [[nodiscard]] bool covers_other(const PixelBox& box, std::size_t own) const {
-        return std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
-            return piece.shape != own && piece.is_filled && has_point_in(box, piece.ring);
-        });
-    }
-
-    /// Whether a line from a name to its shape crosses other filled shapes or names.
-    [[nodiscard]] bool crosses_other(const PixelPoint& from, const PixelPoint& to, std::size_t own) const {
-        constexpr int steps = 32;
-        for (int k = 0; k <= steps; ++k) {
-            const double s = static_cast<double>(k) / steps;
-            const PixelPoint p{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)};
-            if (std::any_of(pieces_.begin(), pieces_.end(),
-                            [&](const Piece& piece) {
-                                return piece.shape != own && piece.is_filled && is_inside(piece.ring, p);
-                            }) ||
-                std::any_of(labels_.begin(), labels_.end(),
-                            [&p](const PlacedLabel& label) { return label.box.holds(p); })) {
+    [[nodiscard]] bool covers_others(const Bounds& box, std::size_t own) const {
+        for (std::size_t i = 0; i < shapes_.size(); ++i) {
+            if (i != own && covers_area(shapes_[i].fill, box)) {
                 return true;
             }
         }
         return false;
     }
 
-    /// Middles of boxes around a shape, `gap` away from it, the best first.
-    static std::vector<PixelPoint> places_around(const PixelBox& shape, double gap, double width, double height) {
-        const double up = shape.top + gap + height / 2, down = shape.bottom - gap - height / 2;
-        const double right = shape.right + gap + width / 2, left = shape.left - gap - width / 2;
-        const auto [x, y] = shape.middle();
-        std::vector<PixelPoint> places{{x, up},     {right, y}, {left, y},     {x, down},
+    /// Whether a leader crosses a name, a taken line, or the area of another shape.
+    [[nodiscard]] bool is_crossed(const std::pair<PlanePoint, PlanePoint>& leader, std::size_t own) const {
+        constexpr int steps = 32;
+        for (int k = 0; k < steps; ++k) {
+            const auto at = [&](int step) {
+                const double s = static_cast<double>(step) / steps;
+                return PlanePoint{leader.first.x_m + s * (leader.second.x_m - leader.first.x_m),
+                                  leader.first.z_m + s * (leader.second.z_m - leader.first.z_m)};
+            };
+            const PlanePoint a = at(k), b = at(k + 1);
+            const Bounds piece{std::min(a.x_m, b.x_m) - pixels(1), std::max(a.x_m, b.x_m) + pixels(1),
+                               std::min(a.z_m, b.z_m) - pixels(1), std::max(a.z_m, b.z_m) + pixels(1)};
+            if (!is_free_of_lines(piece) || covers_others(piece, own)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] bool is_free_of_lines(const Bounds& piece) const {
+        return std::none_of(
+                   labels_.begin(), labels_.end(),
+                   [&](const PlacedLabel& label) {
+                       return meet(label.box, piece) ||
+                              (label.leader && crosses({label.leader->first, label.leader->second}, false, piece));
+                   }) &&
+               std::none_of(ground_.taken.begin(), ground_.taken.end(),
+                            [&](const Ring& line) { return crosses(line, false, piece); });
+    }
+
+    /// Middles of boxes around a shape, `gap_m` away from it, the best first.
+    static std::vector<PlanePoint> places_around(const Bounds& shape, double gap_m, double width_m, double height_m) {
+        const double up = shape.z_high_m + gap_m + height_m / 2, down = shape.z_low_m - gap_m - height_m / 2;
+        const double right = shape.x_high_m + gap_m + width_m / 2, left = shape.x_low_m - gap_m - width_m / 2;
+        const auto [x, z] = middle_of(shape);
+        std::vector<PlanePoint> places{{x, up},     {right, z}, {left, z},     {x, down},
                                        {right, up}, {left, up}, {right, down}, {left, down}};
         for (const double part : {0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0., 1.}) {
-            const double low = shape.left + width / 2, high = std::max(low, shape.right - width / 2);
-            const double along = std::clamp(shape.left + part * (shape.right - shape.left), low, high);
+            const double low = shape.x_low_m + width_m / 2, high = std::max(low, shape.x_high_m - width_m / 2);
+            const double along = std::clamp(shape.x_low_m + part * (shape.x_high_m - shape.x_low_m), low, high);
             places.push_back({along, up});
             places.push_back({along, down});
         }
         return places;
     }
 
-    enum class Demand { plain_and_direct, off_shapes, free };
-
-    [[nodiscard]] bool meets(Demand demand, const PixelBox& box, std::size_t i) const {
+    bool try_place(std::size_t i, const PlanePoint& middle) {
+        const NamedShape& shape = shapes_[i];
+        const Bounds box = around(middle, shape.name_width_m, ground_.height_m);
         if (!is_free(box)) {
             return false;
         }
-        switch (demand) {
-            case Demand::plain_and_direct:
-                return is_off_shapes(box) && is_plain(box) &&
-                       !crosses_other(box.middle(), nearest_point(visible_[i].main, box.middle()), i);
-            case Demand::off_shapes:
-                return is_off_shapes(box);
-            case Demand::free:
-                return true;
+        const auto line = shortest_line(box, shape.edges);
+        const double length_m = std::hypot(line.second.x_m - line.first.x_m, line.second.z_m - line.first.z_m);
+        const bool is_beside = length_m <= pixels(8);
+        if ((!is_beside && is_crossed(line, i)) || !is_on_ground(box)) {
+            return false;
         }
+        PlacedLabel label{i, box, false, {}};
+        if (!is_beside) {
+            label.leader = line;
+        }
+        labels_.push_back(std::move(label));
         return true;
     }
 
     void find_beside(std::size_t i) {
-        constexpr double nearest_px = 3;
-        constexpr int distances = 12;
-        const Visible& shape = visible_[i];
-        const PixelBox bounds = box_of(shape.main);
-        for (const Demand demand : {Demand::plain_and_direct, Demand::off_shapes, Demand::free}) {
-            for (int k = 0; k < distances; ++k) {
-                const double gap = nearest_px + k * height_px_ * 0.8;
-                for (const PixelPoint& place : places_around(bounds, gap, shape.width_px, height_px_)) {
-                    const PixelBox box = around(place, shape.width_px, height_px_);
-                    if (meets(demand, box, i)) {
-                        labels_.push_back({i, box, false, !is_plain(box) || crosses_lines(box), {}});
-                        if (k > 0) {
-                            labels_.back().leader = nearest_point(shape.main, place);
-                        }
-                        return;
-                    }
-                }
+        constexpr int distances = 7;
+        const NamedShape& shape = shapes_[i];
+        const Bounds bounds = box_of(shape.edges);
+        for (int k = -1; k < distances; ++k) {
+            // The first distance is within an outline, at its upper or lower edge.
+            const double gap_m = k < 0 ? -ground_.height_m - pixels(3) : pixels(3) + k * ground_.height_m * 0.8;
+            const auto places = places_around(bounds, gap_m, shape.name_width_m, ground_.height_m);
+            if (std::any_of(places.begin(), places.end(), [&](const PlanePoint& at) { return try_place(i, at); })) {
+                return;
             }
         }
     }
 
-    PixelBox area_;
-    double height_px_;
-    const std::function<int(const PixelPoint&)>& color_at_;
-    std::vector<Visible> visible_;
-    std::vector<Piece> pieces_;
+    const std::vector<NamedShape>& shapes_;
+    const LabelGround& ground_;
     std::vector<PlacedLabel> labels_;
 };
 
 }  // namespace
 
-std::vector<PlacedLabel> place_labels(const std::vector<NamedShape>& shapes, const PixelBox& area, double height_px,
-                                      const std::function<int(const PixelPoint&)>& color_at) {
-    return Placement(shapes, area, height_px, color_at).place();
+std::vector<PlacedLabel> place_labels(const std::vector<NamedShape>& shapes, const LabelGround& ground) {
+    return Placement(shapes, ground).place();
 }
 
 }  // namespace downwash

@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "downwash/report/label_placement.hpp"
 #include "downwash/report/picture_text.hpp"
 #include "downwash/report/planar_geometry.hpp"
 
@@ -155,46 +154,56 @@ void add_obstacle_data(GnuplotScript& script, const std::vector<VisibleOutline>&
     }
 }
 
-void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
-                        const FieldLayout& layout) {
+std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
+                                      const FieldLayout& layout) {
     const Bounds& extent = figure.extent;
     const double px_per_m = layout.width() / (extent.x_high_m - extent.x_low_m);
     std::vector<NamedShape> shapes;
     for (const VisibleOutline& visible : outlines) {
-        const ObstacleOutline& outline = visible.outline;
-        NamedShape shape{outline.name, text_width_px(shown_name(outline.name), font_px) + 6, outline.is_cut, {}};
-        for_each_ring(outline, [&](const Ring& ring) {
-            auto& pixels = shape.rings.emplace_back();
-            for (const PlanePoint& p : ring) {
-                pixels.push_back({layout.left + (p.x_m - extent.x_low_m) * px_per_m,
-                                  layout.bottom + (p.z_m - extent.z_low_m) * px_per_m});
-            }
-        });
-        shapes.push_back(std::move(shape));
+        const double name_width_px = text_width_px(shown_name(visible.outline.name), font_px) + 6;
+        shapes.push_back({name_width_px / px_per_m, visible.fill, visible.edges});
     }
-    const PixelBox area{layout.left + 2, layout.right - 2, layout.bottom + 2, layout.top - 2};
-    // A name hides nothing where the field has one colour.
-    const auto color_at = [&](const PixelPoint& p) {
-        const double place = position_on(figure.scale, figure.value(extent.x_low_m + (p.x - layout.left) / px_per_m,
-                                                                    extent.z_low_m + (p.y - layout.bottom) / px_per_m));
-        return std::isnan(place) ? -1 : static_cast<int>(place);
+    LabelGround ground;
+    const double rim_m = 2 / px_per_m;
+    ground.area = {extent.x_low_m + rim_m, extent.x_high_m - rim_m, extent.z_low_m + rim_m, extent.z_high_m - rim_m};
+    ground.px_per_m = px_per_m;
+    ground.height_m = label_height_px / px_per_m;
+    for (const FigureLines& lines : figure.lines) {
+        ground.taken.insert(ground.taken.end(), lines.pieces.begin(), lines.pieces.end());
+    }
+    for (const FigurePoints& points : figure.points) {
+        for (const auto& [x_m, z_m] : points.points) {
+            const double size_m = 8 / px_per_m;
+            ground.taken.push_back({{x_m - size_m, z_m - size_m},
+                                    {x_m + size_m, z_m - size_m},
+                                    {x_m + size_m, z_m + size_m},
+                                    {x_m - size_m, z_m + size_m},
+                                    {x_m - size_m, z_m - size_m}});
+        }
+    }
+    const auto class_at = [&scale = figure.scale](double value) {
+        const double place = position_on(scale, value);
+        return std::isnan(place) ? -1 : std::min(static_cast<int>(place), static_cast<int>(scale.colors.size()) - 1);
     };
-    for (const PlacedLabel& label : place_labels(shapes, area, label_height_px, color_at)) {
-        const PixelPoint middle = label.box.middle();
+    ground.background = [&figure, class_at](const PlanePoint& at) {
+        const int here = class_at(figure.value(at.x_m, at.z_m));
+        return figure.scale.neutral && here != class_at(*figure.scale.neutral) ? -1 : here;
+    };
+    return place_labels(shapes, ground);
+}
+
+void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
+                        const FieldLayout& layout) {
+    for (const PlacedLabel& label : placed_names(figure, outlines, layout)) {
         if (label.leader) {
-            script.add("set arrow from {} to {} nohead front linecolor rgb {} linewidth 0.8",
-                       script.place(std::clamp(label.leader->x, label.box.left, label.box.right),
-                                    std::clamp(label.leader->y, label.box.bottom, label.box.top)),
-                       script.place(label.leader->x, label.leader->y), outline_color);
+            const auto& [from, to] = *label.leader;
+            script.add("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} nohead front linecolor rgb {} linewidth 0.8",
+                       from.x_m, from.z_m, to.x_m, to.z_m, outline_color);
         }
-        if (label.needs_ground) {
-            script.add(
-                "set object rectangle from {} to {} front fillcolor rgb '#ffffff' "
-                "fillstyle solid 0.85 noborder",
-                script.place(label.box.left, label.box.bottom), script.place(label.box.right, label.box.top));
-        }
-        script.add("set label {} at {} center front textcolor rgb {}", in_quotes(shown_name(shapes[label.shape].name)),
-                   script.place(middle.x, middle.y), label.is_inside ? "'#ffffff'" : outline_color);
+        script.add("set label {} at {:.9g},{:.9g} center front textcolor rgb {}",
+                   in_quotes(shown_name(outlines[label.shape].outline.name)),
+                   (label.box.x_low_m + label.box.x_high_m) / 2, (label.box.z_low_m + label.box.z_high_m) / 2,
+                   label.is_inside ? "'#ffffff'" : outline_color);
     }
 }
 

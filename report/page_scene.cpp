@@ -1,5 +1,7 @@
 #include "downwash/report/page_scene.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/report/color_scale.hpp"
 #include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/packed_numbers.hpp"
@@ -189,7 +192,18 @@ std::string_view goal_order(const Problem& problem) {
     return !problem.stops.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
 }
 
-/// The thrust ratio K of the first rotor over the bounds, in 255 steps from minimum to maximum.
+/// The classes of thrust ratios and their colours, as in pictures.
+Json scale_json(const AxisRange& range) {
+    const ColorScale scale = factor_scale("", range);
+    Json colors = Json::array();
+    for (const Color& color : scale.colors) {
+        colors.push_back(fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue));
+    }
+    return {{"limits", scale.limits}, {"colors", std::move(colors)}};
+}
+
+/// The thrust ratio K of the first rotor over the bounds, in 255 steps from minimum to maximum. Evaluated directly: the
+/// map, which knows where a rotor can fly, may be off by as much as a class of the scale.
 Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& map) {
     constexpr double max_points = 120'000;
     constexpr std::uint8_t not_flyable = 255;
@@ -207,7 +221,7 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
         const double x_m = bounds.x_low_m + cell_m * static_cast<double>(i % columns);
         const double z_m = bounds.z_low_m + cell_m * static_cast<double>(row);
         if (map.is_flyable(layer, x_m, z_m)) {
-            factors[i] = map.factor(layer, x_m, z_m);
+            factors[i] = model.direct_factor(0, x_m, z_m);
             low = std::min(low, factors[i]);
             high = std::max(high, factors[i]);
         }
@@ -231,6 +245,7 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
             {"rows", rows},
             {"factor_low", low},
             {"factor_high", high},
+            {"scale", scale_json({low, high})},
             {"levels", packed.text()}};
 }
 

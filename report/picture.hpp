@@ -21,6 +21,7 @@ enum class PictureFormat {
 struct PictureSettings {
     PictureFormat format = PictureFormat::svg;
     int width_px = 1200;  ///< from min_picture_width_px to max_picture_width_px
+    int threads = 1;      ///< at least 1; the picture does not depend on it
 };
 
 /// Limits of PictureSettings::width_px.

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/report/factor_field.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 
 namespace downwash {
@@ -19,7 +19,7 @@ namespace {
 using Pieces = std::vector<Ring>;
 
 constexpr Color flown_color = color_of(0xd55e00), planned_color = color_of(0x555555),
-                end_effector_color = color_of(0x0072b2), goal_color = color_of(0xcc79a7);
+                end_effector_color = color_of(0x00805e), goal_color = color_of(0xa3397a);
 
 void require_flight(const RunRecord& run) {
     if (run.flight.rows() < 2) {
@@ -209,7 +209,7 @@ std::vector<Curve> rotor_curves(const Flight& flight, std::size_t rotors, const 
 
 }  // namespace
 
-FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
+FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
     require_flight(run);
     const Flight flight{run.flight};
     FieldFigure figure;
@@ -221,30 +221,25 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model, cons
                     to_text((flight["t_s"][rows[1]] - flight["t_s"][rows[0]]), 3), to_text(flight["t_s"].back(), 4));
     figure.extent = shown_extent(run, flight);
     figure.obstacles = obstacle_outlines(model.effect(0).scene(), run.problem.plane, 0);
-    const std::size_t layer = model.rotor_layer(0);
-    figure.value = [map, layer](double x_m, double z_m) {
-        return map != nullptr && map->is_flyable(layer, x_m, z_m) ? map->factor(layer, x_m, z_m)
-                                                                  : std::numeric_limits<double>::quiet_NaN();
-    };
+    figure.value = factor_field(model.layer(0), model.plane());
     figure.has_contour_lines = false;
-    // Over the bounds, so that all runs of a problem have the same scale.
-    const Bounds& bounds = run.problem.bounds;
-    constexpr int steps = 200;
-    const AxisRange range =
-        value_range(figure.value, {bounds.x_low_m, bounds.x_high_m, bounds.z_low_m, bounds.z_high_m}, steps, 1);
-    figure.scale = factor_scale("aero factor K of rotor 1 there", range.low, range.high);
+    figure.scale = factor_scale("aero factor K of rotor 1 there",
+                                factor_range(figure, rotor_extent(model.robot().rotors, run.problem.bounds)));
 
     Pieces flown, planned;
     for (const std::size_t row : rows) {
         robot.add_to(planned, flight["ref_x_m"][row], flight["ref_z_m"][row], 0, flight["ref_arm_rad"][row]);
         robot.add_to(flown, flight["x_m"][row], flight["z_m"][row], flight["pitch_rad"][row], flight["arm_rad"][row]);
     }
-    figure.lines = {
-        {"planned: the reference, drawn level", planned, planned_color, 1, true},
-        {"", {planned_way(run)}, planned_color, 1, true},
-        {"way of the end effector", {way(flight["ee_x_m"], flight["ee_z_m"])}, end_effector_color, 1.5, true},
-        {"flown", flown, flown_color, 1.6},
-        {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
+    figure.lines = {{"planned: the reference, drawn level", planned, planned_color, 1.3, LineDash::dotted},
+                    {"", {planned_way(run)}, planned_color, 1.3, LineDash::dotted},
+                    {"way of the end effector",
+                     {way(flight["ee_x_m"], flight["ee_z_m"])},
+                     end_effector_color,
+                     1.6,
+                     LineDash::dash_dotted},
+                    {"flown", flown, flown_color, 1.6},
+                    {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
     figure.points = goal_points(run.problem);
     return figure;
 }

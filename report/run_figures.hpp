@@ -10,11 +10,10 @@
 namespace downwash {
 
 /// The snapshot diagram of a run, as in figures C.6 and C.7 of the thesis: executed and planned vehicle and arm at
-/// equal intervals of time, over the scene and its aero map.
-/// @param model of run.problem   @param map of the same problem; nullptr: the scene alone
+/// equal intervals of time, over the scene and the thrust ratio K of its first rotor.
+/// @param model of run.problem; the figure is valid while it exists
 /// @throws InputError when nothing was flown
-[[nodiscard]] DOWNWASH_EXPORT FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model,
-                                                          const AeroMap* map);
+[[nodiscard]] DOWNWASH_EXPORT FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model);
 
 /// Diagrams over time, one below the other: tracking error, pitch and arm, rotor commands, aero factors,
 /// clearance, power. @throws InputError when nothing was flown

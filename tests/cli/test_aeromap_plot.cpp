@@ -35,6 +35,8 @@ TEST_CASE("The aero map of a problem is drawn with its obstacles") {
                             Contains(">1.05<"));
     CHECK(picture.size() < 2'000'000);
     CHECK(work.files().size() == 1);
+    CHECK_THAT(plotted(work, "bare.svg", problem_file("bridge_inspection"), "--no-labels"),
+               !Contains("walkway") && Contains("not flyable"));
 }
 
 TEST_CASE("One side, one rotor or place, and a part of the plane may be asked for") {
@@ -129,6 +131,7 @@ TEST_CASE("What cannot be plotted is rejected with a remedy, and leaves no file"
              std::pair{"", "needs one of PROBLEM"},
              {"--model he --what factor", "--what changes nothing"},
              {"--model he --x 0 1", "--x changes nothing"},
+             {"--model he --no-labels", "--no-labels changes nothing"},
              {"--model he --surface ground", "it goes with --data"},
              {"--model he --rotor-spacing 3", "multirotor-images or multirotor-body"},
              {"--data data.csv --max-factor 3", "it goes with --model"},

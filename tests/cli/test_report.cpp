@@ -188,6 +188,7 @@ TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
          {std::pair{"report elsewhere --svg", "elsewhere: there is no such folder"},
           {"report flown --svg --width 10", "--width"},
           {"report flown --width 800", "--width goes with pictures only"},
+          {"report flown --no-labels", "--no-labels goes with pictures only"},
           {"export flown --format roz", "did you mean 'ros'?"},
           {"export flown --format qgc", "give --origin LATITUDE LONGITUDE ALTITUDE"},
           {"export flown --format csv --rate 0", "the rate is 0 Hz"},

@@ -28,33 +28,51 @@ void check_is_sound(const ColorScale& scale) {
 
 }  // namespace
 
-TEST_CASE("factors at or above one have limits that are finest at one, and ever darker colours") {
-    const ColorScale scale = factor_scale("K", 1, 2);
-    check_is_sound(scale);
-    CHECK(scale.limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 2});
-    CHECK(scale.colors.front() == Color{255, 255, 255});
-    CHECK(factor_scale("K", 1, 1).limits == std::vector<double>{1, 1.01, 1.02, 1.05});
-    CHECK(factor_scale("K", 1 - 1e-7, 1.2).limits == std::vector<double>{1, 1.01, 1.02, 1.05, 1.1, 1.2});
+TEST_CASE("thrust ratios at or above one have limits that are finest at one, and ever darker colours") {
+    const std::vector<double> usual{1, 1.01, 1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 2};
+    for (const auto& [low, high] : {std::pair(1.0, 1.0), {1.0, 1.04}, {1.0, 2.0}, {1 - 1e-7, 2 + 1e-7}}) {
+        const ColorScale scale = factor_scale("K", {low, high});
+        check_is_sound(scale);
+        CHECK(scale.limits == usual);
+        CHECK(scale.colors.front() == Color{255, 255, 255});
+    }
+    CHECK(factor_scale("K", {1, 50}).limits.back() == 101);
     // Each colour is darker than the one before.
-    for (const ColorScale& rising : {factor_scale("K", 1, 2), factor_scale("K", 1, 50), linear_scale("v", -3, 4)}) {
+    for (const ColorScale& rising : {factor_scale("K", {1, 2}), factor_scale("K", {1, 50}), linear_scale("v", -3, 4)}) {
         for (std::size_t i = 0; i + 1 < rising.colors.size(); ++i) {
             CHECK(luminance(rising.colors[i + 1]) < luminance(rising.colors[i]));
         }
     }
 }
 
-TEST_CASE("factors below one are blue, above one red, about one neutral") {
-    const ColorScale scale = factor_scale("K", 0.93, 1.2);
+TEST_CASE("thrust ratios above one are blue, below one yellow to brown, about one white") {
+    const ColorScale scale = factor_scale("K", {0.93, 1.2});
     check_is_sound(scale);
     CHECK(scale.limits.front() == Approx(0.9));
-    CHECK(scale.limits.back() == Approx(1.2));
+    CHECK(scale.limits.back() == 2);
     const auto color_of = [&](double value) {
         return scale.colors[static_cast<std::size_t>(position_on(scale, value))];
     };
-    CHECK(color_of(1) == Color{247, 247, 247});
-    CHECK(color_of(0.96).blue > color_of(0.96).red);
-    CHECK(color_of(1.04).red > color_of(1.04).blue);
-    CHECK(factor_scale("K", 0, 1).limits.front() == Approx(0.0).margin(1e-12));
+    for (const double one : {0.995, 1.0, 1.005}) {
+        CHECK(color_of(one) == Color{255, 255, 255});
+    }
+    CHECK(color_of(1.04).blue > color_of(1.04).red);
+    CHECK(color_of(0.96).red > color_of(0.96).blue);
+    CHECK(luminance(color_of(0.91)) < luminance(color_of(0.96)));
+    CHECK(factor_scale("K", {0, 1}).limits.front() == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("a thrust ratio has the same colour on every scale") {
+    const ColorScale all = factor_scale("K", {0, 100});
+    test::Random random(3);
+    for (int i = 0; i < 200; ++i) {
+        const double low = random.uniform(0, 1.5), high = random.uniform(1, 4);
+        const ColorScale scale = factor_scale("K", {low, high});
+        for (std::size_t k = 0; k < scale.colors.size(); ++k) {
+            const double middle = (scale.limits[k] + scale.limits[k + 1]) / 2;
+            REQUIRE(scale.colors[k] == all.colors[static_cast<std::size_t>(position_on(all, middle))]);
+        }
+    }
 }
 
 TEST_CASE("a value stands within its class, and those outside at the ends") {

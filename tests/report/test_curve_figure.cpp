@@ -96,3 +96,21 @@ TEST_CASE("a curve is dotted outside the range in which it is known, and the leg
     figure.curves = {{"known nowhere here", {{0, 1}, {1, 1.1}}, AxisRange{5, 6}}};
     CHECK_NOTHROW(draw(figure, {PictureFormat::svg, 800}));
 }
+
+TEST_CASE("a curve that lies over another is broken, so that both can be seen") {
+    CurveFigure figure;
+    figure.y_range = AxisRange{0, 3};
+    figure.curves = {{"below", {{0, 1}, {1, 2}}}, {"above", {{0, 1}, {1, 2}}}};
+    const auto dashed_lines = [&figure] {
+        const std::string picture = draw(figure, {PictureFormat::svg, 600});
+        int count = 0;
+        for (std::size_t at = picture.find("dasharray"); at != std::string::npos;
+             at = picture.find("dasharray", at + 1)) {
+            ++count;
+        }
+        return count;
+    };
+    const int with_both = dashed_lines();
+    figure.curves[1].points[1].y = 2.5;
+    CHECK(dashed_lines() == with_both - 2);  // the curve and its sample in the legend
+}

@@ -20,15 +20,15 @@ FieldFigure sample_figure() {
     figure.title = "A pole and a box";
     figure.subtitle = "for the test";
     figure.extent = {-4, 4, -2, 2};
-    figure.scale = factor_scale("K [1]", 1, 2);
+    figure.scale = factor_scale("K [1]", {1, 2});
     figure.value = [](double x_m, double z_m) {
         const double r = std::hypot(x_m, z_m);
-        return r < 0.5 ? undefined : 1 + 0.25 / (r * r);
+        return r < 0.5 ? undefined : 1 + 0.01 / (r * r);
     };
     figure.obstacles = {{"box_of_bricks", true, {{{2, -1}, {3, -1}, {3, 1}, {2, 1}}}, {}},
                         {"sheet", true, {}, {{{-3, 0}, {-2, 1}}}},
                         {"beside", false, {{{-1, -1}, {1, -1}, {1, 1}}}, {}}};
-    figure.lines = {{"a boundary", {{{-4, 1}, {0, 1.5}, {4, 1}}}, {200, 0, 0}, 2, true, true}};
+    figure.lines = {{"a boundary", {{{-4, 1}, {0, 1.5}, {4, 1}}}, {200, 0, 0}, 2, LineDash::dashed, true}};
     figure.points = {{"a point", {{1, 1}}, {0, 0, 200}}};
     return figure;
 }

@@ -89,7 +89,7 @@ TEST_CASE("the picture of a scan with many cubes in the plane stays small") {
 
     FieldFigure figure;
     figure.extent = {-200, 200, -100, 100};  // 0.33 m a pixel
-    figure.scale = factor_scale("K [1]", 1, 2);
+    figure.scale = factor_scale("K [1]", {1, 2});
     figure.value = [](double, double) { return 1.0; };
     figure.obstacles = outlines;
     CHECK(draw(figure, {PictureFormat::svg, 1200}).size() < 100'000);

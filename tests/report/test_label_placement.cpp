@@ -1,61 +1,95 @@
+#include "downwash/report/label_placement.hpp"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "../support/random.hpp"
-#include "downwash/report/label_placement.hpp"
+#include "../support/solved_run.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/report/obstacle_drawing.hpp"
+#include "downwash/report/run_figures.hpp"
 
 using namespace downwash;
 
 namespace {
 
-constexpr PixelBox area{0, 1000, 0, 600};
-constexpr double height = 18;
+constexpr double height_m = 18;  // one pixel is one metre here
 
-std::vector<PixelPoint> rectangle(double left, double right, double bottom, double top) {
+LabelGround plain_ground() {
+    return {{0, 1000, 0, 600}, 1, height_m, {}, [](const PlanePoint& /*at*/) { return 0; }};
+}
+
+Ring rectangle(double left, double right, double bottom, double top) {
     return {{left, bottom}, {right, bottom}, {right, top}, {left, top}};
 }
 
-int plain(const PixelPoint& /*p*/) {
-    return 0;
+NamedShape solid(double name_width_m, const Ring& ring) {
+    Ring edge = ring;
+    edge.push_back(ring.front());
+    return {name_width_m, {ring}, {edge}};
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+    return a.x_low_m < b.x_high_m && b.x_low_m < a.x_high_m && a.z_low_m < b.z_high_m && b.z_low_m < a.z_high_m;
+}
+
+bool holds(const Bounds& box, const PlanePoint& p) {
+    return p.x_m > box.x_low_m && p.x_m < box.x_high_m && p.z_m > box.z_low_m && p.z_m < box.z_high_m;
+}
+
+/// Calls visit(point) along a line, at most `step_m` apart.
+template <class Visit>
+void walk(const Ring& line, double step_m, const Visit& visit) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        const PlanePoint &a = line[i], &b = line[i + 1];
+        const double steps = std::ceil(std::hypot(b.x_m - a.x_m, b.z_m - a.z_m) / step_m);
+        for (double k = 0; k <= steps && steps > 0; ++k) {
+            visit(PlanePoint{a.x_m + k / steps * (b.x_m - a.x_m), a.z_m + k / steps * (b.z_m - a.z_m)});
+        }
+    }
 }
 
 }  // namespace
 
 TEST_CASE("a name goes into its shape where it fits, else beside it") {
     const auto labels = place_labels(
-        {{"wide", 80, true, {rectangle(100, 300, 100, 200)}}, {"small", 80, true, {rectangle(500, 510, 300, 310)}}},
-        area, height, plain);
+        {solid(80, rectangle(100, 300, 100, 200)), solid(80, rectangle(500, 510, 300, 310))}, plain_ground());
     REQUIRE(labels.size() == 2);
     CHECK(labels[0].is_inside);
-    CHECK(labels[0].box.middle().x == Approx(200));
-    CHECK(labels[0].box.middle().y == Approx(150));
+    CHECK((labels[0].box.x_low_m + labels[0].box.x_high_m) / 2 == Approx(200));
+    CHECK((labels[0].box.z_low_m + labels[0].box.z_high_m) / 2 == Approx(150));
     CHECK_FALSE(labels[1].is_inside);
-    CHECK_FALSE(labels[1].box.meets({500, 510, 300, 310}));
-    CHECK(std::abs(labels[1].box.middle().y - 305) < 40);
+    CHECK_FALSE(meet(labels[1].box, {500, 510, 300, 310}));
+    CHECK_FALSE(labels[1].leader);
+    CHECK(std::abs(labels[1].box.z_low_m - 310) < 8);
 }
 
-TEST_CASE("a shape that is cut off by the area is named where it can be seen, and one outside is not") {
-    const auto labels = place_labels({{"ground", 60, true, {rectangle(-5000, 700, -5000, 30)}},
-                                      {"outside", 60, true, {rectangle(2000, 3000, 0, 100)}}},
-                                     area, height, plain);
+TEST_CASE("a name avoids what is behind it, and says with a line what it belongs to") {
+    LabelGround ground = plain_ground();
+    ground.background = [](const PlanePoint& p) { return std::hypot(p.x_m - 500, p.z_m - 300) < 40 ? -1 : 0; };
+    const auto labels = place_labels({solid(40, rectangle(495, 505, 295, 305))}, ground);
     REQUIRE(labels.size() == 1);
-    CHECK(labels[0].shape == 0);
-    CHECK(labels[0].box.middle().x == Approx(350));
-    CHECK(labels[0].box.middle().y == Approx(15));
-}
-
-TEST_CASE("a name avoids colours that it would hide, and says with a line what it belongs to") {
-    const auto near_shape = [](const PixelPoint& p) {
-        return std::max(0, 7 - static_cast<int>(std::hypot(p.x - 500, p.y - 300) / 8));
-    };
-    const auto labels = place_labels({{"pipe", 40, true, {rectangle(495, 505, 295, 305)}}}, area, height, near_shape);
-    REQUIRE(labels.size() == 1);
-    CHECK_FALSE(labels[0].needs_ground);
-    CHECK(near_shape({labels[0].box.left, labels[0].box.bottom}) == 0);
+    for (const double x_m : {labels[0].box.x_low_m, labels[0].box.x_high_m}) {
+        for (const double z_m : {labels[0].box.z_low_m, labels[0].box.z_high_m}) {
+            CHECK(ground.background({x_m, z_m}) == 0);
+        }
+    }
     REQUIRE(labels[0].leader);
-    CHECK(labels[0].leader->x >= 495);
-    CHECK(labels[0].leader->x <= 505);
+    const PlanePoint end = labels[0].leader->second;
+    CHECK((end.x_m >= 495 && end.x_m <= 505 && end.z_m >= 295 && end.z_m <= 305));
+}
+
+TEST_CASE("a name without a free place is left out") {
+    LabelGround ground = plain_ground();
+    ground.background = [](const PlanePoint& /*at*/) { return -1; };
+    CHECK(place_labels({solid(40, rectangle(495, 505, 295, 305))}, ground).empty());
+    ground = plain_ground();
+    Ring around = rectangle(0, 1000, 0, 600);
+    around.push_back(around.front());
+    ground.taken = {around};  // a line back to its first point takes its inside
+    CHECK(place_labels({solid(40, rectangle(495, 505, 295, 305))}, ground).empty());
+    CHECK(place_labels({solid(40, rectangle(100, 900, 100, 500))}, ground).empty());
 }
 
 TEST_CASE("names never overlap and stay within the area, however many there are") {
@@ -63,19 +97,61 @@ TEST_CASE("names never overlap and stay within the area, however many there are"
     const auto size = [&random] { return random.uniform(2, 120); };
     for (int round = 0; round < 10; ++round) {
         std::vector<NamedShape> shapes;
-        for (int i = 0; i < 25; ++i) {
-            const double left = random.uniform(0, 1000);
-            const double bottom = random.uniform(0, 600);
-            const std::vector<PixelPoint> outline = rectangle(left, left + size(), bottom, bottom + size());
-            shapes.push_back({"name", 30 + size(), i % 3 != 0, {outline}});
+        for (int i = 0; i < 15; ++i) {
+            const double left = random.uniform(0, 880);
+            const double bottom = random.uniform(0, 480);
+            const Ring outline = rectangle(left, left + size(), bottom, bottom + size());
+            shapes.push_back(solid(30 + size(), outline));
+            if (i % 3 == 0) {
+                shapes.back().fill.clear();
+            }
         }
-        const auto labels = place_labels(shapes, area, height, plain);
-        CHECK(labels.size() > 15);
+        const auto labels = place_labels(shapes, plain_ground());
+        CHECK(labels.size() > 5);
         for (std::size_t i = 0; i < labels.size(); ++i) {
-            CHECK(area.holds(labels[i].box));
+            const Bounds& box = labels[i].box;
+            CHECK((box.x_low_m >= 0 && box.x_high_m <= 1000 && box.z_low_m >= 0 && box.z_high_m <= 600));
             for (std::size_t k = 0; k < i; ++k) {
-                CHECK_FALSE(labels[i].box.meets(labels[k].box));
+                CHECK_FALSE(meet(box, labels[k].box));
             }
         }
     }
+}
+
+TEST_CASE("in pictures of every shipped problem no name covers vehicle, paths, goal, other obstacles or bands of K") {
+    std::size_t names = 0;
+    for (const char* name : {"along_the_deck", "box_girder_bay", "bridge_inspection", "culvert", "girder_mesh",
+                             "open_air", "pipe_rack", "window"}) {
+        CAPTURE(name);
+        Problem problem = read_problem(std::string(DOWNWASH_PROBLEMS "/") + name + ".yaml");
+        problem.planner.variant = Variant::mp_arm;
+        problem.uncertainty.reset();
+        const RunRecord run = read_run(test::SolvedRun(problem).folder());
+        const auto model = make_flight_model(run.problem);
+        const FieldFigure figure = snapshot_figure(run, *model);
+        const FieldLayout layout = layout_of(figure, 1200, {});
+        const auto outlines = visible_outlines(figure.obstacles, figure.extent);
+        const double px_m = (figure.extent.x_high_m - figure.extent.x_low_m) / layout.width();
+        for (const PlacedLabel& label : placed_names(figure, outlines, layout)) {
+            ++names;
+            const Bounds& box = label.box;
+            CAPTURE(outlines[label.shape].outline.name);
+            for (double x_m = box.x_low_m; x_m <= box.x_high_m && !label.is_inside; x_m += px_m) {
+                for (double z_m = box.z_low_m; z_m <= box.z_high_m; z_m += px_m) {
+                    REQUIRE(figure.value(x_m, z_m) < 1.0101);  // NaN on obstacles and near them
+                }
+            }
+            for (const FigureLines& lines : figure.lines) {
+                for (const Ring& piece : lines.pieces) {
+                    walk(piece, px_m, [&](const PlanePoint& p) { REQUIRE_FALSE(holds(box, p)); });
+                }
+            }
+            for (const PlanePoint& goal : figure.points.empty() ? Ring{} : figure.points[0].points) {
+                REQUIRE_FALSE(holds(
+                    {box.x_low_m - 5 * px_m, box.x_high_m + 5 * px_m, box.z_low_m - 5 * px_m, box.z_high_m + 5 * px_m},
+                    goal));
+            }
+        }
+    }
+    CHECK(names > 12);
 }

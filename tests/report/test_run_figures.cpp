@@ -15,7 +15,7 @@ using test::record;
 namespace {
 
 FieldFigure snapshots() {
-    return snapshot_figure(record(), *make_flight_model(record().problem), nullptr);
+    return snapshot_figure(record(), *make_flight_model(record().problem));
 }
 
 }  // namespace
@@ -79,5 +79,5 @@ TEST_CASE("a run without a flight has no pictures") {
         column.clear();
     }
     CHECK_THROWS_AS(time_figures(none), InputError);
-    CHECK_THROWS_AS(snapshot_figure(none, *make_flight_model(none.problem), nullptr), InputError);
+    CHECK_THROWS_AS(snapshot_figure(none, *make_flight_model(none.problem)), InputError);
 }

@@ -13,6 +13,7 @@
 
 #include "../support/solved_run.hpp"
 #include "downwash/base/base64.hpp"
+#include "downwash/report/run_figures.hpp"
 
 using namespace downwash;
 using nlohmann::json;
@@ -122,10 +123,25 @@ TEST_CASE("a page's aero map is that of the first rotor within its steps") {
         if (level != 255) {
             ++flyable;
             REQUIRE(std::abs(low + (high - low) * level / 254 - model->effect(0).factor(hub_m)) <
-                    0.011 + (high - low) / 254);
+                    0.501 * (high - low) / 254);
         }
     }
     CHECK(flyable > levels.size() / 14);
+}
+
+TEST_CASE("a page has the classes and colours of the pictures of the same problem") {
+    const SolvedRun run;
+    const json data = data_of(run), shown = data["map"]["scale"];
+    const RunRecord record = read_run(run.folder());
+    const ColorScale scale = snapshot_figure(record, *make_flight_model(record.problem)).scale;
+    CHECK(scale.limits.front() == 1);
+    CHECK(shown["limits"] == json(scale.limits));
+    REQUIRE(shown["colors"].size() == scale.colors.size());
+    for (std::size_t i = 0; i < scale.colors.size(); ++i) {
+        const auto rgb =
+            static_cast<std::uint32_t>(std::stoul(shown["colors"][i].get<std::string>().substr(1), nullptr, 16));
+        CHECK(color_of(rgb) == scale.colors[i]);
+    }
 }
 
 TEST_CASE("obstacles stand on a page as the plane cuts them, as they project, and as solids") {

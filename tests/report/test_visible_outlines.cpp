@@ -120,13 +120,13 @@ void collect(const pugi::xml_node& node, Drawn& drawn) {
 }
 
 constexpr int width_px = 900;
-constexpr double axes_left_px = 80, axes_width_px = 796, below_axes_px = 128;
+constexpr double axes_left_px = 80, axes_width_px = 796, below_axes_px = 138;
 
 /// What the picture of outlines in an extent shows of them.
 Drawn drawn(std::vector<ObstacleOutline> outlines, const Bounds& extent) {
     FieldFigure figure;
     figure.extent = extent;
-    figure.scale = factor_scale("K", 1, 2);
+    figure.scale = factor_scale("K", {1, 2});
     figure.value = [](double, double) { return no_value; };
     for (ObstacleOutline& outline : outlines) {
         outline.name = "o";

@@ -1,5 +1,6 @@
 """Looks: colours, sizes, paper, text of others, access for all, three dimensions."""
 
+import base64
 import io
 import os
 import re
@@ -43,6 +44,17 @@ class Looks(page_test.BrowserTest):
                 other = luminance([int(v) for v in re.findall(r"\d+", color)[:3]])
                 ratio = (max(paper, other) + 0.05) / (min(paper, other) + 0.05)
                 self.assertGreater(ratio, 4.5, (theme, selector, color))
+
+    def test_the_map_has_the_colours_of_the_scale_in_the_data(self):
+        self.open("solved")
+        picture = self.one(".map image.only-light", "e.getAttribute('href')")
+        pixels = np.asarray(Image.open(io.BytesIO(base64.b64decode(picture.split(",")[1]))).convert("RGBA")).reshape(-1, 4)
+        seen = {"#%02x%02x%02x" % tuple(color[:3]) for color in np.unique(pixels, axis=0) if color[3] == 255}
+        self.assertLessEqual(seen, set(sample_page.SCALE["colors"]))
+        self.assertGreater(len(seen), 6)
+        ticks = [float(text) for text in self.every(".color-bar-scale .tick", "e.textContent")]
+        self.assertIn(1.01, ticks)
+        self.assertLessEqual(set(ticks), set(sample_page.SCALE["limits"]))
 
     def test_no_page_is_wider_than_a_phone(self):
         for case in sample_page.CASES:

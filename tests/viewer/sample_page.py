@@ -21,6 +21,10 @@ from packing import flight_json, packed, tree_json, write_page
 from shapes import ball, box, pipe, rectangle, wedge
 
 ARM_M, RADIUS_M = 1.2, 0.1905
+# Any classes: the page has none of its own.
+SCALE = {"limits": [0.9, 0.95, 0.98, 0.99, 1.01, 1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 2],
+         "colors": ["#fe9929", "#fec44f", "#fee391", "#ffffff", "#c6dbef", "#9ecae1", "#6baed6", "#4292c6", "#2171b5",
+                    "#08519c", "#08306b"]}
 ROTORS = [[0.32, 0.32, 0.06], [0.32, -0.32, 0.06], [-0.32, 0.32, 0.06], [-0.32, -0.32, 0.06]]
 COLUMNS = ("t_s,ref_x_m,ref_z_m,ref_arm_rad,x_m,z_m,pitch_rad,arm_rad,vx_m_s,vz_m_s,pitch_rate_rad_s,arm_rate_rad_s,"
            "thrust_cmd_n,pitch_torque_cmd_nm,arm_torque_nm,thrust_n,pitch_torque_nm,aero_factor_min,aero_factor_max,"
@@ -75,7 +79,7 @@ def map_json(obstacles, bounds, cell=0.05):
     levels = np.round((factor_at(obstacles, x, z) - 0.9) / 1.1 * 254).astype(np.uint8)
     levels[distance_to(obstacles, x, z) < 0.3 * RADIUS_M] = 255
     return {"rotor": 1, "lateral_m": 0.32, "x_low_m": x_low, "z_low_m": z_low, "cell_m": cell, "columns": columns,
-            "rows": rows, "factor_low": 0.9, "factor_high": 2.0, "levels": packed(levels.tobytes())}
+            "rows": rows, "factor_low": 0.9, "factor_high": 2.0, "scale": SCALE, "levels": packed(levels.tobytes())}
 
 
 def rest_to_rest(stops, times, t):

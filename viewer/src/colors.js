@@ -1,30 +1,22 @@
-// Colours of the aero map. Free air (factor 1) is the paper itself; more thrust goes to blue, less to ochre,
-// steps of equal lightness, told apart by people who do not tell red from green.
+// Colours of thrust ratios: those of the program's pictures (report/color_scale.cpp), which the page brings as data.
 
-const ramps = {
-    light: {
-        more: ["#ffffff", "#d3e6f3", "#9dc7e4", "#5b9fd0", "#2a73b3", "#0c4a8a", "#082c5c"],
-        less: ["#ffffff", "#f2d9a8", "#d9a441", "#9a6a12"],
-    },
-    dark: {
-        more: ["#13171c", "#173247", "#1c5379", "#2a7aab", "#55a4d4", "#96cbed", "#dcf0fd"],
-        less: ["#13171c", "#4a3710", "#96702a", "#e0b565"],
-    },
-};
+const bytes = (color) => [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16));
 
-function mix(stops, share) {
-    const at = Math.min(1, Math.max(0, share)) * (stops.length - 1);
-    const index = Math.min(stops.length - 2, Math.floor(at));
-    const part = (color, i) => parseInt(color.slice(1 + 2 * i, 3 + 2 * i), 16);
-    return [0, 1, 2].map(
-        (i) => part(stops[index], i) + (at - index) * (part(stops[index + 1], i) - part(stops[index], i)));
+/** The same hue on dark paper: what is dark on white stands out light, and white becomes the paper, #13171c. */
+function on_dark([red, green, blue]) {
+    const high = Math.max(red, green, blue), low = Math.min(red, green, blue);
+    // Turning light to dark in HSL moves all three by the same amount.
+    const turned = [red, green, blue].map((byte) => byte + 255 - high - low);
+    return turned.map((byte, i) => [19, 23, 28][i] + byte * (1 - [19, 23, 28][i] / 255));
 }
 
-/** @returns {[number, number, number]} red, green, blue of a thrust factor */
-export function color_of(factor, {factor_low, factor_high}, theme) {
-    if (factor >= 1) {
-        // The square root spreads the small factors, which are most of the map.
-        return mix(ramps[theme].more, Math.sqrt((factor - 1) / Math.max(1e-9, factor_high - 1)));
-    }
-    return mix(ramps[theme].less, (1 - factor) / Math.max(0.1, 1 - factor_low));
+/** @returns {[number, number, number][]} red, green, blue of each class of a scale */
+export function colors_of({colors}, theme) {
+    return colors.map(bytes).map((color) => theme === "dark" ? on_dark(color) : color);
+}
+
+/** @returns {number} the class of a thrust ratio; those beyond the limits are in the first and the last one */
+export function class_of(factor, {limits, colors}) {
+    const above = limits.findLastIndex((limit) => limit <= factor);
+    return Math.min(colors.length - 1, Math.max(0, above));
 }

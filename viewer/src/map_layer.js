@@ -1,8 +1,6 @@
 // The aero map: a raster under the scene, and its colour bar.
 
-import {scaleLinear} from "d3-scale";
-
-import {color_of} from "./colors.js";
+import {class_of, colors_of} from "./colors.js";
 import {h, s} from "./dom.js";
 import {number, place} from "./format.js";
 
@@ -15,9 +13,10 @@ function raster(map, theme) {
     canvas.height = rows;
     const context = canvas.getContext("2d");
     const image = context.createImageData(columns, rows);
+    const colors = colors_of(map.scale, theme);
     const palette = Array.from(
         {length: not_flyable},
-        (_, level) => color_of(factor_low + (level / 254) * (factor_high - factor_low), map, theme));
+        (_, level) => colors[class_of(factor_low + (level / 254) * (factor_high - factor_low), map.scale)]);
     for (let row = 0; row < rows; ++row) {
         for (let column = 0; column < columns; ++column) {
             const level = levels[row * columns + column];
@@ -43,29 +42,25 @@ export function draw_map(map) {
         ["light", "dark"].map((theme) => s("image", {...place_of, class: `only-${theme}`, href: raster(map, theme)})));
 }
 
-/** The colour bar, with numbers. */
+/** The colour bar: the classes in equal widths, with their limits. */
 export function make_color_bar(map) {
-    const {factor_low, factor_high} = map;
-    const steps = 48;
-    const share = scaleLinear().domain([factor_low, factor_high]).range([0, 100]);
-    const gradient = (theme) => {
-        const stops = Array.from({length: steps + 1}, (_, i) => {
-            const factor = factor_low + (i / steps) * (factor_high - factor_low);
-            return `rgb(${color_of(factor, map, theme).map(Math.round).join(" ")}) ${((100 * i) / steps).toFixed(1)}%`;
-        });
+    const {limits, colors} = map.scale;
+    const share = (i) => (100 * i) / colors.length;
+    const bar = (theme) => {
+        const stops = colors_of(map.scale, theme)
+                          .map((color, i) => `rgb(${color.map(Math.round).join(" ")}) ${share(i)}% ${share(i + 1)}%`);
         return h(
             "div", {class: `bar only-${theme}`, style: `background: linear-gradient(to right, ${stops.join(", ")})`});
     };
-    const is_apart = (tick) => Math.min(tick - factor_low, factor_high - tick) > 0.12 * (factor_high - factor_low);
-    const ticks = [...new Set([factor_low, ...share.ticks(5).filter(is_apart), factor_high])];
-    const is_coarse = (tick) => Math.abs(10 * tick - Math.round(10 * tick)) < 1e-6;
-    const digits = ticks.every(is_coarse) ? ".1f" : ".2f";
-    const label = `Colours from factor ${number(factor_low, ".2f")} to ${number(factor_high, ".2f")}; ` +
+    // Numbers have room for eight classes; 1, or the class around it, keeps its own.
+    const every = Math.ceil(colors.length / 8), first = class_of(1, map.scale) % every;
+    const ticks = limits.map((limit, i) => [limit, i]).filter(([, i]) => i % every === first);
+    const label = `Colours of thrust ratios from ${number(limits[0], ".2~f")} to ${number(limits.at(-1), ".2~f")}; ` +
         "free air, 1, has the colour of the paper";
     return h(
         "div", {class: "color-bar"}, h("div", {class: "color-bar-name"}, "Aero factor: thrust over thrust in free air"),
-        h("div", {class: "color-bar-scale", role: "img", "aria-label": label}, gradient("light"), gradient("dark"),
-          ticks.map((tick) => h("span", {class: "tick", style: `left: ${share(tick)}%`}, number(tick, digits)))),
+        h("div", {class: "color-bar-scale", role: "img", "aria-label": label}, bar("light"), bar("dark"),
+          ticks.map(([limit, i]) => h("span", {class: "tick", style: `left: ${share(i)}%`}, number(limit, ".2~f")))),
         h("div", {class: "color-bar-note"}, h("span", {class: "swatch blocked"}), "not flyable",
           h("span", {class: "muted"},
             `of rotor ${map.rotor} there, ${place(map.lateral_m)} beside the plane of motion`)));
