@@ -52,7 +52,8 @@ void require_drawable(const CurveFigure& figure, const std::string& key) {
     throw_if_any(std::move(errors));
 }
 
-/// Whether two curves lie one over the other for the most part: their mean distance is at most a hundredth of the range.
+/// Whether two curves lie one over the other for the most part: their mean distance is at most a hundredth of the
+/// range.
 bool coincide(const Curve& a, const Curve& b) {
     constexpr double max_share = 0.01;
     if (a.points.size() != b.points.size()) {

@@ -56,6 +56,9 @@ function blocked_lines({solution, outcome}) {
             "The planner discarded every plan: executed with direct aerodynamics, the last one failed or came nearer to an " +
             "obstacle than the margin, " +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
+    } else if (stop?.cause === "unfinished_flight") {
+        lines.push(
+            "The planner found a way to the goal, but the time was over before its flight with direct aerodynamics was.");
     } else if (stop?.cause === "certificate") {
         lines.push(
             "The planner discarded every plan: in worlds that the search had not seen, each failed too often.");
