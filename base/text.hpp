@@ -55,6 +55,9 @@ template <class Number>
 /// with none. @pre the text is not empty
 [[nodiscard]] DOWNWASH_EXPORT std::size_t utf8_length(std::string_view text);
 
+/// Whether a text is well-formed UTF-8.
+[[nodiscard]] DOWNWASH_EXPORT bool is_utf8(std::string_view text);
+
 /// Whether two words are equal but for the case of their ASCII letters.
 [[nodiscard]] DOWNWASH_EXPORT bool is_same_word(std::string_view a, std::string_view b);
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "downwash/base/key_error.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
@@ -61,26 +60,15 @@ void print_remedies(const Problem& problem, SolveOptions options) {
     }));
 }
 
-/// What is written has to be readable again.
-void require_readable(const Problem& problem) {
-    const std::size_t size = effective_yaml(problem, {}).size();
-    if (size > largest_document) {
-        throw_input_error(
-            fmt::format("has {} KiB with every default filled in: expected {} KiB or less; obstacles may stand in "
-                        "a mesh",
-                        size / 1024, largest_document / 1024),
-            "environment.obstacles");
-    }
-}
-
 ExitCode run(const SolveArguments& given) {
     Interruption interruption(given.wall_limit_s);
     const PlannableProblem plannable = read_plannable_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
     const Problem& read = plannable.problem;
-    require_readable(read);
-    const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
+    const std::filesystem::path out = given.out ? std::filesystem::path(*given.out) : default_folder(read);
+    require_readable_again(read, out);
+    const OutputFolder folder(out);
 
     SolveOptions options;
     options.threads = given.threads;

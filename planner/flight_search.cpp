@@ -83,7 +83,7 @@ class FlightSearch {
     double known_at_s_ = 0;  ///< when it was known whether the last plan counts
 };
 
-/// Executes a plan and says whether it counts: that of MP-ARM-ADA has to reach its goal and to keep the margin.
+/// Executes a plan and says whether it counts; that of MP-ARM-ADA has to be good in this flight, too.
 bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     counterexamples_.clear();
     clock_.found_first(clock_.seconds());
@@ -101,7 +101,7 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
         }
     }
     known_at_s_ = clock_.seconds();
-    if (execution_ && (execution_->outcome != Outcome::ok || execution_->min_clearance_m < settings.safety_margin_m)) {
+    if (execution_ && !is_good(*execution_, settings.safety_margin_m)) {
         discarded_ = obstruction_of(*execution_, task_.space);
         return false;
     }
@@ -254,6 +254,10 @@ Execution execute_directly(const FlightModel& model, const FlightState& start, c
     Execution execution = execute(model, start, plan.reference, goals, true, {}, is_over);
     wall_s = clock.seconds();
     return execution;
+}
+
+bool is_good(const Execution& flight, double safety_margin_m) {
+    return flight.outcome == Outcome::ok && flight.min_clearance_m >= safety_margin_m;
 }
 
 void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,

@@ -14,6 +14,9 @@ namespace downwash::planning {
 [[nodiscard]] Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
                                          const std::vector<Goal>& goals, double& wall_s, const StopCondition& is_over);
 
+/// Whether a plan of MP-ARM-ADA counts after its direct flight: it reaches its goals and keeps the margin.
+[[nodiscard]] DOWNWASH_EXPORT bool is_good(const Execution& flight, double safety_margin_m);
+
 /// MP-ARM-DA and MP-ARM-ADA: searches a flight to the goal of a problem without stops.
 /// @param part the problem up to that goal   @param whole the problem that it is a part of, or itself
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start

@@ -7,10 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/problem_reader.hpp"
 
 namespace downwash {
 namespace {
@@ -168,6 +170,29 @@ std::string effective_yaml(const Problem& problem, const std::filesystem::path& 
         return seen_from(folder, std::get<std::string>(row.get(problem, index)));
     };
     return Writer(problem, path).written();
+}
+
+void require_readable_again(const Problem& problem, const std::filesystem::path& folder) {
+    std::vector<KeyError> errors;
+    for_each_value(problem_parameters(), problem,
+                   [&](const Parameter<Problem>& row, const std::string& key, std::size_t index) {
+                       const Value value = row.get(problem, index);
+                       const auto* file = std::get_if<std::string>(&value);
+                       if (row.kind != ParameterKind::file || file == nullptr) {
+                           return;
+                       }
+                       if (!is_utf8(seen_from(folder, *file))) {
+                           errors.push_back({key,
+                                             "has a path that is not UTF-8, and effective.yaml has to refer to "
+                                             "it: rename that file or folder"});
+                       }
+                   });
+    if (const std::size_t size = effective_yaml(problem, folder).size(); size > largest_document) {
+        errors.push_back({"environment.obstacles",
+                          "has " + std::to_string(size / 1024) + " KiB with every default filled in: expected " +
+                              std::to_string(largest_document / 1024) + " KiB or less; obstacles may stand in a mesh"});
+    }
+    throw_if_any(std::move(errors));
 }
 
 std::string problem_sha256(const Problem& problem) {

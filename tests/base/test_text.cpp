@@ -20,6 +20,14 @@ TEST_CASE("numbers are written shortly and read back the same") {
     CHECK(to_text(48.5429175, 4) == "48.54");
 }
 
+TEST_CASE("text is UTF-8 if each of its characters is") {
+    CHECK(is_utf8(""));
+    CHECK(is_utf8("caf\xc3\xa9 \xe2\x82\xac"));
+    CHECK_FALSE(is_utf8("caf\xe9"));   // Latin-1
+    CHECK_FALSE(is_utf8("\xc3"));      // cut within a character
+    CHECK_FALSE(is_utf8("\xc0\xaf"));  // overlong
+}
+
 TEST_CASE("a misspelt word is taken for the nearest name, a strange one for none") {
     const std::array<std::string_view, 3> names{"energy", "time", "clearance"};
     CHECK(nearest_name("enrgy", names) == "energy");

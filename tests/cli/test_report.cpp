@@ -138,15 +138,15 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash sol", "solve"},
         {"downwash aeromap q", "query"},
         {"downwash solve --see", "--seed"},
-        {"downwash solve --variant ''", "mp-arm mp-arm-da mp-arm-ada"},
+        {"downwash solve --variant ''", "mp-arm|mp-arm-da|mp-arm-ada"},
         {"downwash solve one.yaml --variant mp-arm-d", "mp-arm-da"},
         {"downwash solve one.yaml --variant = mp-arm-a", "mp-arm-ada"},
         {"downwash solve --variant=mp-arm-d", "--variant=mp-arm-da"},
         {"downwash aeromap fit --fix k1 =", ""},
         {"downwash aeromap fit --fix k1 = 0", ""},
-        {"downwash solve one.yaml --variant =", "mp-arm mp-arm-da mp-arm-ada"},
+        {"downwash solve one.yaml --variant =", "mp-arm|mp-arm-da|mp-arm-ada"},
         {"downwash solve one.yaml --algorithm = in", "informed-rrt-star"},
-        {"downwash execute --aero o", "on off"},
+        {"downwash execute --aero o", "on|off"},
         {"downwash completion z", "zsh"},
         {"downwash aeromap query --model hayd", "hayden"},
         {"downwash aeromap plot --model hayden l", "li"},
@@ -155,14 +155,17 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash aeromap plot one.yaml --what h", "hold"},
         {"downwash export flown --format g", "glb"},
         {"downwash solve o", "one.yaml"},
+        {"downwash solve tw", "two words.yaml"},
+        {"downwash solve th", "three*.yaml"},
         {"downwash solve --out o", "one.yaml"},
         {"downwash solve --out=o", "--out=one.yaml"},
         {"downwash solve --out=x", ""},
         {"downwash solve --seed -", ""},
     };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
-    questions += "for PREFIX; do :; done; _downwash; echo \"${COMPREPLY[*]}\"; }\n";  // zsh finds files by PREFIX
-    questions += "cd '" + work.in_run().string() + "' && touch one.yaml\n";
+    questions +=
+        "for PREFIX; do :; done; _downwash; (IFS='|'; echo \"${COMPREPLY[*]}\"); }\n";  // zsh finds files by PREFIX
+    questions += "cd '" + work.in_run().string() + "' && touch one.yaml 'two words.yaml' 'three*.yaml'\n";
     std::string expected;
     for (const Asked& asked : all) {
         questions += std::string("ask ") + asked.words + "\n";

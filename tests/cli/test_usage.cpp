@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 
 #include "program.hpp"
@@ -20,6 +21,20 @@ TEST_CASE("Help and version go to standard output, and an unknown command is nam
     CHECK_THAT(work.run("aeromap foo").err,
                StartsWith("downwash: there is no command 'aeromap foo': expected query, build"));
     CHECK_THAT(work.run("aeromap biuld").err, Contains("did you mean 'build'?"));
+}
+
+TEST_CASE("A reader that has seen enough is no error") {
+    const Workspace work;
+    const std::string program = DOWNWASH_PROGRAM;
+    for (const std::string command : {"manual --markdown", "planners --json", "--help"}) {
+        CAPTURE(command);
+        // The reader is gone before the first byte comes.
+        const std::string line = "{ sleep 0.2; '" + program + "' " + command + " 2>'" + (work / "err").string() +
+                                 "'; echo $? >'" + (work / "code").string() + "'; } | true";
+        REQUIRE(std::system(line.c_str()) == 0);
+        CHECK(read_file(work / "code") == "0\n");
+        CHECK(read_file(work / "err").empty());
+    }
 }
 
 TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {

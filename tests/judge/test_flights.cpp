@@ -143,8 +143,7 @@ TEST_CASE("Straight plans that end in trouble end the same way") {
         compare(mine, *executed(problem, plan, true, std::nullopt));
     };
     SECTION("in the ceiling") {
-        problem.aero.min_distance_radii = 0;
-
+        problem.aero.min_distance_radii = 0.03;
         end({3, 5.5, quarter_turn}, 800, judge::Outcome::collision);
     }
     SECTION("with a rotor too close to the ground") {

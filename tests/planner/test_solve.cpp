@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
+#include <limits>
 #include <stop_token>
 #include <vector>
 
@@ -453,4 +454,22 @@ TEST_CASE("a search whose start meets the goal goes on without a plan to refine"
     const Solution solution = solve(problem);
     CHECK(solution.status == Status::solved);
     CHECK(solution.plan->reference.size() == 1);
+}
+
+TEST_CASE("A plan counts if its direct flight reaches the goal and keeps the margin") {
+    Execution flight;
+    flight.outcome = Outcome::ok;
+    flight.min_clearance_m = 0.05;
+    CHECK(planning::is_good(flight, 0.05));
+    CHECK_FALSE(planning::is_good(flight, 0.051));
+    flight.min_clearance_m = std::numeric_limits<double>::infinity();  // without obstacles
+    CHECK(planning::is_good(flight, 0.05));
+    flight.min_clearance_m = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(planning::is_good(flight, 0));
+    flight.min_clearance_m = 1;
+    for (const Outcome outcome :
+         {Outcome::collision, Outcome::unstable, Outcome::left_flyable_area, Outcome::goal_missed}) {
+        flight.outcome = outcome;
+        CHECK_FALSE(planning::is_good(flight, 0.05));
+    }
 }

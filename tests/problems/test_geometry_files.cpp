@@ -1,3 +1,4 @@
+#include "../support/error_of.hpp"
 #include "../support/mesh_bytes.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
@@ -171,4 +172,24 @@ TEST_CASE("what is in a file belongs to a problem's hash, its name and format do
     std::string finer = cube_bt;
     folder.write("scan.bt", finer.replace(finer.find("res 0.1"), 7, "res 0.2"));
     CHECK(hash("octomap: {file: scan.bt, center_m: [0, 0, -50]}") != scan);
+}
+
+TEST_CASE("a document that could not be read again is an error before it is written") {
+    const TestFolder folder;
+    const std::filesystem::path latin = folder / "caf\xe9";  // a legal name, but not UTF-8
+    std::filesystem::create_directory(latin);
+    folder.write("caf\xe9/pole.stl", binary_stl(pole_triangles()));
+    folder.write("caf\xe9/robot.yaml", good_robot);
+    folder.write("caf\xe9/problem.yaml", edited(good_problem, pole, "mesh: {file: pole.stl}"));
+    Problem problem = read_problem(latin / "problem.yaml");
+    CHECK_NOTHROW(require_readable_again(problem, latin / "run"));
+    const std::string of_mesh = error_of([&] { require_readable_again(problem, folder / "run"); });
+    CHECK_THAT(of_mesh, Catch::StartsWith("environment.obstacles[") &&
+                            Catch::Contains(".mesh.file: has a path that is not UTF-8"));
+
+    problem = folder.read();
+    CHECK_NOTHROW(require_readable_again(problem, folder / "run"));
+    problem.obstacles.resize(60000, {"", Box{{1, 1, 1}}, {0, 30, 0}, {}});
+    CHECK_THAT(error_of([&] { require_readable_again(problem, folder / "run"); }),
+               Catch::StartsWith("environment.obstacles: has ") && Catch::Contains("expected 4096 KiB or less"));
 }

@@ -70,6 +70,22 @@ TEST_CASE("an impossible problem is an error where it is posed") {
                        "aero: none\n") == "sound");
 }
 
+TEST_CASE("a start that only rounding tells from its margin is not called nearer by numbers that are equal") {
+    Problem problem = TestFolder().read();
+    const auto error_at = [&](double z_m, double margin_m) {
+        problem.start.z_m = z_m;
+        problem.planner.safety_margin_m = margin_m;
+        const std::vector<KeyError> errors = problem_errors(problem);
+        return errors.empty() ? "none" : errors.front().message;
+    };
+    const std::string remedy = ": move the start or the obstacle";
+    const double touching_m = 1.23;  // by the first case above: 0.02 m higher the clearance is 0.02 m
+    CHECK(error_at(touching_m + 1e-12, 0) == "is in collision with an obstacle" + remedy);
+    CHECK(error_at(touching_m + 0.05 - 1e-9, 0.05) ==
+          "is 0.05 m from an obstacle, up to rounding not beyond planner.safety_margin_m, 0.05" + remedy);
+    CHECK(error_at(touching_m + 0.051, 0.05) == "none");
+}
+
 TEST_CASE("a problem built in code is judged by the same ranges as a file") {
     Problem problem = TestFolder().read();
     CHECK(problem_errors(problem).empty());
