@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Whether docs/start.md quotes what the program prints: follows the page in a scratch folder.
-# Usage: tests/docs/check_session.sh DOWNWASH
-#   A fence that begins with "$ build/downwash" is run. Its lines have to appear in the output in their order; "..." stands for any lines.
+# Whether a page quotes what the program prints: follows the page in a scratch folder.
+# Usage: tests/docs/check_session.sh DOWNWASH PAGE
+#   A fence that begins with "$ " and a command is run. Its lines have to appear in the output in their order; "..." stands for any lines.
 #   Lines of a fence "yaml" go into my.yaml: "- {name: N" replaces that obstacle or is added after the fence's line before,
 #   "key: value" replaces the line of that key. Those of a fence "yaml once" hold for the next command only.
 #   A row "| `VARIANT` | first line | planned | executed | exit code |" is compared with what the page's command for that variant prints.
@@ -9,7 +9,7 @@ set -euo pipefail
 
 program=$(realpath "$1")
 root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-page=$root/docs/start.md
+page=$root/$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 export XDG_CACHE_HOME=$folder/cache
@@ -22,7 +22,7 @@ checked=0
 bad=0
 complain() {
     bad=$((bad + 1))
-    printf 'docs/start.md: %s\n' "$@" >&2
+    printf '%s\n' "${page#"$root/"}: $1" "${@:2}" >&2
 }
 
 # put LINE LINE_BEFORE: LINE into my.yaml, as the head of this file says.
@@ -92,7 +92,7 @@ while IFS= read -r line; do
             grep -qxF -e "$line" my.yaml || put "$line" "$before"
             before=$line
             ;;
-        session,'$ build/downwash'*) command=${line#"$ "} ;;
+        session,'$ '*) command=${line#"$ "} ;;
         session,*) quoted+=$line$'\n' ;;
         ,'| `mp-arm'*'` | '*' J'*)
             row=${line#"| "}

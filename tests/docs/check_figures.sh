@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Whether pages quote the numbers that the pages of results have today.
+# Usage: tests/docs/check_figures.sh ROOT
+set -euo pipefail
+cd "$1"
+
+bad=0
+quoted=0
+
+# quotes PAGE TEXT: the page has this text, however it is broken into lines.
+quotes() {
+    quoted=$((quoted + 1))
+    tr -s ' \n' ' ' <"$1" | grep -qF -e "$2" || {
+        bad=$((bad + 1))
+        echo "$1 does not say: $2"
+    }
+}
+
+# failed PLANNER, seeds PLANNER: sums of the column "failed flight" over all problems of a campaign's page ($campaign).
+failed() { column "$1" 1; }
+seeds() { column "$1" 2; }
+column() {
+    awk -F'|' -v planner=" $1 rrt-star " -v part="$2" '
+        /^## / { is_wanted = $0 == "## Success and flights" }
+        is_wanted && $3 == planner { split($5, share, /[\/ ]/); sum += share[part + 1] }
+        END { print sum + 0 }' "$campaign"
+}
+
+# cell PAGE ROW N: the Nth cell of the first row of a page that begins with ROW, without blanks around it.
+cell() {
+    awk -F'|' -v row="| $2 |" -v n="$3" '
+        index($0, row) == 1 { gsub(/^ +| +$/, "", $(n + 1)); print $(n + 1); exit }' "bench/results/$1"
+}
+
+campaign=bench/results/all.md
+quotes README.md "none of the $(seeds mp-arm-ada) MP-ARM-ADA plans failed"
+[[ $(failed mp-arm-ada) == 0 ]] || quotes README.md "$(failed mp-arm-ada) MP-ARM-ADA plans failed"
+quotes README.md "while $(failed mp-arm-da) MP-ARM-DA plans and $(failed mp-arm) MP-ARM plans did"
+
+safe=$(sed -n 's/^\*\*mp-arm rrt-star\*\*: safe on all problems from a margin of \([0-9.]* m\) on.*/\1/p' bench/results/margins.md)
+quotes README.md "safe everywhere with a margin of $safe"
+
+hover=hover_flights.md
+unstable=$(cell $hover all 4)
+stable=$(cell $hover all 5)
+quotes docs/hold.md "Of $(sed 's,.*/\([0-9]*\) .*,\1,' <<<"$unstable") flights called unstable, ${unstable%%/*} grew."
+quotes docs/hold.md "All ${stable%%/*} flights called stable decayed."
+[[ $stable =~ ^([0-9]+)/${stable%%/*}\  ]] || quotes docs/hold.md "${stable%% *} flights called stable decayed"
+quotes docs/hold.md "$(cell $hover all 6) flights had growth rates within 0.05 1/s of zero"
+
+# seconds CELL: a time in ms as the docs write it.
+seconds() { awk -v ms="$1" 'BEGIN { printf ms < 1000 ? "%.3f s" : "%.1f s", ms / 1000 }'; }
+ours=$(tac bench/results/ompl_user.md | sed -n '/^| downwash rrt-star/{p;q}')
+rival='RandUP-RRT, ODESolver, FCL (a user'"'"'s)'
+quotes docs/robustness.md "in every search, after $(seconds "$(awk -F'|' '{ print $6 }' <<<"$ours")") at the median"
+quotes docs/robustness.md "found one in $(cell ompl_user.md "$rival" 2 | sed 's,/, of ,'), after $(seconds "$(cell ompl_user.md "$rival" 5)") at the median"
+times=$(sed -n 's/.*| \([0-9.]*\) times, 95 % interval \([0-9.]*\) to \([0-9.]*\) |.*/\1 \2 \3/p' bench/results/ompl_user.md | tail -n 1)
+read -r ratio low high <<<"$times"
+quotes docs/robustness.md "That is ${ratio%.*} times sooner (95 % interval: $(printf '%.0f to %.0f' "$low" "$high")"
+
+# The extremes of a column of the first table of aero_map.md, in ns.
+look_ups() {
+    awk -F'|' -v column="$1" '
+        /^\| problem \| build/ { is_wanted = 1; next }
+        is_wanted && !/^\|/ { exit }
+        is_wanted && /ns/ { ns = $(column + 1) + 0; if (low == 0 || ns < low) low = ns; if (ns > high) high = ns }
+        END { print low, high }' bench/results/aero_map.md
+}
+read -r _ in_flight <<<"$(look_ups 8)"
+read -r direct_low direct_high <<<"$(look_ups 9)"
+quotes docs/embedding.md "within $(printf '%.0f' "$in_flight") ns instead of $direct_low to $direct_high ns"
+
+echo "$quoted quotations, $bad of them differ"
+((bad == 0))
