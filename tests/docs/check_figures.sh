@@ -43,7 +43,8 @@ quotes README.md "safe everywhere with a margin of $safe"
 hover=hover_flights.md
 unstable=$(cell $hover all 4)
 stable=$(cell $hover all 5)
-quotes docs/hold.md "Of $(sed 's,.*/\([0-9]*\) .*,\1,' <<<"$unstable") flights called unstable, ${unstable%%/*} grew."
+of=${unstable#*/}
+quotes docs/hold.md "Of ${of%% *} flights called unstable, ${unstable%%/*} grew."
 quotes docs/hold.md "All ${stable%%/*} flights called stable decayed."
 [[ $stable =~ ^([0-9]+)/${stable%%/*}\  ]] || quotes docs/hold.md "${stable%% *} flights called stable decayed"
 quotes docs/hold.md "$(cell $hover all 6) flights had growth rates within 0.05 1/s of zero"
