@@ -29,10 +29,11 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     SearchRecord& record = solution.planning;
     record.wall_s = search.seconds();
     record.iterations = result.iterations;
-    record.states_checked = result.states_checked;
+    record.states_checked = result.counts.states;
     record.rejected = no_rejections();
-    record.rejected["collision"] = result.rejected_collision;
-    record.rejected["bounds"] = result.rejected_bounds;
+    record.rejected["collision"] = result.counts.rejected_collision;
+    record.rejected["bounds"] = result.counts.rejected_bounds;
+    record.rejected["arm_limits"] = result.counts.rejected_arm_limits;
     if (result.status != Status::solved) {
         record.nearest_approach_m = result.nearest_approach_m;
     }

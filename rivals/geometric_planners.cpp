@@ -197,9 +197,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     if (hooks.keep_tree) {
         result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
     }
-    result.states_checked = counts.states;
-    result.rejected_collision = counts.rejected_collision;
-    result.rejected_bounds = counts.rejected_bounds;
+    result.counts = counts;
     result.nearest_approach_m = space.goal_distance_m(start);
     if (definition->getSolutionPath() != nullptr) {
         auto* path = definition->getSolutionPath()->as<og::PathGeometric>();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "downwash/controllers/plan.hpp"
+#include "downwash/search/query_counts.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/search/search_task.hpp"
@@ -16,9 +17,7 @@ struct GeometricResult {
     std::optional<Plan> plan;
     double cost = 0;  ///< estimate of the variant: level hover along the reference and through the hold
     std::uint64_t iterations = 0;
-    std::uint64_t states_checked = 0;
-    std::uint64_t rejected_collision = 0;
-    std::uint64_t rejected_bounds = 0;
+    QueryCounts counts;
     std::vector<TreeNode> tree;     ///< if it was to be kept
     double nearest_approach_m = 0;  ///< how near to the goal region the start, or the end of the plan, is
 };

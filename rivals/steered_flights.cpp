@@ -38,8 +38,9 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
         flights_.count_rejection("too_long");
         return next;
     }
-    if (!task_.space.is_inside(next.rest)) {  // it could only stop, or turn, outside
-        flights_.count_rejection(Rejection::bounds);
+    // Where it leaves a limit it could only stop, or turn, outside.
+    if (const Rejection left = task_.space.limit_left_at(next.rest); left != Rejection::none) {
+        flights_.count_rejection(left);
         return next;
     }
     const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s);

@@ -172,6 +172,7 @@ bool QueryCounts::note(Rejection rejection) noexcept {
     ++states;
     rejected_collision += rejection == Rejection::collision ? 1 : 0;
     rejected_bounds += rejection == Rejection::bounds ? 1 : 0;
+    rejected_arm_limits += rejection == Rejection::arm_limits ? 1 : 0;
     return rejection == Rejection::none;
 }
 

@@ -8,23 +8,13 @@
 #include <limits>
 #include <memory>
 
+#include "downwash/search/query_counts.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_space.hpp"
 
 // The search space as OMPL sees it. Every random number comes from the caller's generator, none from OMPL's global one.
 
 namespace downwash::planning {
-
-/// Counts of what OMPL's planners asked.
-struct QueryCounts {
-    std::uint64_t states = 0;
-    std::uint64_t rejected_collision = 0;  ///< states and motions
-    std::uint64_t rejected_bounds = 0;
-
-    [[nodiscard]] std::uint64_t rejected() const noexcept { return rejected_collision + rejected_bounds; }
-    /// Counts a query and says whether it found nothing wrong.
-    bool note(Rejection rejection) noexcept;
-};
 
 /// Space information over (x, z) and the arm (a circle, or an interval where it has limits) with sampler, validity and
 /// straight-line motions of the level vehicle. The arguments must outlive it.

@@ -41,6 +41,8 @@ std::string cause_of(Rejection rejection) {
             return "unstable";
         case Rejection::bounds:
             return "bounds";
+        case Rejection::arm_limits:
+            return "arm_limits";
         case Rejection::goal_missed:
             return "goal_missed";
         case Rejection::none:
@@ -51,8 +53,8 @@ std::string cause_of(Rejection rejection) {
 }
 
 std::map<std::string, std::uint64_t> no_rejections() {
-    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},    {"tracking", 0}, {"unstable", 0},
-            {"bounds", 0},    {"goal_missed", 0},  {"direct_flight", 0}, {"too_long", 0}};
+    return {{"collision", 0}, {"flyable_area", 0}, {"saturation", 0},  {"tracking", 0},      {"unstable", 0},
+            {"bounds", 0},    {"arm_limits", 0},   {"goal_missed", 0}, {"direct_flight", 0}, {"too_long", 0}};
 }
 
 FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {

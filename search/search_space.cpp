@@ -193,15 +193,19 @@ GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configurat
             beyond(d.angle_rad, usable.angle_rad), tolerance.used_share(d)};
 }
 
-bool SearchSpace::is_inside(const Configuration& c) const noexcept {
-    return c.x_m >= bounds_.x_low_m && c.x_m <= bounds_.x_high_m && c.z_m >= bounds_.z_low_m &&
-           c.z_m <= bounds_.z_high_m &&
-           (!arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad));
+Rejection SearchSpace::limit_left_at(const Configuration& c) const noexcept {
+    if (!(c.x_m >= bounds_.x_low_m && c.x_m <= bounds_.x_high_m && c.z_m >= bounds_.z_low_m &&
+          c.z_m <= bounds_.z_high_m)) {
+        return Rejection::bounds;
+    }
+    const bool keeps_arm_limits =
+        !arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad);
+    return keeps_arm_limits ? Rejection::none : Rejection::arm_limits;
 }
 
 Rejection SearchSpace::rejection_at(const Configuration& c) const {
-    if (!is_inside(c)) {
-        return Rejection::bounds;
+    if (const Rejection left = limit_left_at(c); left != Rejection::none) {
+        return left;
     }
     return model_.collisions().is_nearer_than(level_at(c), margin_m_) ? Rejection::collision : Rejection::none;
 }

@@ -82,14 +82,17 @@ class SearchSpace {
     /// Distance and angle to the goal as one length [m], 0 inside the goal region; of alternatives to the nearest.
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
 
-    /// What forbids the level vehicle there: `bounds` (or arm limits), `collision` with the safety margin, or `none`.
+    /// What forbids the level vehicle there: `bounds`, `arm_limits`, `collision` with the safety margin, or `none`.
     [[nodiscard]] Rejection rejection_at(const Configuration& configuration) const;
     [[nodiscard]] bool is_valid(const Configuration& configuration) const {
         return rejection_at(configuration) == Rejection::none;
     }
 
-    /// Whether a configuration keeps the bounds and the arm's limits.
-    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept;
+    /// Which limit a configuration leaves: `bounds`, `arm_limits`, or `none`.
+    [[nodiscard]] Rejection limit_left_at(const Configuration& configuration) const noexcept;
+    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept {
+        return limit_left_at(configuration) == Rejection::none;
+    }
 
     /// Largest distance between two configurations [m].
     [[nodiscard]] double extent_m() const noexcept;

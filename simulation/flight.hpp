@@ -21,7 +21,8 @@ enum class Rejection : std::uint8_t {
     saturation,    ///< a rotor or the joint was asked for more than it has
     tracking,      ///< the vehicle or the arm was too far from its reference
     unstable,      ///< tumbling, or numbers that are not finite
-    bounds,        ///< the centre of mass left the bounds, or the arm its limits
+    bounds,        ///< the centre of mass left the bounds
+    arm_limits,    ///< the arm left its limits
     goal_missed,   ///< hovered at the goal but did not meet it
     interrupted,   ///< ended from outside; says nothing about the flight
 };

@@ -52,8 +52,8 @@ T instability(const VehicleState<T>& state, T tracking_error_m) {
     return lane::select(sum < T(1e4), excess, T(1));
 }
 
-/// The first of the rules unstable, saturation, tracking and bounds that the end of a tick breaks, as the number of its
-/// Rejection; 0 for none.
+/// The first of the rules unstable, saturation, tracking, bounds and arm limits that the end of a tick breaks, as the
+/// number of its Rejection; 0 for none.
 /// @param saturation of the tick   @param state,reference at its end
 template <class T>
 T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& state,
@@ -61,12 +61,13 @@ T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& sta
     const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
     const T* q = state.plant.q;
     const T error_m = tracking_error(state, reference);
-    const T beyond_bounds = lane::max(lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
-                                                lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m))),
-                                      lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad)));
+    const T beyond_bounds = lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
+                                      lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m)));
+    const T beyond_arm = lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad));
     const T beyond_tracking = lane::max(error_m - T(limits.max_tracking_error_m),
                                         lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
-    T rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), T(0));
+    T rejection = lane::select(beyond_arm > T(0), number_of(Rejection::arm_limits), T(0));
+    rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), rejection);
     rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
     rejection = lane::select(saturation > T(limits.max_saturation), number_of(Rejection::saturation), rejection);
     return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);

@@ -336,6 +336,12 @@ TEST_CASE("rejections are counted by cause") {
              p.start.x_m = p.bounds.x_low_m + 0.3;
              p.start.vx_m_s = -0.9;  // it cannot but overshoot the bound
          }},
+        {"arm_limits",
+         [](Problem& p) {
+             test::limit_arm(p.robot, -3, test::quarter_turn + 0.05);
+             p.start.arm_rad = test::quarter_turn;
+             p.start.arm_rate_rad_s = 0.7;  // it cannot but overshoot the limit
+         }},
         {"goal_missed",
          [](Problem& p) {
              p = test::with_place(3, 4.3);  // where the ceiling lifts the vehicle, and nothing integrates the error

@@ -1,6 +1,7 @@
 // Plain words for the names of the planner.
 
 export const causes = {
+    arm_limits: "moves the arm beyond its limits",
     bounds: "leaves the bounds",
     certificate: "fails too often in worlds that the search has not seen",
     collision: "touches an obstacle",
