@@ -101,15 +101,14 @@ class TimePlot {
         const ticks_x = x.ticks(Math.max(3, Math.round(width / 90))), ticks_y = y.ticks(3);
         const text_y = (v) => y.tickFormat(3)(v).replace("-", "−").replace(/,/g, "\u202f");
         const parts = [], names = [];
-        if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
-            parts.push(s("rect", {
-                class: "hold-band",
-                x: x(model.hold_from_s),
+        parts.push(...model.hovers.map(
+            ({from_s, to_s}) => s("rect", {
+                class: "hover-band",
+                x: x(from_s),
                 y: margin.top,
-                width: x(model.end_s) - x(model.hold_from_s),
+                width: x(to_s) - x(from_s),
                 height: bottom - margin.top
-            }));
-        }
+            })));
         parts.push(s("path", {
             class: "grid-lines",
             d: [

@@ -199,15 +199,14 @@ export function make_scene(model, clock, playback) {
           button("+", "Zoom in", () => view.zoom_by(1.4)), button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
           data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
           button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
-    const frame = h("div", {class: "scene-frame"}, view.svg, tools, make_pointer_text(view, model.map));
+    const frame = h("div", {class: "scene-frame"}, view.svg, make_pointer_text(view, model.map));
     const element =
-        h("figure", {class: "scene"},
+        h("figure", {class: "scene"}, frame, playback?.element,
           h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
             switches),
-          frame, playback?.element,
           h("figcaption", null, model.map ? make_color_bar(model.map) : null, make_legend(model, forces)));
     keep_sized(frame, 690, (width) => view.resize(width));
-    return {element, view, shown, flown};
+    return {element, tools, view, shown, flown};
 }
 
 function make_legend(model, forces) {
@@ -219,6 +218,9 @@ function make_legend(model, forces) {
         "div", {class: "legend"},
         model.data ?
             [
+                model.hovers.some(({goal}) => goal !== null) ?
+                    entry("hover", "hover at a goal, by its number", "screen-only") :
+                    null,
                 entry("snapshots", "flown, vehicle and arm"),
                 entry("snapshots planned", "planned: the reference, drawn level"),
                 // On screens these stand beside their switches.

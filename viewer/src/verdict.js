@@ -119,14 +119,18 @@ function figures_of(model) {
     const list = [];
     const add = (name, value, note) => list.push({name, value, note});
     if (solution.plan) {
-        // Where the objective is one of the other figures, the cost alone says which.
         add(`Cost, ${model.objective}`, cost(execution ? execution.cost : solution.cost, cost_unit),
             execution ? `executed; ${cost(solution.cost, cost_unit)} planned` : "planned");
     }
     if (execution) {
-        add("Duration", seconds(execution.duration_s),
-            model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
-        add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
+        // What is the cost already is not shown again.
+        if (model.objective !== "time") {
+            add("Duration", seconds(execution.duration_s),
+                model.reference_s !== null ? `reference ${seconds(model.reference_s)}` : "");
+        }
+        if (model.objective !== "energy") {
+            add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
+        }
         add("Minimum clearance", meters(execution.min_clearance_m),
             model.scene.obstacles.length === 0     ? "no obstacles" :
                 report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` :
@@ -145,9 +149,19 @@ function figures_of(model) {
     if (Number.isFinite(planning?.first_certified_wall_s)) {
         add("First certified plan after", quantity(planning.first_certified_wall_s, ".3f", "s"));
     }
-    add("Iterations", number(planning?.iterations, ",d"),
-        planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges simulated` : "");
     return list;
+}
+
+/** Key figures in rows of equal length, as far as their number allows. */
+export function make_figures(model) {
+    const figures = figures_of(model);
+    const columns = (most) => Math.ceil(figures.length / Math.ceil(figures.length / most));
+    return h(
+        "dl", {class: "figures of-run", style: `--wide: ${columns(9)}; --narrow: ${columns(5)}`},
+        figures.map(
+            ({name, value, note}) => h(
+                "div", null, h("dt", null, name),
+                h("dd", null, h("span", {class: "figure"}, value), note ? h("span", {class: "muted"}, note) : null))));
 }
 
 function goals_list({solution, goals}) {
@@ -192,11 +206,5 @@ export function make_verdict(model) {
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
             certificate ? h("p", {class: "certificate-line"}, certificate) : null,
-            goals_list(model))),
-        h("dl", {class: "figures"},
-          figures_of(model).map(
-              ({name, value, note}) =>
-                  h("div", null, h("dt", null, name),
-                    h("dd", null, h("span", {class: "figure"}, value),
-                      note ? h("span", {class: "muted"}, note) : null)))));
+            goals_list(model))));
 }
