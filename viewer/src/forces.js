@@ -1,10 +1,10 @@
-// Thrust at each rotor at the moment shown: command times aero factor, the factor as a number beside the arrow.
+// Thrust at each rotor at the moment shown: command times thrust ratio, the ratio as a number above the arrow.
 
 import {s, set_attributes} from "./dom.js";
 import {number} from "./format.js";
 import {pose_at, to_plane} from "./model.js";
 
-/** Thrust and factor of the rotors that coincide in the plane. */
+/** Thrust and mean thrust ratio of the rotors that coincide in the plane. */
 export function group_thrust(data, group, row) {
     let thrust_n = 0, factors = [];
     for (const rotor of group.rotors) {
@@ -16,7 +16,7 @@ export function group_thrust(data, group, row) {
     return {thrust_n, factor: factors.reduce((sum, f) => sum + f, 0) / factors.length};
 }
 
-/** Width of a factor with the room around it, in pixels. */
+/** Width of a thrust ratio with the room around it, in pixels. */
 const label_width = 42;
 
 /**
@@ -90,8 +90,8 @@ export function make_forces(model, clock, view) {
 export function forces_note({rotor_groups}) {
     const shared = rotor_groups.filter((group) => group.rotors.length > 1)
                        .map((group) => group.rotors.map((rotor) => rotor + 1).join(" and "));
-    const note = "Arrows: thrust of the rotors, command times aero factor; the number is the factor.";
+    const note = "Arrows: thrust of the rotors, command times thrust ratio K; the number is K.";
     return shared.length > 0 ?
-        `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean factor.` :
+        `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean K.` :
         note;
 }

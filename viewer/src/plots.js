@@ -116,10 +116,13 @@ class TimePlot {
                 ...ticks_y.map((v) => `M${margin.left} ${y(v)}H${width - margin.right}`)
             ].join("")
         }));
-        parts.push(...ticks_x.map(
-            (t, i) =>
-                s("text", {class: "tick", x: x(t), y: bottom + 13, "text-anchor": i === 0 ? "start" : "middle"},
-                  i === ticks_x.length - 1 && width - x(t) > 40 ? `${t} s` : String(t))));
+        parts.push(...ticks_x.map((t, i) => {
+            const is_last = i === ticks_x.length - 1, is_at_edge = is_last && width - x(t) < 20;
+            const anchor = i === 0 ? "start" : is_at_edge ? "end" : "middle";
+            return s(
+                "text", {class: "tick", x: is_at_edge ? width : x(t), y: bottom + 13, "text-anchor": anchor},
+                is_last ? `${t} s` : String(t));
+        }));
         parts.push(...ticks_y.map(
             (v) => s(
                 "text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"}, text_y(v))));

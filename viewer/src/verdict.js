@@ -120,7 +120,7 @@ function figures_of(model) {
     const add = (name, value, note) => list.push({name, value, note});
     if (solution.plan) {
         add(`Cost, ${model.objective}`, cost(execution ? execution.cost : solution.cost, cost_unit),
-            execution ? `executed; ${cost(solution.cost, cost_unit)} planned` : "planned");
+            execution ? `planned ${cost(solution.cost, cost_unit)}` : "planned");
     }
     if (execution) {
         // What is the cost already is not shown again.
@@ -133,9 +133,9 @@ function figures_of(model) {
         }
         add("Minimum clearance", meters(execution.min_clearance_m),
             model.scene.obstacles.length === 0     ? "no obstacles" :
-                report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` :
+                report.limits?.safety_margin_m > 0 ? `margin ${place(report.limits.safety_margin_m)}` :
                                                      "");
-        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "maximum over the last second");
+        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "largest at the end");
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"),
             execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
@@ -147,7 +147,7 @@ function figures_of(model) {
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
         `search ${seconds(planning?.wall_s)}`);
     if (Number.isFinite(planning?.first_certified_wall_s)) {
-        add("First certified plan after", quantity(planning.first_certified_wall_s, ".3f", "s"));
+        add("First certified after", quantity(planning.first_certified_wall_s, ".3f", "s"));
     }
     return list;
 }
