@@ -68,10 +68,10 @@ std::filesystem::path default_folder(const Problem& problem) {
 }
 
 RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
-                        const Solution& solution) {
+                        const std::vector<LocatedError>& warnings, const Solution& solution) {
     const Execution flight = solution.execution.value_or(no_flight(problem.robot));
     RunRecord record = run_record(problem, solution, flight);
-    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path())) {
+    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path(), warnings)) {
         folder.write(name, content);
         if (name == "effective.yaml") {
             record.problem_text = std::move(content);

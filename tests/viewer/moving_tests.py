@@ -232,6 +232,17 @@ class Verdicts(page_test.BrowserTest):
         self.assertEqual(self.js("return downwash.row"), 1200)  # what went wrong is what is shown first
         self.assertEqual(self.js("return document.querySelectorAll('.trouble-mark, .mark.failure').length"), 2)
 
+    def test_warnings_are_seen_at_once_and_told_in_full_when_asked_for(self):
+        self.open("doubtful")
+        self.assertEqual(self.one(".warnings-count", "e.textContent"), "⚠ 2 warnings")
+        self.assertIn("nearly unstable", self.one(".warnings summary", "e.textContent"))
+        self.assertLess(self.one(".warnings summary", "e.getBoundingClientRect().height"), 30)
+        self.js("document.querySelector('.warnings').open = true")
+        self.assertIn("problems/robots/mine.yaml:48", self.one(".warnings li", "e.innerText"))
+        for case in ("solved", "certified"):  # files of former versions have no list of warnings
+            self.open(case)
+            self.assertEqual(self.js("return document.querySelectorAll('.warnings').length"), 0)
+
     def test_nothing_found_says_what_blocked_it_and_where(self):
         self.open("unsolved")
         text = self.verdict().replace("\u00a0", " ")

@@ -177,6 +177,22 @@ function goals_list({solution, goals}) {
                   `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
 }
 
+/** What reading the problem warned of, folded to a line; null where there is nothing. */
+function warnings_list({solution}) {
+    const warnings = solution.warnings ?? [];
+    if (warnings.length === 0) {
+        return null;
+    }
+    const count = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
+    return h(
+        "details", {class: "warnings"},
+        h("summary", null, h("span", {class: "warnings-count"}, `⚠ ${count}`), " ", foreign(warnings[0].message)),
+        h("ul", null,
+          warnings.map(
+              ({file, line, message}) =>
+                  h("li", null, h("code", null, foreign(`${file}:${line}`)), " ", foreign(message)))));
+}
+
 export function make_head(model, theme_switch) {
     const {solution, report} = model;
     const name = solution.problem?.name ?? "unnamed problem";
@@ -206,5 +222,5 @@ export function make_verdict(model) {
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
             certificate ? h("p", {class: "certificate-line"}, certificate) : null,
-            goals_list(model))));
+            goals_list(model), warnings_list(model))));
 }
