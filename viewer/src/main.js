@@ -36,8 +36,8 @@ function assemble(page, model, theme) {
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"), make_head(model, theme.element),
         h("main", {class: "of-run"}, make_verdict(model), make_figures(model),
-          h("section", {class: `explore${clock ? "" : " alone"}`, id: "scene", "aria-label": "Scene and plots"},
-            h("div", {class: "scene-side"},
+          h("section", {class: `explore${clock ? "" : " alone"}`, "aria-label": "Scene and plots"},
+            h("div", {class: "scene-side", id: "scene"},
               h("div", {class: "scene-bar"}, h("h2", null, clock ? "Flight" : "Scene"), scene.tools), scene.element,
               clock ? make_readout(model, clock) : null,
               h("p", {class: "hint for-keys muted screen-only"},

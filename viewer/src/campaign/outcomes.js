@@ -84,7 +84,7 @@ export function make_outcomes(model) {
 
 function worlds_row({planner, in_worlds: {failed, flown}}, y, frame) {
     const at = frame.x(failed.hits / failed.attempts).toFixed(1);
-    const text = `${planner.name}: ${percent_text(failed)} failed, ${number(flown, ",d")} ${flown === 1 ? "plan" : "plans"}`;
+    const text = `${planner.name}: ${percent_text(failed)}, ${number(flown, ",d")} ${flown === 1 ? "plan" : "plans"}`;
     return [
         interval(failed, y, frame), s("circle", {class: `dot ${planner.style}`, cx: at, cy: y, r: 4.5}),
         row_name(frame, y - 12, text)
