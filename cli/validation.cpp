@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "downwash/base/text.hpp"
+
 namespace downwash::cli {
 namespace {
 

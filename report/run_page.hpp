@@ -19,6 +19,7 @@ namespace downwash {
 [[nodiscard]] DOWNWASH_EXPORT std::string run_page(const RunRecord& run, const FlightModel& model, int threads = 1);
 
 /// The data within that page, as JSON (`downwash/report/v1`).
-[[nodiscard]] DOWNWASH_EXPORT std::string run_page_data(const RunRecord& run, const FlightModel& model, int threads = 1);
+[[nodiscard]] DOWNWASH_EXPORT std::string run_page_data(const RunRecord& run, const FlightModel& model,
+                                                        int threads = 1);
 
 }  // namespace downwash

@@ -134,10 +134,8 @@ Json execution_json(const Solution& solution) {
 Json warnings_json(const std::vector<LocatedError>& warnings) {
     Json list = Json::array();
     for (const LocatedError& warning : warnings) {
-        list.push_back({{"file", warning.file},
-                        {"line", warning.line},
-                        {"column", warning.column},
-                        {"message", warning.message}});
+        list.push_back(
+            {{"file", warning.file}, {"line", warning.line}, {"column", warning.column}, {"message", warning.message}});
     }
     return list;
 }

@@ -193,9 +193,8 @@ TEST_CASE("Warnings stand in the solution, and those of its problems are a campa
         text = std::regex_replace(text, std::regex("robot: [^\n]*"), "robot: robot.yaml");
         write_file(work / (std::string(name) + ".yaml"), text);
     }
-    write_file(work / "robot.yaml",
-               replaced(read_file(DOWNWASH_PROBLEMS "/robots/ars_lrm_ideal.yaml"), "power_coefficient_w_n1p5: 3.154",
-                        "power_coefficient_w_n1p5: 3154"));
+    write_file(work / "robot.yaml", replaced(read_file(DOWNWASH_PROBLEMS "/robots/ars_lrm_ideal.yaml"),
+                                             "power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154"));
     const auto expected = work.json("check", work / "one.yaml").at("warnings");
     REQUIRE(expected.size() == 1);
     const std::string solve = "--max-iterations 20 --quiet --json --out out";
