@@ -197,8 +197,8 @@ TEST_CASE("Warnings stand in the solution, and those of its problems are a campa
                                              "power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154"));
     const auto expected = work.json("check", work / "one.yaml").at("warnings");
     REQUIRE(expected.size() == 1);
-    const std::string solve = "--max-iterations 20 --quiet --json --out out";
-    CHECK(nlohmann::json::parse(work.run("solve", work / "one.yaml", solve).out).at("warnings") == expected);
+    const Result solved = work.run("solve", work / "one.yaml", "--max-iterations 20 --quiet --json --out out");
+    CHECK(solved.json().at("warnings") == expected);
 
     const std::string campaign = work / "campaign.yaml";
     write_file(campaign,
