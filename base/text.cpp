@@ -62,7 +62,8 @@ std::string to_fixed_text(double value, int decimals) {
                                    std::clamp(decimals, 0, 17))
                          .ptr;
     const std::string_view written(text.data(), static_cast<std::size_t>(end - text.data()));
-    const bool is_negative_zero = written.starts_with('-') && written.find_first_not_of("-0.") == std::string_view::npos;
+    const bool is_negative_zero =
+        written.starts_with('-') && written.find_first_not_of("-0.") == std::string_view::npos;
     return std::string(is_negative_zero ? written.substr(1) : written);
 }
 
