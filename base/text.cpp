@@ -56,6 +56,17 @@ std::string to_text(double value, int significant_digits) {
     return {text.data(), end};
 }
 
+std::string to_fixed_text(double value, int decimals) {
+    std::array<char, 400> text;  // the largest number has 309 digits before the point
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed,
+                                   std::clamp(decimals, 0, 17))
+                         .ptr;
+    const std::string_view written(text.data(), static_cast<std::size_t>(end - text.data()));
+    const bool is_negative_zero =
+        written.starts_with('-') && written.find_first_not_of("-0.") == std::string_view::npos;
+    return std::string(is_negative_zero ? written.substr(1) : written);
+}
+
 std::string_view trimmed(std::string_view text) {
     const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
     const auto end = std::find_if_not(text.rbegin(), std::make_reverse_iterator(begin), is_blank).base();

@@ -20,6 +20,9 @@ namespace downwash {
 /// A number for people to read, rounded to so many significant digits (1 to 17).
 [[nodiscard]] DOWNWASH_EXPORT std::string to_text(double value, int significant_digits);
 
+/// A number for people to read with so many decimals (0 to 17), and no minus sign before zero.
+[[nodiscard]] DOWNWASH_EXPORT std::string to_fixed_text(double value, int decimals);
+
 /// The number that a whole text spells ("3", "-.5", "+1e3"); empty if it spells none, or one that is not finite or out
 /// of the type's range. Independent of the locale.
 template <class Number>

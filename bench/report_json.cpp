@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
+#include "downwash/base/text.hpp"
 #include "downwash/bench/campaign_report.hpp"
 
 namespace downwash::bench {
@@ -9,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
+    return std::isfinite(value) ? Json(value + 0.0) : Json();  // no "-0.0"
 }
 
 template <class T>
@@ -166,13 +169,29 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
             {"experiments", problems}};
 }
 
+/// A setting as what it is: a number, true or false, text; null for a limit that there is not.
+Json setting_json(std::string_view name, const std::string& value) {
+    constexpr std::string_view numbers[] = {"jobs", "time_limit_s", "max_iterations", "evaluation_worlds"};
+    constexpr std::string_view flags[] = {"stop_at_first_solution", "as_believed"};
+    if (std::ranges::find(flags, name) != std::end(flags)) {
+        return value == "true";
+    }
+    if (std::ranges::find(numbers, name) == std::end(numbers)) {
+        return value;
+    }
+    if (const auto whole = parse_number<std::uint64_t>(value)) {
+        return *whole;
+    }
+    return optional_json(parse_number<double>(value));
+}
+
 }  // namespace
 
 std::string json_of(const CampaignReport& report) {
     const CampaignPlan& plan = report.plan;
     Json document{{"schema", "downwash/campaign-report/v1"}};
     for (const auto& [name, value] : plan.settings) {
-        document["settings"][name] = value;
+        document["settings"][name] = setting_json(name, value);
     }
     document["runs_planned"] = plan.run_count();
     document["runs_done"] = report.done;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "downwash/base/text.hpp"
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_schema.hpp"
 
@@ -18,6 +19,7 @@ std::string number_text(double value, const char* unit = "") {
     if (!std::isfinite(value)) {
         return "none";
     }
+    value += 0.0;  // no "-0"
     return std::abs(value) >= 1000 ? fmt::format("{:.0f}{}", value, unit) : fmt::format("{:.3g}{}", value, unit);
 }
 
@@ -26,7 +28,7 @@ std::string seconds_text(double seconds) {
 }
 
 std::string clearance_text(double clearance_m) {
-    return std::isfinite(clearance_m) ? fmt::format("{:.3f} m", clearance_m) : "none";
+    return std::isfinite(clearance_m) ? to_fixed_text(clearance_m, 3) + " m" : "none";
 }
 
 std::string cost_text(const Spread& cost) {

@@ -37,6 +37,7 @@ std::string latex_number(double value) {
     if (!std::isfinite(value)) {
         return "--";
     }
+    value += 0.0;  // no "-0"
     return std::abs(value) >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:#.3g}", value);
 }
 
@@ -67,7 +68,7 @@ std::string in_csv(const std::string& text) {
 }
 
 std::string csv_number(double value) {
-    return std::isfinite(value) ? fmt::format("{}", value) : "";
+    return std::isfinite(value) ? fmt::format("{}", value + 0.0) : "";
 }
 
 std::string csv_share(const Share& share) {

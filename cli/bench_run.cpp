@@ -26,7 +26,8 @@ struct BenchRunArguments {
 ExitCode run(const BenchRunArguments& given) {
     Interruption interruption;
     interruption.expect_results();
-    ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated);
+    ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated,
+                                      given.is_quiet ? nullptr : print_warning);
     if (given.jobs) {
         read.campaign.jobs = *given.jobs;
     }

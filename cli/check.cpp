@@ -48,7 +48,7 @@ Findings findings_in(const std::string& path) {
         if (kind == "robot") {
             static_cast<void>(read_robot(path, on_warning));
         } else if (kind == "campaign") {
-            static_cast<void>(read_campaign(path, print_outdated));
+            static_cast<void>(read_campaign(path, print_outdated, on_warning));
         } else {
             static_cast<void>(read_problem(path, {}, print_outdated, on_warning));
         }

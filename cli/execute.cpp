@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <vector>
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
@@ -30,7 +31,7 @@ struct ExecuteArguments {
     std::optional<std::string> out;
     PlannerOptions planner;
     int threads = default_threads();
-    bool no_cache = false, is_quiet = false, as_json = false;
+    bool is_quiet = false, as_json = false;
 };
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
@@ -98,9 +99,10 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
 
 ExitCode run(const ExecuteArguments& given) {
     Interruption interruption;
+    std::vector<LocatedError> warnings;
     Problem read = read_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
-        given.is_quiet ? nullptr : print_outdated);
+        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
     Solution solution = read_solution(plan_file(given.plan), read);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
@@ -110,8 +112,8 @@ ExitCode run(const ExecuteArguments& given) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
     interruption.expect_results();
-    const RunRecord record = write_results(folder, read, given.problem, solution);
-    write_page(folder, record, nullptr, cache_folder(given.no_cache), given.is_quiet, given.threads);
+    const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
+    write_page(folder, record, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
                                    : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
@@ -140,7 +142,6 @@ void add_execute(CLI::App& program, Action& action) {
             "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
             "itself is in that folder");
     add_threads(command, given.threads);
-    add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
     add_json(command, given.as_json, "solution.json");
 }

@@ -42,6 +42,15 @@ void print_warning(const LocatedError& warning) noexcept {
     print_error(to_text(shown) + "\n");
 }
 
+std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warnings, bool is_quiet) {
+    return [&warnings, is_quiet](const LocatedError& warning) {
+        warnings.push_back(warning);
+        if (!is_quiet) {
+            print_warning(warning);
+        }
+    };
+}
+
 std::string text_of(const Json& document) {
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

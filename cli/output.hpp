@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace downwash {
 struct LocatedError;
@@ -22,6 +24,9 @@ void print_outdated(const LocatedError& key) noexcept;
 
 /// Reports on standard error what is likely not meant.
 void print_warning(const LocatedError& warning) noexcept;
+
+/// Adds every warning to `warnings`, and prints it unless it is to be quiet.
+[[nodiscard]] std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warnings, bool is_quiet);
 
 /// A document as commands print it with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
 [[nodiscard]] std::string text_of(const Json& document);

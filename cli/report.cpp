@@ -22,7 +22,7 @@ struct ReportArguments {
     bool as_svg = false, as_png = false, as_pdf = false;
     std::optional<int> width_px;
     int threads = default_threads();
-    bool no_labels = false, no_cache = false, is_quiet = false;
+    bool no_labels = false;
 
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
@@ -67,10 +67,9 @@ ExitCode run(const ReportArguments& given) {
         write_pictures(given, read_run(run_folder(given.folder)));
     } else {
         require_pages();
-        const ShownRun shown = shown_run(read_run(run_folder(given.folder)), nullptr, cache_folder(given.no_cache),
-                                         given.is_quiet, given.threads);
+        const RunRecord shown = read_run(run_folder(given.folder));
         const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / "report.html";
-        write_result(page, run_page(shown.record, *shown.model, shown.map.get()));
+        write_result(page, run_page(shown, *make_flight_model(shown.problem), given.threads));
         fmt::print("{}\n", page.string());
     }
     return ExitCode::done;
@@ -93,8 +92,6 @@ void add_report(CLI::App& program, Action& action) {
     add_width(command, given.width_px);
     add_no_labels(command, given.no_labels);
     add_threads(command, given.threads);
-    add_no_cache(command, given.no_cache);
-    add_quiet(command, given.is_quiet);
 }
 
 }  // namespace downwash::cli

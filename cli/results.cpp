@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -34,10 +35,8 @@ std::string rejections(const SearchRecord& record) {
     return text.empty() ? "none" : text;
 }
 
-/// A length to the millimetre; a touch by less is no negative zero.
 std::string millimetres(double length_m) {
-    return !std::isfinite(length_m) ? "without limit"
-                                    : fmt::format("{:.3f} m", std::round(length_m * 1000) / 1000 + 0.0);
+    return !std::isfinite(length_m) ? "without limit" : to_fixed_text(length_m, 3) + " m";
 }
 
 std::string flight_rows(const Solution& solution, const Execution& flight) {
@@ -69,10 +68,10 @@ std::filesystem::path default_folder(const Problem& problem) {
 }
 
 RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
-                        const Solution& solution) {
+                        const std::vector<LocatedError>& warnings, const Solution& solution) {
     const Execution flight = solution.execution.value_or(no_flight(problem.robot));
     RunRecord record = run_record(problem, solution, flight);
-    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path())) {
+    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path(), warnings)) {
         folder.write(name, content);
         if (name == "effective.yaml") {
             record.problem_text = std::move(content);

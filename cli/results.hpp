@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "downwash/cli/exit_code.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -16,10 +18,10 @@ namespace downwash::cli {
 [[nodiscard]] std::filesystem::path default_folder(const Problem& problem);
 
 /// Writes effective.yaml, trajectory.csv, tree.csv and, last, solution.json.
-/// @param problem_file as the user gave it
+/// @param problem_file as the user gave it   @param warnings of reading it
 /// @return the same run, as read_run() would read it from the folder
 RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
-                        const Solution& solution);
+                        const std::vector<LocatedError>& warnings, const Solution& solution);
 
 /// The result of a search, in one sentence.
 [[nodiscard]] std::string verdict_on_search(const Solution& solution);

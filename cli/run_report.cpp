@@ -3,10 +3,7 @@
 #include <fmt/core.h>
 
 #include <stdexcept>
-#include <utility>
 
-#include "downwash/cli/common_options.hpp"
-#include "downwash/cli/progress.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
@@ -18,26 +15,6 @@ constexpr char page_name[] = "report.html";
 
 }  // namespace
 
-ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
-                   bool is_quiet, int threads) {
-    ShownRun run{std::move(record), nullptr, std::move(map)};
-    run.model = make_flight_model(run.record.problem);
-    if (run.map == nullptr) {
-        run.map = map_for_page(run.record.problem, *run.model, cache, is_quiet, threads);
-    }
-    return run;
-}
-
-std::shared_ptr<const AeroMap> map_for_page(const Problem& problem, const FlightModel& model,
-                                            const std::filesystem::path& cache, bool is_quiet, int threads) {
-    if (!problem.aero.enabled) {
-        return nullptr;
-    }
-    ProgressDisplay display(is_quiet);
-    return model.make_map(
-        problem.bounds, threads, [&display](double share) { display.show("aero map", share); }, cache);
-}
-
 void require_pages() {
     if (!has_pages()) {
         throw UsageError(
@@ -46,14 +23,12 @@ void require_pages() {
     }
 }
 
-void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
-                const std::filesystem::path& cache, bool is_quiet, int threads) {
+void write_page(const OutputFolder& folder, const RunRecord& record, int threads) {
     if (!has_pages()) {
         return;
     }
     try {
-        const ShownRun run = shown_run(record, std::move(map), cache, is_quiet, threads);
-        folder.write(page_name, run_page(run.record, *run.model, run.map.get()));
+        folder.write(page_name, run_page(record, *make_flight_model(record.problem), threads));
     } catch (const std::runtime_error& error) {
         remove_page(folder);
         print_error(fmt::format("downwash: the results are written, but no {}: {}\n", page_name, error.what()));

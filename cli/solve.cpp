@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
@@ -62,9 +63,10 @@ void print_remedies(const Problem& problem, SolveOptions options) {
 
 ExitCode run(const SolveArguments& given) {
     Interruption interruption(given.wall_limit_s);
+    std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
-        given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
+        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
     const Problem& read = plannable.problem;
     const std::filesystem::path out = given.out ? std::filesystem::path(*given.out) : default_folder(read);
     require_readable_again(read, out);
@@ -85,9 +87,9 @@ ExitCode run(const SolveArguments& given) {
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }
-    const RunRecord record = write_results(folder, read, given.problem, solution);
-    if (solution.map != nullptr || !solution.interrupted) {  // whoever interrupted does not want to wait for a map
-        write_page(folder, record, solution.map, options.map_cache, given.is_quiet);
+    const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
+    if (solution.map != nullptr || !solution.interrupted) {  // without a map there was no search to be shown yet
+        write_page(folder, record, given.threads);
     } else {
         remove_page(folder);
     }

@@ -24,7 +24,7 @@ struct ValidateArguments {
     std::optional<std::uint64_t> runs, seed, world;
     std::optional<std::string> out;
     int threads = default_threads();
-    bool as_json = false, is_quiet = false, no_cache = false;
+    bool as_json = false, is_quiet = false;
 };
 
 void check_options(const ValidateArguments& given, const Problem& problem) {
@@ -103,9 +103,8 @@ ExitCode run(const ValidateArguments& given) {
         }
     }
     if (folder) {
-        write_validation(
-            *folder, validation, judge, claims.plan,
-            {given.problem, given.plan, plan_file(given.plan), seed, cache_folder(given.no_cache), given.is_quiet});
+        write_validation(*folder, validation, judge, claims.plan,
+                         {given.problem, given.plan, plan_file(given.plan), seed, given.threads});
     }
     if (given.as_json) {
         print_json(json_of(validation));
@@ -136,7 +135,6 @@ void add_validate(CLI::App& program, Action& action) {
     add_out(command, "DIR", given.out,
             "folder for validation.json, what --json prints, and the page validation.html; default: no files");
     add_threads(command, given.threads);
-    add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
     add_json(command, given.as_json);
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "downwash/base/text.hpp"
+
 namespace downwash::cli {
 namespace {
 
@@ -64,7 +66,7 @@ std::string row(const std::string& name, const std::string& value) {
 }
 
 std::string metres(double value) {
-    return std::isfinite(value) ? fmt::format("{:.3f} m", value) : "no obstacles";
+    return std::isfinite(value) ? to_fixed_text(value, 3) + " m" : "no obstacles";
 }
 
 std::string verdict_of(const Validation& validation) {

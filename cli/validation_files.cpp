@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "downwash/base/files.hpp"
-#include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 #include "downwash/report/validation_page.hpp"
@@ -107,9 +106,8 @@ void write_validation(const OutputFolder& folder, const Validation& validation, 
     }
     const Problem& problem = judge.problem();
     const auto model = make_flight_model(problem);
-    const auto map = map_for_page(problem, *model, source.cache, source.is_quiet);
     const ValidationRecord record = record_of(validation, findings, judge, plan, source);
-    folder.write(page_name, validation_page(record, problem, *model, map.get()));
+    folder.write(page_name, validation_page(record, problem, *model, source.threads));
 }
 
 }  // namespace downwash::cli

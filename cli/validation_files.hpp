@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "downwash/cli/output.hpp"
@@ -16,12 +15,11 @@ inline constexpr double shown_clearance_step_s = 0.1;
 
 /// What was validated, and how.
 struct ValidationSource {
-    std::string problem_file;     ///< as the user gave it
-    std::string plan;             ///< as the user gave it: solution.json or its folder
-    std::string plan_file;        ///< solution.json itself
-    std::uint64_t seed = 1;       ///< of the worlds
-    std::filesystem::path cache;  ///< of aero maps; empty: none
-    bool is_quiet = false;
+    std::string problem_file;  ///< as the user gave it
+    std::string plan;          ///< as the user gave it: solution.json or its folder
+    std::string plan_file;     ///< solution.json itself
+    std::uint64_t seed = 1;    ///< of the worlds
+    int threads = 1;
 };
 
 /// Writes validation.json and, if this build contains pages, validation.html. The page plays the flight that was judged

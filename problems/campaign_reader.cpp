@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -107,11 +108,12 @@ std::vector<KeyError> campaign_errors(const Campaign& c) {
 /// @param located collects errors that have their place in a problem's file
 std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
                                     std::vector<LocatedError>& located,
-                                    const std::function<void(const LocatedError&)>& on_outdated) {
+                                    const std::function<void(const LocatedError&)>& on_outdated,
+                                    const std::function<void(const LocatedError&)>& on_warning) {
     std::vector<KeyError> errors;
     for (const std::string& path : campaign.problems) {
         try {
-            Problem problem = read_problem(path, {}, on_outdated);
+            Problem problem = read_problem(path, {}, on_outdated, on_warning);
             if (std::any_of(problems.begin(), problems.end(),
                             [&](const Problem& other) { return other.name == problem.name; })) {
                 errors.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
@@ -128,14 +130,21 @@ std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Proble
 }  // namespace
 
 ReadCampaign read_campaign(const std::filesystem::path& file,
-                           const std::function<void(const LocatedError&)>& on_outdated) {
+                           const std::function<void(const LocatedError&)>& on_outdated,
+                           const std::function<void(const LocatedError&)>& on_warning) {
     problems::TreeReader<Campaign> reader(campaign_parameters());
     reader.read(file);
     ReadCampaign read{reader.model(), {}};
     std::vector<LocatedError> in_problems;
+    std::set<std::string> told;  // a robot of several problems is warned of once
+    const auto on_warning_once = [&](const LocatedError& warning) {
+        if (on_warning && told.insert(to_text(warning)).second) {
+            on_warning(warning);
+        }
+    };
     if (reader.errors().empty()) {
         reader.add(campaign_errors(read.campaign));
-        reader.add(read_problems(read.campaign, read.problems, in_problems, on_outdated));
+        reader.add(read_problems(read.campaign, read.problems, in_problems, on_outdated, on_warning_once));
     }
     std::vector<LocatedError> errors = reader.errors();
     errors.insert(errors.end(), in_problems.begin(), in_problems.end());

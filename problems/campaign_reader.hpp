@@ -22,8 +22,10 @@ struct ReadCampaign {
 /// Reads a campaign file and its problems, whose paths are relative to it. The result is sound: problems have names of
 /// their own, and what is expected is run.
 /// @param on_outdated see read_problem()
+/// @param on_warning is told of everything that problem_warnings() finds in the problems, of each place once
 /// @throws ProblemFileError with every error that can be found in one reading, those of the problems included
 [[nodiscard]] DOWNWASH_EXPORT ReadCampaign
-read_campaign(const std::filesystem::path& file, const std::function<void(const LocatedError&)>& on_outdated = {});
+read_campaign(const std::filesystem::path& file, const std::function<void(const LocatedError&)>& on_outdated = {},
+              const std::function<void(const LocatedError&)>& on_warning = {});
 
 }  // namespace downwash

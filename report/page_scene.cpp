@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/report/color_scale.hpp"
 #include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/obstacle_outline.hpp"
@@ -202,9 +203,9 @@ Json scale_json(const AxisRange& range) {
     return {{"limits", scale.limits}, {"colors", std::move(colors)}};
 }
 
-/// The thrust ratio K of the first rotor over the bounds, in 255 steps from minimum to maximum. Evaluated directly: the
-/// map, which knows where a rotor can fly, may be off by as much as a class of the scale.
-Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& map) {
+/// The thrust ratio K of the first rotor over the bounds, in 255 steps from minimum to maximum. Evaluated directly: an
+/// aero map may be off by as much as a class of the scale.
+Json map_json(const Problem& problem, const FlightModel& model, int threads) {
     constexpr double max_points = 120'000;
     constexpr std::uint8_t not_flyable = 255;
     const Bounds& bounds = problem.bounds;
@@ -213,18 +214,22 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
     const double cell_m = std::max(problem.aero.grid_m, std::sqrt(width_m * height_m / max_points));
     const auto columns = static_cast<std::size_t>(width_m / cell_m) + 1;
     const auto rows = static_cast<std::size_t>(height_m / cell_m) + 1;
-    const std::size_t layer = model.rotor_layer(0);
+    const DirectEffect& effect = model.effect(0);
     std::vector<double> factors(columns * rows, std::numeric_limits<double>::quiet_NaN());
-    double low = 1, high = 1;
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-        const std::size_t row = i / columns;
-        const double x_m = bounds.x_low_m + cell_m * static_cast<double>(i % columns);
+    run_parallel(rows, threads, [&](std::size_t row) {
         const double z_m = bounds.z_low_m + cell_m * static_cast<double>(row);
-        if (map.is_flyable(layer, x_m, z_m)) {
-            factors[i] = model.direct_factor(0, x_m, z_m);
-            low = std::min(low, factors[i]);
-            high = std::max(high, factors[i]);
+        for (std::size_t column = 0; column < columns; ++column) {
+            const double x_m = bounds.x_low_m + cell_m * static_cast<double>(column);
+            const Vector3 hub_m = model.plane().to_world(x_m, model.rotor_lateral_m(0), z_m);
+            if (effect.is_flyable(hub_m)) {
+                factors[row * columns + column] = effect.factor(hub_m);
+            }
         }
+    });
+    double low = 1, high = 1;
+    for (const double factor : factors) {
+        low = std::fmin(low, factor);  // of a number and NaN, the number
+        high = std::fmax(high, factor);
     }
     constexpr double steps = 254;
     std::vector<std::uint8_t> levels(factors.size(), not_flyable);
@@ -251,7 +256,7 @@ Json map_json(const Problem& problem, const FlightModel& model, const AeroMap& m
 
 }  // namespace
 
-void add_problem(Json& page, const Problem& problem, const FlightModel& model, const AeroMap* map) {
+void add_problem(Json& page, const Problem& problem, const FlightModel& model, int threads) {
     page["description"] = problem.description;
     page["scene"] = scene_json(problem, model.effect(0).scene());
     page["robot"] = robot_json(problem.robot);
@@ -265,7 +270,7 @@ void add_problem(Json& page, const Problem& problem, const FlightModel& model, c
         {"safety_margin_m", problem.planner.safety_margin_m},
         {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},
         {"max_joint_torque_nm", problem.robot.arm.max_torque_nm}};
-    page["map"] = map != nullptr ? map_json(problem, model, *map) : Json();
+    page["map"] = model.has_effects() ? map_json(problem, model, threads) : Json();
 }
 
 }  // namespace downwash

@@ -9,8 +9,8 @@
 
 namespace downwash {
 
-/// Adds to a page: description, scene, robot, start, goals, limits and aero map.
-/// @param model of the problem   @param map of the problem; nullptr: none
-void add_problem(nlohmann::ordered_json& page, const Problem& problem, const FlightModel& model, const AeroMap* map);
+/// Adds to a page: description, scene, robot, start, goals, limits, and the thrust ratio where surfaces act on rotors.
+/// @param model of the problem   @param threads at least 1; the page does not depend on it
+void add_problem(nlohmann::ordered_json& page, const Problem& problem, const FlightModel& model, int threads);
 
 }  // namespace downwash

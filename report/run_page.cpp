@@ -54,7 +54,7 @@ bool has_pages() noexcept {
     return !run_page_template().empty();
 }
 
-std::string run_page_data(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
+std::string run_page_data(const RunRecord& run, const FlightModel& model, int threads) {
     const Problem& problem = run.problem;
     const Json solution = Json::parse(run.solution_text);
     Json page{{"schema", "downwash/report/v1"},
@@ -65,12 +65,12 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, const 
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)},
               {"tree", tree_json(run.tree)}};
-    add_problem(page, problem, model, map);
+    add_problem(page, problem, model, threads);
     return page_data(page);
 }
 
-std::string run_page(const RunRecord& run, const FlightModel& model, const AeroMap* map) {
-    return filled_page(run_page_template(), run_page_data(run, model, map));
+std::string run_page(const RunRecord& run, const FlightModel& model, int threads) {
+    return filled_page(run_page_template(), run_page_data(run, model, threads));
 }
 
 }  // namespace downwash

@@ -47,7 +47,7 @@ Json flights_json(const std::vector<PlayableFlight>& flights) {
 }  // namespace
 
 std::string validation_page_data(const ValidationRecord& validation, const Problem& problem, const FlightModel& model,
-                                 const AeroMap* map) {
+                                 int threads) {
     Json page{{"schema", "downwash/validation-report/v1"},
               {"version", version()},
               {"command", validation.command},
@@ -59,13 +59,13 @@ std::string validation_page_data(const ValidationRecord& validation, const Probl
               {"plan", Json::parse(validation.solution_text).at("plan")},
               {"clearance", clearance_json(validation.clearance)},
               {"flights", flights_json(validation.flights)}};
-    add_problem(page, problem, model, map);
+    add_problem(page, problem, model, threads);
     return page_data(page);
 }
 
 std::string validation_page(const ValidationRecord& validation, const Problem& problem, const FlightModel& model,
-                            const AeroMap* map) {
-    return filled_page(validation_page_template(), validation_page_data(validation, problem, model, map));
+                            int threads) {
+    return filled_page(validation_page_template(), validation_page_data(validation, problem, model, threads));
 }
 
 }  // namespace downwash

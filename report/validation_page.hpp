@@ -41,14 +41,14 @@ struct ValidationRecord {
 };
 
 /// A validation as one self-contained HTML file: verdict, flights with playback, clearance over time, what matters.
-/// @param model of the problem   @param map of the problem, shown over the scene; nullptr: none
+/// @param model of the problem   @param threads at least 1; the page does not depend on it
 /// @pre has_pages()
 [[nodiscard]] DOWNWASH_EXPORT std::string validation_page(const ValidationRecord& validation, const Problem& problem,
-                                                          const FlightModel& model, const AeroMap* map);
+                                                          const FlightModel& model, int threads = 1);
 
 /// The data within that page, as JSON (`downwash/validation-report/v1`).
 [[nodiscard]] DOWNWASH_EXPORT std::string validation_page_data(const ValidationRecord& validation,
                                                                const Problem& problem, const FlightModel& model,
-                                                               const AeroMap* map);
+                                                               int threads = 1);
 
 }  // namespace downwash

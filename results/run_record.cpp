@@ -188,15 +188,17 @@ RunRecord run_record(const Problem& problem, const Solution& solution, const Exe
 
 std::vector<std::pair<std::string, std::string>> run_files(const Problem& problem, const std::string& problem_file,
                                                            const Solution& solution, const Execution& flight,
-                                                           const fs::path& folder) {
+                                                           const fs::path& folder,
+                                                           const std::vector<LocatedError>& warnings) {
     std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
                                                            {"trajectory.csv", trajectory_csv(flight)},
                                                            {"tree.csv", tree_csv(solution.tree)}};
     // effective.yaml depends on its folder; the digest of the problem stands for it.
     const FileDigests digests{{files[1].first, sha256_hex(files[1].second)},
                               {files[2].first, sha256_hex(files[2].second)}};
-    files.emplace_back("solution.json",
-                       solution_json(solution, {problem.name, problem_file, problem_sha256(problem)}, digests));
+    files.emplace_back(
+        "solution.json",
+        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
     return files;
 }
 

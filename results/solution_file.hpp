@@ -2,10 +2,12 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_reader.hpp"
 
 namespace downwash {
 
@@ -15,8 +17,9 @@ inline constexpr char solution_schema[] = "downwash/solution/v1";
 /// How a solution names the problem that it solves.
 struct ProblemReference {
     std::string name;
-    std::string file;    ///< as the user gave it
-    std::string sha256;  ///< of the effective problem and every file that it refers to
+    std::string file;                         ///< as the user gave it
+    std::string sha256;                       ///< of the effective problem and every file that it refers to
+    std::vector<LocatedError> warnings = {};  ///< what was found when it was read, with its places
 };
 
 /// SHA-256 digests of files of a run by their names: they belong to this solution and to no other.
@@ -28,7 +31,8 @@ using FileDigests = std::map<std::string, std::string>;
                                                         const FileDigests& files = {});
 
 /// Reads a solution back, its plan above all, to fly it for `problem`. The execution stays empty; what a plan written
-/// by hand leaves out (all but `schema` and `plan`) is taken from the problem's settings.
+/// by hand leaves out (all but `schema` and `plan`) is taken from the problem's settings. Its warnings are not read:
+/// they are about the problem.
 /// @throws ProblemFileError with every error: no solution file, no plan in it, a reference off the grid of control
 /// ticks or starting elsewhere than the problem does, waypoints that disagree with the reference
 [[nodiscard]] DOWNWASH_EXPORT Solution read_solution(const std::string& path, const Problem& problem);

@@ -131,6 +131,15 @@ Json execution_json(const Solution& solution) {
     return execution;
 }
 
+Json warnings_json(const std::vector<LocatedError>& warnings) {
+    Json list = Json::array();
+    for (const LocatedError& warning : warnings) {
+        list.push_back(
+            {{"file", warning.file}, {"line", warning.line}, {"column", warning.column}, {"message", warning.message}});
+    }
+    return list;
+}
+
 /// A name, or the weights of a sum.
 Json objective_json(const CostFunction& objective) {
     if (const auto single = objective.single()) {
@@ -153,6 +162,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"status", name_of(solution.status)},
         {"interrupted", solution.interrupted},
         {"problem", {{"name", problem.name}, {"file", problem.file}, {"sha256", problem.sha256}}},
+        {"warnings", warnings_json(problem.warnings)},
         {"variant", name_of(solution.variant)},
         {"algorithm", solution.algorithm},
         {"objective", objective_json(solution.objective)},

@@ -44,7 +44,7 @@ mkdir -p "$out"
 page campaign 'Downwash campaign' src/campaign/main.js src/campaign/page.css
 page validation 'Downwash validation' src/validation/main.js src/validation/page.css
 
-bundle src/view3d_app.js --global-name=DownwashView3d --outfile="$parts/view3d.js" \
+bundle src/view3d/app.js --global-name=DownwashView3d --outfile="$parts/view3d.js" \
     --alias:three="$three/build/three.module.js" \
     --alias:orbit-controls="$three/examples/jsm/controls/OrbitControls.js"
 {

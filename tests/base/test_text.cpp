@@ -28,6 +28,15 @@ TEST_CASE("text is UTF-8 if each of its characters is") {
     CHECK_FALSE(is_utf8("\xc0\xaf"));  // overlong
 }
 
+TEST_CASE("a number with so many decimals has no minus sign before zero") {
+    CHECK(to_fixed_text(1.0625, 3) == "1.062");  // halves go to the even digit
+    CHECK(to_fixed_text(-0.0004, 3) == "0.000");
+    CHECK(to_fixed_text(-0.0, 0) == "0");
+    CHECK(to_fixed_text(-0.0006, 3) == "-0.001");
+    CHECK(to_fixed_text(-10, 1) == "-10.0");
+    CHECK(to_fixed_text(1e300, 0).size() == 301);
+}
+
 TEST_CASE("a misspelt word is taken for the nearest name, a strange one for none") {
     const std::array<std::string_view, 3> names{"energy", "time", "clearance"};
     CHECK(nearest_name("enrgy", names) == "energy");

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 using namespace downwash;
 using namespace downwash::bench;
@@ -325,6 +326,33 @@ TEST_CASE("the report is the same in JSON, null for what is infinite") {
     CHECK(json.at("failures").at(1).at("seeds") == nlohmann::json{3});
     CHECK(json.at("cells").at(1).at("seeds").at("flown_cost").at(1).is_null());
     CHECK(json.at("totals").at(1).at("held").at("hits") == 2);
+}
+
+TEST_CASE("settings are numbers and flags in JSON, and no limit is null") {
+    CampaignResults results = some_results();
+    results.plan.settings = {{"campaign", "12"},
+                             {"jobs", "2"},
+                             {"time_limit_s", "0.5"},
+                             {"max_iterations", "none"},
+                             {"stop_at_first_solution", "false"},
+                             {"seeds", "1-3, 7"}};
+    const auto settings = nlohmann::json::parse(json_of(report_of(results))).at("settings");
+    CHECK(settings == nlohmann::json{{"campaign", "12"},
+                                     {"jobs", 2},
+                                     {"time_limit_s", 0.5},
+                                     {"max_iterations", nullptr},
+                                     {"stop_at_first_solution", false},
+                                     {"seeds", "1-3, 7"}});
+}
+
+TEST_CASE("no zero has a minus sign, however little a flight touched") {
+    CampaignResults results = some_results();
+    results.runs[0].flight->min_clearance_m = -0.0000004;
+    results.runs[4].flight->min_clearance_m = -0.0;
+    const CampaignReport report = report_of(results);
+    for (const std::string& text : {markdown_of(report), latex_of(report), csv_of(report), json_of(report)}) {
+        CHECK_FALSE(std::regex_search(text, std::regex("-0(\\.0+)?([^.0-9e]|$)")));
+    }
 }
 
 TEST_CASE("seeds that follow each other are told as a range") {

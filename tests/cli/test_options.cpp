@@ -70,13 +70,13 @@ TEST_CASE("What several commands do has one name in all of them") {
           "study uncertainty", "report", "export"}},
         {"--quiet",
          {"solve", "execute", "validate", "aeromap query", "aeromap build", "aeromap plot", "bench run",
-          "study uncertainty", "report"}},
+          "study uncertainty"}},
         {"--threads", {"solve", "execute", "validate", "aeromap query", "aeromap build", "report"}},
         {"--margin", {"solve", "execute"}},
         {"--jobs", {"bench run", "study uncertainty"}},
         {"--plan", {"execute", "validate"}},
         {"--arm-deg", {"aeromap plot", "aeromap hold"}},
-        {"--no-cache", {"solve", "execute", "validate", "aeromap query", "bench run", "study uncertainty", "report"}}};
+        {"--no-cache", {"solve", "aeromap query", "bench run", "study uncertainty"}}};
     for (const auto& [name, commands] : expected) {
         INFO(name);
         REQUIRE(options.contains(name));
@@ -184,6 +184,30 @@ TEST_CASE("Check warns of what is likely not meant and the exit code stays 0") {
     CHECK_THAT(people.err, Contains("warning: planner.safety_margin_m is 0"));
     CHECK_THAT(work.run("solve", problem, "--variant mp-arm --max-iterations 1").err,
                Contains("warning: planner.safety_margin_m is 0"));
+}
+
+TEST_CASE("Warnings stand in the solution, and those of its problems are a campaign's, each once") {
+    const Workspace work;
+    for (const char* name : {"one", "other"}) {
+        std::string text = replaced(problem_text("open_air"), "name: open_air", std::string("name: ") + name);
+        text = std::regex_replace(text, std::regex("robot: [^\n]*"), "robot: robot.yaml");
+        write_file(work / (std::string(name) + ".yaml"), text);
+    }
+    write_file(work / "robot.yaml", replaced(read_file(DOWNWASH_PROBLEMS "/robots/ars_lrm_ideal.yaml"),
+                                             "power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154"));
+    const auto expected = work.json("check", work / "one.yaml").at("warnings");
+    REQUIRE(expected.size() == 1);
+    const Result solved = work.run("solve", work / "one.yaml", "--max-iterations 20 --quiet --json --out out");
+    CHECK(solved.json().at("warnings") == expected);
+
+    const std::string campaign = work / "campaign.yaml";
+    write_file(campaign,
+               "schema: downwash/campaign/v1\nname: trial\nproblems: [one.yaml, other.yaml]\nvariants: [mp-arm]\n"
+               "seeds: {first: 1, count: 1}\nmax_iterations: 1\n");
+    CHECK(work.json("check", campaign).at("warnings") == expected);
+    const std::string warning = "warning: rotors.power_coefficient_w_n1p5 is";
+    CHECK_THAT(work.run("bench run", campaign, "--out results").err, Contains(warning));
+    CHECK(work.run("bench run", campaign, "--out quiet --quiet").err.empty());
 }
 
 TEST_CASE("No shipped problem or robot warns and campaigns are checked too") {

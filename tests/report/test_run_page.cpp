@@ -24,7 +24,7 @@ namespace {
 json data_of(const SolvedRun& run) {
     const RunRecord record = read_run(run.folder());
     const auto model = make_flight_model(record.problem);
-    return json::parse(run_page_data(record, *model, run.solution.map.get()));
+    return json::parse(run_page_data(record, *model));
 }
 
 std::string unpacked(const json& text, std::size_t size) {
@@ -166,15 +166,14 @@ TEST_CASE("no text of a problem ends the script element that carries it") {
     const SolvedRun run(problem);
     const RunRecord record = read_run(run.folder());
     const auto model = make_flight_model(record.problem);
-    const std::string text = run_page_data(record, *model, nullptr);
+    const std::string text = run_page_data(record, *model);
     CHECK(text.find_first_of("<>&") == std::string::npos);
     CHECK(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
     const json data = json::parse(text);
     CHECK(data["description"] == problem.description);
     CHECK(data["scene"]["obstacles"][0]["name"] == problem.obstacles[0].name);
-    CHECK(data["map"].is_null());
     if (has_pages()) {
-        const std::string page = run_page(record, *model, nullptr);
+        const std::string page = run_page(record, *model);
         CHECK(page.find(text) != std::string::npos);
         CHECK(page.find("{\"downwash\":\"run\"}") == std::string::npos);
     }

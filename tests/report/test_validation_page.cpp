@@ -33,9 +33,9 @@ ValidationRecord validation() {
 }  // namespace
 
 TEST_CASE("the page of a validation carries findings, plan, flights and the scene") {
-    const Problem problem = test::ceiling_problem();
+    Problem problem = test::ceiling_problem();
     const auto model = make_flight_model(problem);
-    const std::string text = validation_page_data(validation(), problem, *model, nullptr);
+    const std::string text = validation_page_data(validation(), problem, *model);
     CHECK(text.find_first_of("<>&") == std::string::npos);
     const json data = json::parse(text);
     CHECK(data["schema"] == "downwash/validation-report/v1");
@@ -50,8 +50,11 @@ TEST_CASE("the page of a validation carries findings, plan, flights and the scen
     CHECK(flight["flight"]["rows"] == 2);
     CHECK(flight["flight"]["columns"] == json({"t_s", "x_m"}));
     CHECK(data["scene"]["obstacles"].size() == problem.obstacles.size());
-    CHECK(data["map"].is_null());
+    CHECK(data["map"]["factor_high"] > 1.05);
+    problem.aero.enabled = false;
+    CHECK(json::parse(validation_page_data(validation(), problem, *make_flight_model(problem)))["map"].is_null());
+    problem.aero.enabled = true;
     if (has_pages()) {
-        CHECK(validation_page(validation(), problem, *model, nullptr).find(text) != std::string::npos);
+        CHECK(validation_page(validation(), problem, *model).find(text) != std::string::npos);
     }
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "../support/same_bytes.hpp"
@@ -117,6 +118,19 @@ TEST_CASE("A plan is read back to the last bit") {
     CHECK(found.planning.rejected == written.planning.rejected);
     CHECK_FALSE(found.execution);
     CHECK(solution_json(found, {"open_air", "open_air.yaml", std::string(64, 'a')}) == sample_text());
+}
+
+TEST_CASE("Warnings are written with their places and a file is read with and without them") {
+    const LocatedError warning{"robots/\"mine\".yaml", 12, 3, "rotors.positions_m puts the rotors 1 and 2 close"};
+    const std::string text = solution_json(sample(), {"open_air", "open_air.yaml", "", {warning}});
+    const auto warnings = nlohmann::json::parse(text).at("warnings");
+    CHECK(warnings == nlohmann::json{{{"file", warning.file},
+                                      {"line", 12},
+                                      {"column", 3},
+                                      {"message", "rotors.positions_m puts the rotors 1 and 2 close"}}});
+    CHECK(read(text).plan);
+    CHECK(nlohmann::json::parse(sample_text()).at("warnings") == nlohmann::json::array());
+    CHECK(read(sample_with("\"warnings\": [],", "")).plan);
 }
 
 TEST_CASE("The weights of a sum are written and read back") {

@@ -11,7 +11,7 @@ import sample_campaign
 from packing import write_page
 from sample_page import HOSTILE
 
-FIGURES = ["success", "costs", "flown-costs", "cost-shares", "first-solutions", "pairs"]
+FIGURES = ["outcomes", "worlds", "flown-costs", "cost-shares", "success", "costs", "first-solutions", "pairs"]
 
 
 class Campaign(page_test.BrowserTest):
@@ -33,9 +33,66 @@ class Campaign(page_test.BrowserTest):
     def test_has_every_figure_for_every_problem_and_asks_for_nothing(self):
         self.assertTrue(self.show(sample_campaign.campaign()))
         self.assertEqual(self.every("section.figure", "e.id"), FIGURES)
-        self.assertEqual(self.every("section.figure", "e.querySelectorAll('.panel svg:not([hidden])').length"), [2] * 6)
+        self.assertEqual(self.every("section.figure", "e.querySelectorAll('.panel svg:not([hidden])').length"), [2] * 8)
         self.assertEqual(self.browser.complaints(), [])
         self.assertEqual(self.browser.requests(), [])
+
+    def test_flights_that_held_come_first_and_a_plan_that_failed_is_no_success(self):
+        figures = sample_campaign.campaign()
+        cell = figures["cells"][2]  # mp-arm: 20 plans, of which 3 fly, 14 fail and 3 were never found
+        cell.update(solved=sample_campaign.share(17, 20), held=sample_campaign.share(3, 20),
+                    failed_flights=sample_campaign.share(14, 20))
+        self.show(figures)
+        self.assertEqual(self.one("section.figure", "e.id"), "outcomes")
+        widths = self.js("return [...document.querySelectorAll('#outcomes .panel')[0].querySelectorAll('.outcome.series-2')]"
+                         ".map(e => [e.classList[1], Number(e.getAttribute('width'))])")
+        whole = sum(width for _, width in widths)
+        self.assertEqual([(kind, round(20 * width / whole, 1)) for kind, width in widths],
+                         [("held", 3), ("failed", 14), ("without", 3)])
+        text = self.one("#outcomes .panel", "e.textContent")
+        self.assertIn("mp-arm: flight held 3, flight failed 14, no plan 3", text)
+        self.assertIn("may fail when executed", self.one("#success .note", "e.textContent"))
+
+    def test_failures_in_worlds_are_where_their_share_is(self):
+        figures = sample_campaign.campaign()
+        for cell in figures["cells"][:3]:
+            cell["in_worlds"]["failed"] = {"hits": 30, "attempts": 600, "low": 0.034, "high": 0.07}
+        self.show(figures)
+        panel = "#worlds .panel "
+        at = {text: x for text, x in self.every(panel + ".tick[text-anchor=middle]",
+                                                "[e.textContent, Number(e.getAttribute('x'))]")}
+        drawn = self.one(panel + ".dot", "Number(e.getAttribute('cx'))")
+        self.assertAlmostEqual((drawn - at["0%"]) / (at["6%"] - at["0%"]), 5 / 6, delta=0.01)
+
+    def test_no_figure_of_worlds_without_flights_in_worlds(self):
+        figures = sample_campaign.campaign()
+        for cell in figures["cells"]:
+            cell["in_worlds"] = None
+        self.show(figures)
+        self.assertEqual(self.js("return document.querySelectorAll('#worlds').length"), 0)
+
+    def test_axes_have_ticks_however_short_they_are(self):
+        for low, high in ((0.11, 0.13), (1.2, 1.9), (0.3, 0.9), (0.002, 0.5)):
+            with self.subTest(low=low, high=high):
+                figures = sample_campaign.campaign()
+                for cell in figures["cells"]:
+                    times = [low + (high - low) * i / 19 for i in range(20)]
+                    cell["seeds"]["first_solution_s"] = times
+                    cell["first_solution_s"] = sample_campaign.spread(times)
+                self.show(figures)
+                ticks = self.every("#first-solutions .panel:first-of-type .tick[text-anchor=middle]",
+                                   "[e.textContent, e.getBoundingClientRect().left, e.getBoundingClientRect().right]")
+                self.assertGreaterEqual(len(ticks), 2, ticks)
+                for (_, _, right), (_, left, _) in zip(ticks, ticks[1:]):
+                    self.assertLess(right, left, ticks)
+
+    def test_no_zero_has_a_minus_sign(self):
+        figures = sample_campaign.campaign()
+        for cell in figures["cells"]:
+            cell["least_clearance_m"] = -0.0000004
+        figures["comparisons"][0]["median_difference"] = -0.0
+        self.show(figures)
+        self.assertEqual(re.findall(r"[-−]0(?:\.0+)?(?![\d.])", self.js("return document.getElementById('page').textContent")), [])
 
     def test_a_success_curve_ends_at_its_share_and_its_band_at_the_interval(self):
         figures = sample_campaign.campaign()
@@ -100,6 +157,7 @@ class Campaign(page_test.BrowserTest):
         figures = sample_campaign.campaign()
         for cell in figures["cells"]:
             cell.update(solved=sample_campaign.share(0, 0), solved_over_time=[], cost_curve=[], cost_over_time=[])
+            cell["in_worlds"] = None
             cell["seeds"] = {name: [] for name in cell["seeds"]}
         figures.update(runs_done=0, comparisons=[], failures=[])
         for totals in figures["totals"]:

@@ -53,7 +53,7 @@ class Looks(page_test.BrowserTest):
         self.assertLessEqual(seen, set(sample_page.SCALE["colors"]))
         self.assertGreater(len(seen), 6)
         ticks = [float(text) for text in self.every(".color-bar-scale .tick", "e.textContent")]
-        self.assertIn(1.01, ticks)
+        self.assertIn(0.99, ticks)  # where the class around free air begins
         self.assertLessEqual(set(ticks), set(sample_page.SCALE["limits"]))
 
     def test_no_page_is_wider_than_a_phone(self):
@@ -65,6 +65,32 @@ class Looks(page_test.BrowserTest):
                     self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
                     self.browser.settle()
                     self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), width)
+
+    def test_the_scene_stands_in_the_first_screen(self):
+        for case in set(sample_page.CASES) - {"hostile"}:
+            for width, height in ((1280, 900), (390, 844)):
+                with self.subTest(case=case, width=width):
+                    self.browser.resize(width, height, mobile=width < 700)
+                    self.open(case)
+                    self.assertLess(self.one(".scene-svg", "e.getBoundingClientRect().bottom"), height)
+
+    def test_the_buttons_of_the_scene_cover_nothing_of_it(self):
+        for width in (1280, 390):
+            self.browser.resize(width, 900, mobile=width < 700)
+            self.open("solved")
+            self.assertLessEqual(self.one(".zoom-tools", "e.getBoundingClientRect().bottom"),
+                                 self.one(".scene-svg", "e.getBoundingClientRect().top"))
+
+    def test_no_figure_stands_alone_in_its_row(self):
+        for case in ("solved", "open-air", "unsolved", "certified", "collision"):
+            for width in (1400, 1280, 900, 768, 390):
+                with self.subTest(case=case, width=width):
+                    self.browser.resize(width, 900, mobile=width < 700)
+                    self.open(case)
+                    tiles = self.every(".figures > div", "[e.offsetTop, e.offsetWidth]")
+                    last = [wide for top, wide in tiles if top == tiles[-1][0]]
+                    whole = self.one(".figures", "e.offsetWidth")
+                    self.assertTrue(len(last) > 1 or last[0] > 0.9 * whole, tiles)
 
     def test_prints_light_without_controls(self):
         self.browser.media(prefers_color_scheme="dark")
@@ -201,11 +227,30 @@ class InThreeDimensions(page_test.BrowserTest):
             for drawn, wanted in zip(tip, (columns["ee_x_m"][row], 0, columns["ee_z_m"][row])):
                 self.assertAlmostEqual(drawn, wanted, places=5)
         time.sleep(0.3)
+        names = [text.strip("\u2068\u2069") for text in
+                 self.every(".name3d", "getComputedStyle(e).display === 'none' ? '' : e.textContent")]
+        for name in ("deck", "pier", "walkway", "goal 2", "start"):
+            self.assertIn(name, names)
+        self.assertIn("squares are 2\u00a0m wide", self.one(".view3d [role=status]", "e.textContent"))
+        self.assertIn("x\u00a0−8\u00a0m".replace("\u00a0", " "), [name.replace("\u00a0", " ") for name in names])
+        flight = [self.js("return document.querySelector('.stage').view.seen_at(...arguments)", columns["x_m"][row],
+                          columns["z_m"][row]) for row in range(0, len(columns["t_s"]), 100)]
+        across = [x for x, _ in flight]
+        self.assertTrue(all(0 < value < 1 for point in flight for value in point), "the camera sees the whole flight")
+        self.assertGreater(max(across) - min(across), 0.5)
         self.js("document.querySelector('.stage').scrollIntoView({block: 'center'})")
         box = self.one(".stage", "e.getBoundingClientRect().toJSON()")
         sides = tuple(int(box[side]) for side in ("left", "top", "right", "bottom"))
-        picture = Image.open(io.BytesIO(self.browser.screenshot())).convert("L").crop(sides)
-        self.assertGreater(np.asarray(picture).std(), 8)
+        picture = Image.open(io.BytesIO(self.browser.screenshot())).crop(sides)
+        self.assertGreater(np.asarray(picture.convert("L")).std(), 8)
+        saturation = np.asarray(picture.convert("HSV"))[:, :, 1]
+        self.assertGreater((saturation > 60).mean(), 0.02, "surface effects, paths and vehicle have colours")
+        self.js("document.querySelector('.view3d-bar input').click()")
+        row = self.js("return downwash.row")
+        seen = self.js("return document.querySelector('.stage').view.seen_at(...arguments)", columns["x_m"][row],
+                       columns["z_m"][row])
+        for value in seen:
+            self.assertAlmostEqual(value, 0.5, places=2)
         self.press("d", target="document.querySelector('.stage canvas')")
         # What software WebGL says about itself is not the page's doing.
         own = ("GPU stall", "GroupMarker")

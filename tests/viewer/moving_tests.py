@@ -3,6 +3,7 @@
 import time
 
 import page_test
+import sample_page
 
 
 class Moving(page_test.BrowserTest):
@@ -88,7 +89,7 @@ class Moving(page_test.BrowserTest):
     def test_the_pointer_says_what_is_below_it(self):
         self.open("solved")
         self.js("document.querySelector('.scene-svg').scrollIntoView()")
-        for place, words in (((-3, 9.5), "factor 1.0"), ((0, 10.5), "not flyable")):
+        for place, words in (((-3, 9.5), "K 1.0"), ((0, 10.5), "not flyable")):
             x, y = self.pixels(*place)
             self.mouse("mouseMoved", x, y, buttons=0, button="none")
             self.assertIn(words, self.js("return document.querySelector('.pointer-text').textContent"))
@@ -175,7 +176,43 @@ class Moving(page_test.BrowserTest):
         self.assertEqual(plain["Duration"], f"{execution['duration_s']:.2f} s")
         self.assertEqual(plain["Minimum clearance"], f"{execution['min_clearance_m']:.3f} m")
         self.assertEqual(plain["Goal error"], f"{execution['goal_error_m']:.3f} m")
-        self.assertEqual(plain["Iterations"], str(solution["planning"]["iterations"]))
+
+    def test_no_figure_is_shown_twice(self):
+        for case in ("solved", "open-air", "five-goals"):
+            self.open(case)
+            figures = [text for text in self.every(".figures .figure", "e.textContent") if text != "–"]
+            self.assertEqual(len(figures), len(set(figures)), (case, figures))
+
+    def test_every_hover_at_a_goal_is_marked_on_the_slider_and_in_the_plots(self):
+        columns = self.open("five-goals")
+        end_s = columns["t_s"][-1]
+        track = self.one("input.time", "e.getBoundingClientRect().toJSON()")
+        thumb = 18  # its middle is at the time
+        marks = self.every(".mark.hover", "[e.textContent, e.getBoundingClientRect().left, e.getBoundingClientRect().right]")
+        self.assertEqual([text for text, _, _ in marks], ["1", "2", "3", "4", "5"])
+        for (_, left, right), (from_s, to_s) in zip(marks, sample_page.HOVERS_S):
+            for drawn, time_s in ((left, from_s), (right, to_s)):
+                wanted = track["left"] + thumb / 2 + (track["width"] - thumb) * time_s / end_s
+                self.assertAlmostEqual(drawn, wanted, delta=1)
+        bands = self.every("[data-plot=clearance] .hover-band", "[e.getAttribute('x'), e.getAttribute('width')].map(Number)")
+        self.assertEqual(len(bands), 5)
+        scale = bands[4][1] / 5
+        self.assertAlmostEqual(bands[1][0] - bands[0][0], 5 * scale, places=6)
+        self.assertAlmostEqual(bands[1][1], 3 * scale, places=6)
+
+    def test_thrust_ratios_of_many_rotors_stand_side_by_side_in_the_picture(self):
+        for width in (1280, 390):
+            self.browser.resize(width, 900, mobile=width < 700)
+            self.open("five-goals")
+            frame = self.one(".scene-svg .frame", "e.getBoundingClientRect().toJSON()")
+            for seconds in (0, 5, 14, 33):
+                self.set_time(seconds)
+                boxes = sorted(self.every(".of-force", "[e.getBoundingClientRect().left, e.getBoundingClientRect().right]"))
+                self.assertEqual(len(boxes), 4)
+                for (_, right), (left, _) in zip(boxes, boxes[1:]):
+                    self.assertLess(right, left, (width, seconds))
+                self.assertGreaterEqual(boxes[0][0], frame["left"])
+                self.assertLessEqual(boxes[-1][1], frame["right"])
 
 
 class Verdicts(page_test.BrowserTest):
@@ -194,6 +231,17 @@ class Verdicts(page_test.BrowserTest):
         self.assertIn(f"x {columns['x_m'][-1]:.2f} m, z {columns['z_m'][-1]:.2f} m", text)
         self.assertEqual(self.js("return downwash.row"), 1200)  # what went wrong is what is shown first
         self.assertEqual(self.js("return document.querySelectorAll('.trouble-mark, .mark.failure').length"), 2)
+
+    def test_warnings_are_seen_at_once_and_told_in_full_when_asked_for(self):
+        self.open("doubtful")
+        self.assertEqual(self.one(".warnings-count", "e.textContent"), "⚠ 2 warnings")
+        self.assertIn("nearly unstable", self.one(".warnings summary", "e.textContent"))
+        self.assertLess(self.one(".warnings summary", "e.getBoundingClientRect().height"), 30)
+        self.js("document.querySelector('.warnings').open = true")
+        self.assertIn("problems/robots/mine.yaml:48", self.one(".warnings li", "e.innerText"))
+        for case in ("solved", "certified"):  # files of former versions have no list of warnings
+            self.open(case)
+            self.assertEqual(self.js("return document.querySelectorAll('.warnings').length"), 0)
 
     def test_nothing_found_says_what_blocked_it_and_where(self):
         self.open("unsolved")

@@ -96,8 +96,8 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
     return {
         "schema": "downwash/campaign-report/v1",
         "settings": {"campaign": "invented", "description": "Two problems, made up.", "version": "0.0.0",
-                     "commit": "0123456789ab", "processor": "a processor", "jobs": "2", "time_limit_s": "1",
-                     "max_iterations": "none", "seeds": f"1-{seeds}"},
+                     "commit": "0123456789ab", "processor": "a processor", "jobs": 2, "time_limit_s": 1,
+                     "max_iterations": None, "seeds": f"1-{seeds}"},
         "runs_planned": runs, "runs_done": runs, "time_limit_s": 1, "stop_at_first_solution": False, "left_out": [],
         "totals": totals, "cells": cells, "comparisons": comparisons,
         "margins": sweep if margins != (None,) else [], "failures": failures,

@@ -31,6 +31,10 @@ COLUMNS = ("t_s,ref_x_m,ref_z_m,ref_arm_rad,x_m,z_m,pitch_rad,arm_rad,vx_m_s,vz_
            "clearance_m,ee_x_m,ee_z_m,power_w,energy_j").split(",")
 
 
+OCTO_ROTORS = [[round(0.55 * math.cos((i + 0.5) * math.pi / 4), 4), round(0.55 * math.sin((i + 0.5) * math.pi / 4), 4),
+                0.06] for i in range(8)]
+
+
 def robot_json():
     return {"name": "ars_lrm",
             "bodies": [{"outline": rectangle(-0.52, 0.52, -0.11, 0.11),
@@ -92,7 +96,7 @@ def rest_to_rest(stops, times, t):
     return out
 
 
-def invented_flight(stops, times, duration_s, obstacles):
+def invented_flight(stops, times, duration_s, obstacles, rotors=ROTORS):
     """Columns of a flight that follows its reference late and with a swing: kinematics, no simulation."""
     t = np.arange(round(duration_s * 100) + 1) * 0.01
     reference = rest_to_rest(stops, times, t)
@@ -104,21 +108,19 @@ def invented_flight(stops, times, duration_s, obstacles):
     pitch = np.arctan2(ax, 9.81 + az) + 0.01 * np.sin(5 * t)
     s = pitch + arm
     ee_x, ee_z = x + ARM_M * np.cos(s), z - ARM_M * np.sin(s)
-    front = factor_at(obstacles, x + 0.32, z + 0.06)
-    back = factor_at(obstacles, x - 0.32, z + 0.06)
-    thrust = 4.95 * np.hypot(ax, 9.81 + az)
-    commands = [thrust / (4 * front) * (1 + 0.05 * np.sin(3 * t)), thrust / (4 * back) * (1 - 0.05 * np.sin(3 * t))]
-    power = 3.154 * 2 * (commands[0]**1.5 + commands[1]**1.5)
+    factors = [factor_at(obstacles, x + hub[0], z + hub[2]) for hub in rotors]
+    thrust = 4.95 * np.hypot(ax, 9.81 + az) / len(rotors)
+    commands = [thrust / factor * (1 + 0.05 * np.sign(hub[0]) * np.sin(3 * t)) for hub, factor in zip(rotors, factors)]
+    power = 3.154 * sum(command**1.5 for command in commands)
     clearance = np.maximum(0, distance_to(obstacles, x, z) - 0.2) if obstacles else np.full(len(t), np.nan)
-    total = 2 * (commands[0] + commands[1])
     zero = np.zeros(len(t))
-    values = [t, *reference.T, x, z, pitch, arm, vx, vz, np.gradient(pitch, 0.01), arm_rate, total, zero, zero,
-              2 * (commands[0] * front + commands[1] * back), zero, np.minimum(front, back), np.maximum(front, back),
-              clearance, ee_x, ee_z, power, np.concatenate([[0], np.cumsum(power[:-1]) * 0.01])]
+    values = [t, *reference.T, x, z, pitch, arm, vx, vz, np.gradient(pitch, 0.01), arm_rate, sum(commands), zero,
+              zero, sum(np.multiply(commands, factors)), zero, np.min(factors, axis=0), np.max(factors, axis=0), clearance, ee_x,
+              ee_z, power, np.concatenate([[0], np.cumsum(power[:-1]) * 0.01])]
     names = list(COLUMNS)
-    for rotor in range(4):
+    for rotor, own in enumerate(zip(commands, factors)):
         names += [f"rotor_{rotor + 1}_cmd_n", f"rotor_{rotor + 1}_aero_factor"]
-        values += [commands[0], front] if rotor < 2 else [commands[1], back]
+        values += own
     return names, [np.asarray(v, dtype=float) for v in values]
 
 
@@ -261,6 +263,52 @@ def solids_report():
     return report
 
 
+# Where the flight through five goals stays, and from when to when.
+HOVERS_S = [(4, 6), (9, 12), (16, 18), (23, 25), (30, 35)]
+
+
+def five_goals_report():
+    """Eight rotors that coincide in pairs, five goals in a sequence, a hover at each."""
+    report = solved_report()
+    places = [(-7, 9.2, 1.2), (-4, 9.2, 0.6), (-1, 9, 0), (1, 7, 0.4), (1.62, 9.51, -0.295)]
+    stops = [(-10, 8.5, math.pi / 2)] + [place for place in places for _ in range(2)]
+    times = [0] + [time for hover in HOVERS_S for time in hover]
+    names, columns = invented_flight(stops, times, times[-1], report["scene"]["obstacles"], OCTO_ROTORS)
+    report["flight"], report["_columns"] = flight_json(names, columns), dict(zip(names, columns))
+    # The last hover is what follows the reference.
+    report["solution"]["plan"]["reference"] = [{"t_s": t, "x_m": x, "z_m": z, "arm_rad": arm}
+                                               for t, (x, z, arm) in zip(times[:-1], stops)]
+    report["goals"] = [{"kind": "end_effector", "x_m": x + ARM_M * math.cos(arm), "z_m": z - ARM_M * math.sin(arm),
+                        "tolerance_x_m": 0.1, "tolerance_z_m": 0.1, "direction_rad": None, "hold_s": high - low}
+                       for (x, z, arm), (low, high) in zip(places, HOVERS_S)]
+    report["goal_order"] = "in_turn"
+    report["solution"]["execution"].update(duration_s=times[-1], goals=[{"met": True, "error_m": 0.05}] * 5)
+    report["robot"]["rotors"]["positions_m"] = OCTO_ROTORS
+    return report
+
+
+def doubtful_report():
+    """What reading the problem warned of."""
+    report = solved_report()
+    report["solution"]["warnings"] = [
+        {"file": "problems/robots/mine.yaml", "line": 48, "column": 1,
+         "message": "controller makes a hover in free air nearly unstable with the arm at -90 deg: the loop of thrust has "
+                    "margins of 1.2 dB and 7 deg; less rotors.time_constant_s or controller.delay_s, or other gains"},
+        {"file": "problems/bridge_inspection.yaml", "line": 31, "column": 3, "message": HOSTILE}]
+    return report
+
+
+def crowded_report():
+    """Fifty obstacles, one in three beside the plane of motion."""
+    report = solved_report()
+    shapes = [lambda name, x, y, z: box(name, [0.6, 1.5, 0.3], [x, y, z]), lambda name, x, y, z: pipe(name, 0.2, 3, [x, y, z]),
+              lambda name, x, y, z: ball(name, 0.25, [x, y, z])]
+    report["scene"]["obstacles"] = [shapes[i % 3](f"obstacle_{i + 1}", -9 + 2 * (i % 10), 2.5 * (i % 3 == 0), 1.5 + 1.3 * (i // 10))
+                                    for i in range(50)]
+    report["map"] = map_json(report["scene"]["obstacles"], report["scene"]["bounds"])
+    return report
+
+
 def certificate_json(given, worlds, failures, interval, causes):
     worst = [{"world": 17 + 40 * i, "outcome": cause, "min_clearance_m": 0.0 if cause == "collision" else 0.041}
              for i, cause in enumerate(c for c, count in causes.items() for _ in range(count))]
@@ -293,7 +341,8 @@ def uncertified_report():
 
 
 CASES = {"solved": solved_report, "collision": failed_report, "unsolved": unsolved_report, "hostile": hostile_report,
-         "large": large_report, "open-air": open_air_report, "solids": solids_report,
+         "large": large_report, "open-air": open_air_report, "solids": solids_report, "five-goals": five_goals_report,
+         "crowded": crowded_report, "doubtful": doubtful_report,
          "certified": certified_report, "uncertified": uncertified_report}
 
 

@@ -1,10 +1,10 @@
-// Thrust at each rotor at the moment shown: command times aero factor, the factor as a number beside the arrow.
+// Thrust at each rotor at the moment shown: command times thrust ratio, the ratio as a number above the arrow.
 
 import {s, set_attributes} from "./dom.js";
 import {number} from "./format.js";
 import {pose_at, to_plane} from "./model.js";
 
-/** Thrust and factor of the rotors that coincide in the plane. */
+/** Thrust and mean thrust ratio of the rotors that coincide in the plane. */
 export function group_thrust(data, group, row) {
     let thrust_n = 0, factors = [];
     for (const rotor of group.rotors) {
@@ -15,6 +15,34 @@ export function group_thrust(data, group, row) {
     }
     return {thrust_n, factor: factors.reduce((sum, f) => sum + f, 0) / factors.length};
 }
+
+/** Width of a thrust ratio with the room around it, in pixels. */
+const label_width = 42;
+
+/**
+ * Middles of things `width` wide, in the order of the places that they would like: side by side where these are nearer to
+ * each other, and within `left` and `right` where there is room.
+ */
+export function spread(wanted, width, left, right) {
+    // Things that touch form a block, which stands where its members want it on average.
+    const blocks = [];
+    for (const place of wanted) {
+        let block = {sum: place, count: 1};
+        for (let last = blocks.at(-1); last && end_of(last, width) > start_of(block, width); last = blocks.at(-1)) {
+            blocks.pop();
+            block = {sum: last.sum + block.sum, count: last.count + block.count};
+        }
+        blocks.push(block);
+    }
+    return blocks.flatMap((block) => {
+        const half = (block.count * width) / 2;
+        const middle = Math.max(left + half, Math.min(right - half, block.sum / block.count));
+        return Array.from({length: block.count}, (_, i) => middle + (i - (block.count - 1) / 2) * width);
+    });
+}
+
+const start_of = ({sum, count}, width) => sum / count - (count * width) / 2;
+const end_of = ({sum, count}, width) => sum / count + (count * width) / 2;
 
 export function make_forces(model, clock, view) {
     const {data, rotor_groups, robot} = model;
@@ -33,8 +61,10 @@ export function make_forces(model, clock, view) {
                                         text: s("text", {class: "word of-force", "text-anchor": "middle"}),
                                     }));
     const element = s("g", {class: "forces"}, arrows.map(({shaft, head, text}) => s("g", null, shaft, head, text)));
+    const leftmost_first = rotor_groups.map((group, index) => [group.x_m, index]).sort((a, b) => a[0] - b[0]);
     const draw = () => {
         const row = clock.row, pose = pose_at(data, row);
+        const tips = [];
         rotor_groups.forEach((group, index) => {
             const {thrust_n, factor} = group_thrust(data, group, row);
             const length = thrust_n * meters_per_n;
@@ -44,11 +74,14 @@ export function make_forces(model, clock, view) {
             const {shaft, head, text} = arrows[index];
             shaft.setAttribute("d", `M${from[0]} ${from[1]}L${to[0]} ${to[1]}`);
             set_attributes(head, {d: "M2 0L-7 -4L-7 4Z", transform: `translate(${to[0]} ${to[1]}) rotate(${angle})`});
-            // Two numbers beside each other would touch on a small screen.
-            const aside = Math.sign(group.x_m) * Math.max(0, 22 - Math.abs(group.x_m) * view.pixels_per_m);
-            set_attributes(text, {x: to[0] + aside, y: to[1] - 9});
             text.textContent = `×${number(factor, ".2f")}`;
+            tips.push(to);
         });
+        // In one row above all arrows, in their order: numbers beside each other would touch on a small screen.
+        const [left, top, right] = view.inside;
+        const y = Math.max(top + 8, Math.min(...tips.map((tip) => tip[1])) - 9);
+        const places = spread(leftmost_first.map(([, index]) => tips[index][0]), label_width, left, right);
+        leftmost_first.forEach(([, index], i) => set_attributes(arrows[index].text, {x: places[i], y}));
     };
     return {element, draw, meters_per_n, words: arrows.map(({text}) => text)};
 }
@@ -57,8 +90,8 @@ export function make_forces(model, clock, view) {
 export function forces_note({rotor_groups}) {
     const shared = rotor_groups.filter((group) => group.rotors.length > 1)
                        .map((group) => group.rotors.map((rotor) => rotor + 1).join(" and "));
-    const note = "Arrows: thrust of the rotors, command times aero factor; the number is the factor.";
+    const note = "Arrows: thrust of the rotors, command times thrust ratio K; the number is K.";
     return shared.length > 0 ?
-        `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean factor.` :
+        `${note} Rotors ${shared.join("; ")} coincide in this view: one arrow for their sum, with their mean K.` :
         note;
 }

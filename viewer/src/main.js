@@ -16,7 +16,7 @@ import {make_scene} from "./scene.js";
 import {make_search} from "./search.js";
 import {make_theme_switch} from "./theme.js";
 import {make_trouble} from "./trouble.js";
-import {make_head, make_verdict} from "./verdict.js";
+import {make_figures, make_head, make_verdict} from "./verdict.js";
 import {make_view3d} from "./view3d.js";
 
 const licences = [d3_licence, three_licence];
@@ -35,9 +35,10 @@ function assemble(page, model, theme) {
     const plots = clock ? make_plots(model, clock, playback) : null;
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"), make_head(model, theme.element),
-        h("main", null, make_verdict(model),
-          h("section", {class: `explore${clock ? "" : " alone"}`, id: "scene", "aria-label": "Scene and plots"},
-            h("div", {class: "scene-side"}, h("h2", null, clock ? "Flight" : "Scene"), scene.element,
+        h("main", {class: "of-run"}, make_verdict(model), make_figures(model),
+          h("section", {class: `explore${clock ? "" : " alone"}`, "aria-label": "Scene and plots"},
+            h("div", {class: "scene-side", id: "scene"},
+              h("div", {class: "scene-bar"}, h("h2", null, clock ? "Flight" : "Scene"), scene.tools), scene.element,
               clock ? make_readout(model, clock) : null,
               h("p", {class: "hint for-keys muted screen-only"},
                 clock ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. " : "",

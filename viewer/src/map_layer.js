@@ -1,4 +1,4 @@
-// The aero map: a raster under the scene, and its colour bar.
+// The thrust ratio K: a raster under the scene, and its colour bar.
 
 import {class_of, colors_of} from "./colors.js";
 import {h, s} from "./dom.js";
@@ -6,7 +6,8 @@ import {number, place} from "./format.js";
 
 const not_flyable = 255;
 
-function raster(map, theme) {
+/** The thrust ratios as a picture, a pixel for a point; on request clear where they are as in free air. */
+export function draw_ratios(map, theme, {is_free_air_clear = false} = {}) {
     const {columns, rows, levels, factor_low, factor_high} = map;
     const canvas = document.createElement("canvas");
     canvas.width = columns;
@@ -14,21 +15,22 @@ function raster(map, theme) {
     const context = canvas.getContext("2d");
     const image = context.createImageData(columns, rows);
     const colors = colors_of(map.scale, theme);
-    const palette = Array.from(
-        {length: not_flyable},
-        (_, level) => colors[class_of(factor_low + (level / 254) * (factor_high - factor_low), map.scale)]);
+    const free_air = is_free_air_clear ? class_of(1, map.scale) : -1;
+    const palette = Array.from({length: not_flyable}, (_, level) => {
+        const own = class_of(factor_low + (level / 254) * (factor_high - factor_low), map.scale);
+        return [...colors[own], own === free_air ? 0 : 255];
+    });
     for (let row = 0; row < rows; ++row) {
         for (let column = 0; column < columns; ++column) {
             const level = levels[row * columns + column];
             const at = 4 * ((rows - 1 - row) * columns + column);
             if (level !== not_flyable) {
-                const [r, g, b] = palette[level];
-                image.data.set([r, g, b, 255], at);
+                image.data.set(palette[level], at);
             }
         }
     }
     context.putImageData(image, 0, 0);
-    return canvas.toDataURL("image/png");
+    return canvas;
 }
 
 /** Both themes are drawn, so that a page in dark prints light without a script having to run. */
@@ -39,7 +41,7 @@ export function draw_map(map) {
     const place_of = {x, y: -z - height, width, height, preserveAspectRatio: "none", transform: "scale(1 -1)"};
     return s(
         "g", {class: "map"}, s("rect", {class: "blocked", x, y: z, width, height}),
-        ["light", "dark"].map((theme) => s("image", {...place_of, class: `only-${theme}`, href: raster(map, theme)})));
+        ["light", "dark"].map((theme) => s("image", {...place_of, class: `only-${theme}`, href: draw_ratios(map, theme).toDataURL("image/png")})));
 }
 
 /** The colour bar: the classes in equal widths, with their limits. */
@@ -58,7 +60,7 @@ export function make_color_bar(map) {
     const label = `Colours of thrust ratios from ${number(limits[0], ".2~f")} to ${number(limits.at(-1), ".2~f")}; ` +
         "free air, 1, has the colour of the paper";
     return h(
-        "div", {class: "color-bar"}, h("div", {class: "color-bar-name"}, "Aero factor: thrust over thrust in free air"),
+        "div", {class: "color-bar"}, h("div", {class: "color-bar-name"}, "Thrust ratio K: thrust over thrust in free air"),
         h("div", {class: "color-bar-scale", role: "img", "aria-label": label}, bar("light"), bar("dark"),
           ticks.map(([limit, i]) => h("span", {class: "tick", style: `left: ${share(i)}%`}, number(limit, ".2~f")))),
         h("div", {class: "color-bar-note"}, h("span", {class: "swatch blocked"}), "not flyable",

@@ -67,6 +67,27 @@ function objective_text(objective) {
         Object.entries(objective ?? {}).map(([name, weight]) => `${weight} × ${name}`).join(" + ");
 }
 
+/**
+ * Where the reference stays at a place, up to the end of the flight, with the goal of each stay: its number among several
+ * goals, null where there is only one or where stays are not those of the goals.
+ * @returns {{from_s: number, to_s: number, goal: number|null}[]}
+ */
+function hovers_of(knots, {goals, goal_order}, end_s) {
+    const is_same = (a, b) => a.x_m === b.x_m && a.z_m === b.z_m && a.arm_rad === b.arm_rad;
+    const hovers = [];
+    knots.forEach((knot, i) => {
+        const next = knots[i + 1];
+        if (!next || is_same(knot, next)) {
+            hovers.push({from_s: knot.t_s, to_s: next ? next.t_s : end_s});
+        }
+    });
+    const held = goals.map((goal, i) => [goal, i + 1]).filter(([goal]) => goal.hold_s !== 0);
+    const is_of_goals = goal_order === "in_turn" && held.length === hovers.length;
+    return hovers.map((hover, i) => ({...hover, goal: is_of_goals ? held[i][1] : null}))
+        .filter(({from_s}) => from_s < end_s)
+        .map((hover) => ({...hover, to_s: Math.min(hover.to_s, end_s)}));
+}
+
 /** @param {any} report */
 export async function build_model(report) {
     const [data, tree, levels] = await Promise.all([
@@ -84,6 +105,7 @@ export async function build_model(report) {
     const {solution, robot} = report;
     const knots = solution.plan?.reference ?? [];
     const outcome = solution.execution?.outcome ?? null;
+    const end_s = data ? data.t_s[rows - 1] : 0;
     return {
         report,
         solution,
@@ -99,13 +121,14 @@ export async function build_model(report) {
         is_good: solution.status === "solved" && outcome === "ok",
         /** The flight ended before its time: its last row is the offending one. */
         is_cut_short: data !== null && ["collision", "unstable", "left_flyable_area"].includes(outcome),
-        hold_from_s: knots.length > 0 ? knots[knots.length - 1].t_s : null,
+        reference_s: knots.length > 0 ? knots[knots.length - 1].t_s : null,
+        hovers: hovers_of(knots, report, end_s),
         cost_unit: report.cost_unit,
         objective: objective_text(solution.objective),
         rotor_groups: group_rotors(robot.rotors.positions_m),
         commands: data ? rotor_lines(data, robot.rotors.positions_m.length, "cmd_n") : [],
         factors: data ? rotor_lines(data, robot.rotors.positions_m.length, "aero_factor") : [],
-        end_s: data ? data.t_s[rows - 1] : 0,
+        end_s,
     };
 }
 

@@ -6,6 +6,7 @@ import {foreign, h, s} from "./dom.js";
 import {number} from "./format.js";
 import {keep_sized} from "./sizing.js";
 import {make_save_button} from "./save.js";
+import {log_ticks} from "./ticks.js";
 
 const paper_width = 330;
 
@@ -20,8 +21,7 @@ function ticks_of(axis, scale, count) {
     if (!axis.is_log) {
         return {named: scale.ticks(count), minor: []};
     }
-    const all = scale.ticks(), decades = all.filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
-    return {named: decades.length >= 2 ? decades : all.filter((t) => /^[125]/.test(t.toExponential())), minor: all};
+    return {named: log_ticks(scale, count), minor: scale.ticks()};
 }
 
 export const plain = (value) => number(value, Math.abs(value) >= 1000 ? ",.0f" : ".4~g");

@@ -109,12 +109,13 @@ export function make_playback(model, clock, signal) {
     });
     show_state();
 
-    const share = (time_s) =>
-        `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${(time_s / (model.end_s || 1)).toFixed(5)})`;
-    const marks = [];
-    if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
-        marks.push(h("span", {class: "mark hold", style: share(model.hold_from_s)}, "hold"));
-    }
+    const part = (time_s) => (time_s / (model.end_s || 1)).toFixed(5);
+    const share = (time_s) => `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${part(time_s)})`;
+    const marks = model.hovers.map(
+        ({from_s, to_s, goal}) =>
+            h("span",
+              {class: "mark hover", style: `${share(from_s)}; width: calc((100% - var(--thumb)) * ${part(to_s - from_s)})`},
+              h("span", null, goal === null ? "hover" : String(goal))));
     if (model.is_cut_short) {
         marks.push(h("span", {class: "mark failure", style: share(model.end_s)}, "✕"));
     }

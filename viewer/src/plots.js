@@ -101,15 +101,14 @@ class TimePlot {
         const ticks_x = x.ticks(Math.max(3, Math.round(width / 90))), ticks_y = y.ticks(3);
         const text_y = (v) => y.tickFormat(3)(v).replace("-", "−").replace(/,/g, "\u202f");
         const parts = [], names = [];
-        if (model.hold_from_s !== null && model.hold_from_s < model.end_s) {
-            parts.push(s("rect", {
-                class: "hold-band",
-                x: x(model.hold_from_s),
+        parts.push(...model.hovers.map(
+            ({from_s, to_s}) => s("rect", {
+                class: "hover-band",
+                x: x(from_s),
                 y: margin.top,
-                width: x(model.end_s) - x(model.hold_from_s),
+                width: x(to_s) - x(from_s),
                 height: bottom - margin.top
-            }));
-        }
+            })));
         parts.push(s("path", {
             class: "grid-lines",
             d: [
@@ -117,10 +116,13 @@ class TimePlot {
                 ...ticks_y.map((v) => `M${margin.left} ${y(v)}H${width - margin.right}`)
             ].join("")
         }));
-        parts.push(...ticks_x.map(
-            (t, i) =>
-                s("text", {class: "tick", x: x(t), y: bottom + 13, "text-anchor": i === 0 ? "start" : "middle"},
-                  i === ticks_x.length - 1 && width - x(t) > 40 ? `${t} s` : String(t))));
+        parts.push(...ticks_x.map((t, i) => {
+            const is_last = i === ticks_x.length - 1, is_at_edge = is_last && width - x(t) < 20;
+            const anchor = i === 0 ? "start" : is_at_edge ? "end" : "middle";
+            return s(
+                "text", {class: "tick", x: is_at_edge ? width : x(t), y: bottom + 13, "text-anchor": anchor},
+                is_last ? `${t} s` : String(t));
+        }));
         parts.push(...ticks_y.map(
             (v) => s(
                 "text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"}, text_y(v))));

@@ -1,10 +1,10 @@
-// What is under the pointer: place and aero factor.
+// What is under the pointer: place and thrust ratio.
 
 import {h} from "./dom.js";
 import {number, point} from "./format.js";
 
 /**
- * @returns {number | null | undefined} the factor of the nearest point, null where it is not flyable, undefined
+ * @returns {number | null | undefined} the thrust ratio at the nearest point, null where it is not flyable, undefined
  *     outside
  */
 function factor_at(map, x_m, z_m) {
@@ -33,7 +33,7 @@ export function make_pointer_text(view, map) {
         const factor = map ? factor_at(map, x_m, z_m) : undefined;
         const words = factor === undefined ? "" :
             factor === null                ? ", not flyable" :
-                                             `, factor ${number(factor, ".2f")}`;
+                                             `, K ${number(factor, ".2f")}`;
         element.textContent = point(x_m, z_m) + words;
     });
     view.svg.addEventListener("pointerleave", () => {

@@ -40,7 +40,7 @@ export function make_readout(model, clock) {
         h("table", {class: "numbers"}, h("caption", null, "Rotors"),
           h("thead", null,
             h("tr", null, h("th", {scope: "col"}, "no."), h("th", {scope: "col"}, "command"),
-              h("th", {scope: "col"}, "factor"), h("th", {scope: "col"}, "thrust"))),
+              h("th", {scope: "col"}, "K"), h("th", {scope: "col"}, "thrust"))),
           h("tbody", null,
             rotor_groups.flatMap((group) => group.rotors)
                 .filter((rotor) => rotor < count)

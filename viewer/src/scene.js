@@ -1,43 +1,19 @@
 // The scene: what can be switched on and off, and the vehicle at the moment shown.
 
 import {h, s} from "./dom.js";
+import {opening_of, padded} from "./extents.js";
 import {forces_note, make_forces} from "./forces.js";
 import {point, quantity, seconds} from "./format.js";
 import {draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way, Placement} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
-import {extent_of, range_of} from "./numbers.js";
+import {extent_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
 import {make_pointer_text} from "./pointer.js";
 import {keep_sized} from "./sizing.js";
-import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, is_cut, make_hatches} from "./surroundings.js";
+import {draw_bounds, draw_goals, draw_obstacles, draw_start, is_cut, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
 import {View} from "./view.js";
-
-/** What matters: start, goals, flight, with the reach of the arm; all of the bounds where nothing flew. */
-function opening_of(model) {
-    const {bounds} = model.scene;
-    if (!model.data) {
-        return bounds;
-    }
-    const reach = model.robot.arm.length_m;
-    const regions = model.goals.map((goal) => goal_region(goal, bounds));
-    const x = [model.start.x_m, ...regions.map((r) => r.x_m)], z = [model.start.z_m, ...regions.map((r) => r.z_m)];
-    for (let row = 0; row < model.rows; row += 5) {
-        x.push(model.data.x_m[row]);
-        z.push(model.data.z_m[row]);
-    }
-    const around = (values) => {
-        const {low, high} = range_of(values);
-        return [low - 1.25 * reach, high + 1.25 * reach];
-    };
-    return {x_m: around(x), z_m: around(z)};
-}
-
-function padded({x_m, z_m}) {
-    const pad = 0.04 * Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]);
-    return {x_m: [x_m[0] - pad, x_m[1] + pad], z_m: [z_m[0] - pad, z_m[1] + pad]};
-}
 
 function describe(model) {
     const {scene, start, goals, data, rows} = model;
@@ -91,7 +67,7 @@ export function make_scene(model, clock, playback) {
     const under = s("g"), over = s("g");
     const layer = (id, name, swatch, on, draw, into = over) => layers.push({id, name, swatch, on, draw, into});
     if (model.map) {
-        layer("map", "Aero map", "map", true, () => draw_map(model.map), view.raster);
+        layer("map", "Thrust ratio", "map", true, () => draw_map(model.map), view.raster);
     }
     if (model.tree) {
         layer("tree", "Tree", "tree", !data, () => draw_tree(model), under);
@@ -199,15 +175,14 @@ export function make_scene(model, clock, playback) {
           button("+", "Zoom in", () => view.zoom_by(1.4)), button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
           data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
           button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
-    const frame = h("div", {class: "scene-frame"}, view.svg, tools, make_pointer_text(view, model.map));
+    const frame = h("div", {class: "scene-frame"}, view.svg, make_pointer_text(view, model.map));
     const element =
-        h("figure", {class: "scene"},
+        h("figure", {class: "scene"}, frame, playback?.element,
           h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
             switches),
-          frame, playback?.element,
           h("figcaption", null, model.map ? make_color_bar(model.map) : null, make_legend(model, forces)));
     keep_sized(frame, 690, (width) => view.resize(width));
-    return {element, view, shown, flown};
+    return {element, tools, view, shown, flown};
 }
 
 function make_legend(model, forces) {
@@ -219,6 +194,9 @@ function make_legend(model, forces) {
         "div", {class: "legend"},
         model.data ?
             [
+                model.hovers.some(({goal}) => goal !== null) ?
+                    entry("hover", "hover at a goal, by its number", "screen-only") :
+                    null,
                 entry("snapshots", "flown, vehicle and arm"),
                 entry("snapshots planned", "planned: the reference, drawn level"),
                 // On screens these stand beside their switches.

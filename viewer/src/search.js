@@ -6,6 +6,7 @@ import {h, s} from "./dom.js";
 import {cost, meters, number, quantity, seconds} from "./format.js";
 import {range_of} from "./numbers.js";
 import {keep_sized} from "./sizing.js";
+import {log_ticks} from "./ticks.js";
 import {cause_text} from "./words.js";
 
 const margin = {
@@ -28,8 +29,7 @@ function draw_costs(svg, model, width) {
     const costs = steps.map((step) => step.cost);
     const {low, high} = range_of(costs), pad = 0.08 * (high - low) || 0.05 * high || 1;
     const y = scaleLinear().domain([Math.max(0, low - pad), high + pad]).range([bottom, margin.top]).nice(4);
-    const ticks_x = x.ticks().filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
-    const shown_x = ticks_x.length >= 2 ? ticks_x : [...new Set([x.ticks()[0], ...ticks_x, end])];
+    const shown_x = log_ticks(x, 4);
     let d = `M${x(steps[0].wall_s)} ${y(costs[0])}`;
     steps.slice(1).forEach((step) => {
         d += `H${x(step.wall_s)}V${y(step.cost)}`;

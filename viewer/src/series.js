@@ -75,7 +75,7 @@ export function plots_of(model) {
         },
         {
             id: "factor",
-            title: "Aero factor by rotor",
+            title: "Thrust ratio K by rotor",
             unit: "1",
             text: (v) => number(v, ".3f"),
             lines: rotor_lines(model.factors)

@@ -119,19 +119,23 @@ function figures_of(model) {
     const list = [];
     const add = (name, value, note) => list.push({name, value, note});
     if (solution.plan) {
-        // Where the objective is one of the other figures, the cost alone says which.
         add(`Cost, ${model.objective}`, cost(execution ? execution.cost : solution.cost, cost_unit),
-            execution ? `executed; ${cost(solution.cost, cost_unit)} planned` : "planned");
+            execution ? `planned ${cost(solution.cost, cost_unit)}` : "planned");
     }
     if (execution) {
-        add("Duration", seconds(execution.duration_s),
-            model.hold_from_s !== null ? `reference ${seconds(model.hold_from_s)}` : "");
-        add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
+        // What is the cost already is not shown again.
+        if (model.objective !== "time") {
+            add("Duration", seconds(execution.duration_s),
+                model.reference_s !== null ? `reference ${seconds(model.reference_s)}` : "");
+        }
+        if (model.objective !== "energy") {
+            add("Energy", quantity(execution.energy_j, ",.0f", "J"), "rotors and arm");
+        }
         add("Minimum clearance", meters(execution.min_clearance_m),
             model.scene.obstacles.length === 0     ? "no obstacles" :
-                report.limits?.safety_margin_m > 0 ? `margin in planning ${place(report.limits.safety_margin_m)}` :
+                report.limits?.safety_margin_m > 0 ? `margin ${place(report.limits.safety_margin_m)}` :
                                                      "");
-        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "maximum over the last second");
+        add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "largest at the end");
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"),
             execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
@@ -143,11 +147,21 @@ function figures_of(model) {
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
         `search ${seconds(planning?.wall_s)}`);
     if (Number.isFinite(planning?.first_certified_wall_s)) {
-        add("First certified plan after", quantity(planning.first_certified_wall_s, ".3f", "s"));
+        add("First certified after", quantity(planning.first_certified_wall_s, ".3f", "s"));
     }
-    add("Iterations", number(planning?.iterations, ",d"),
-        planning?.edges_simulated > 0 ? `${number(planning.edges_simulated, ",d")} edges simulated` : "");
     return list;
+}
+
+/** Key figures in rows of equal length, as far as their number allows. */
+export function make_figures(model) {
+    const figures = figures_of(model);
+    const columns = (most) => Math.ceil(figures.length / Math.ceil(figures.length / most));
+    return h(
+        "dl", {class: "figures of-run", style: `--wide: ${columns(9)}; --narrow: ${columns(5)}`},
+        figures.map(
+            ({name, value, note}) => h(
+                "div", null, h("dt", null, name),
+                h("dd", null, h("span", {class: "figure"}, value), note ? h("span", {class: "muted"}, note) : null))));
 }
 
 function goals_list({solution, goals}) {
@@ -161,6 +175,22 @@ function goals_list({solution, goals}) {
             ({met, error_m}, i) =>
                 h("li", null,
                   `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
+}
+
+/** What reading the problem warned of, folded to a line; null where there is nothing. */
+function warnings_list({solution}) {
+    const warnings = solution.warnings ?? [];
+    if (warnings.length === 0) {
+        return null;
+    }
+    const count = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
+    return h(
+        "details", {class: "warnings"},
+        h("summary", null, h("span", {class: "warnings-count"}, `⚠ ${count}`), " ", foreign(warnings[0].message)),
+        h("ul", null,
+          warnings.map(
+              ({file, line, message}) =>
+                  h("li", null, h("code", null, foreign(`${file}:${line}`)), " ", foreign(message)))));
 }
 
 export function make_head(model, theme_switch) {
@@ -192,11 +222,5 @@ export function make_verdict(model) {
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
             certificate ? h("p", {class: "certificate-line"}, certificate) : null,
-            goals_list(model))),
-        h("dl", {class: "figures"},
-          figures_of(model).map(
-              ({name, value, note}) =>
-                  h("div", null, h("dt", null, name),
-                    h("dd", null, h("span", {class: "figure"}, value),
-                      note ? h("span", {class: "muted"}, note) : null)))));
+            goals_list(model), warnings_list(model))));
 }

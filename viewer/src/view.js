@@ -15,6 +15,9 @@ const margin = {
 };
 const most_zoom = 60;
 
+/** Of the window: what stands above and the playback below have room in the same screen. */
+const most_of_window = 0.42;
+
 /** @typedef {{x_m: [number, number], z_m: [number, number]}} Extent */
 
 /** The least extent of `inner`'s place that has the shape of the frame. */
@@ -112,8 +115,9 @@ export class View {
         const shape = (this.opening.z_m[1] - this.opening.z_m[0]) / (this.opening.x_m[1] - this.opening.x_m[0]);
         this.width = width;
         this.inner_width = width - margin.left - margin.right;
+        const most = Math.min(640, Math.max(240, most_of_window * window.innerHeight));
         this.inner_height =
-            Math.round(Math.min(640, Math.max(200, this.inner_width * Math.min(1, Math.max(0.42, shape)))));
+            Math.round(Math.min(most, Math.max(200, this.inner_width * Math.min(1, Math.max(0.42, shape)))));
         this.height = this.inner_height + margin.top + margin.bottom;
         this.center = [margin.left + this.inner_width / 2, margin.top + this.inner_height / 2];
         this.base = with_shape(this.opening, this.inner_width, this.inner_height);

@@ -48,9 +48,11 @@ export function make_view3d(model, clock, theme) {
             app.set_theme(document.documentElement.dataset.theme);
             theme.follow(app.set_theme);
             stage.view = app;  // for tests
-            button.remove();
-            status.textContent = "Drag to turn, wheel or pinch to come nearer, right button or two fingers to move. " +
-                "With the view in focus: W A S D turn, + and − come nearer, 0 goes back.";
+            const follow = h("input", {type: "checkbox", onchange: ({target}) => app.follow(target.checked)});
+            button.replaceWith(h(
+                "div", {class: "view3d-bar"}, clock ? h("label", {class: "layer"}, follow, "Follow the vehicle") : null));
+            status.textContent = `${app.note} Drag to turn, wheel or pinch to come nearer, right button or two fingers to move. ` +
+                `With the view in focus: W A S D turn, + and − come nearer, 0 goes back.`;
             stage.dataset.state = "open";
             stage.querySelector("canvas").focus({preventScroll: true});
         } catch (error) {

@@ -62,6 +62,6 @@ export function make_costs(model) {
         "costs", "Cost over time",
         "Of the best plan so far: median and quartiles over all attempted seeds, those without a plan counting as " +
             "infinite. For MP-ARM-ADA it is the executed cost, for the others the planned cost. These differ in physics: " +
-            "compare the variants by executed cost, below.",
+            "compare the variants by executed cost, above.",
         panels);
 }

@@ -8,6 +8,7 @@ import {make_trouble} from "../trouble.js";
 import {make_costs} from "./costs.js";
 import {make_margins} from "./margins.js";
 import {build_model, read_figures} from "./model.js";
+import {make_outcomes, make_worlds} from "./outcomes.js";
 import {make_first_solutions, make_flown_costs, make_pairs} from "./rows.js";
 import {make_cost_shares, make_success} from "./success.js";
 import {make_settings, make_tables} from "./tables.js";
@@ -28,10 +29,10 @@ function make_legend({planners, shown}) {
 
 function assemble(page, model, theme) {
     page.replaceChildren(
-        h("a", {class: "skip screen-only", href: "#success"}, "To the figures"), make_head(model, theme.element),
-        h("main", null, make_verdict(model), make_margins(model), make_legend(model), make_success(model), make_costs(model),
-          make_flown_costs(model), make_cost_shares(model), make_first_solutions(model), make_pairs(model),
-          make_tables(model), make_settings(model)),
+        h("a", {class: "skip screen-only", href: "#outcomes"}, "To the figures"), make_head(model, theme.element),
+        h("main", null, make_verdict(model), make_margins(model), make_legend(model), make_outcomes(model),
+          make_worlds(model), make_flown_costs(model), make_cost_shares(model), make_success(model), make_costs(model),
+          make_first_solutions(model), make_pairs(model), make_tables(model), make_settings(model)),
         make_foot(model.figures.settings.version, [d3_licence]));
     document.title = `${model.figures.settings.campaign ?? "Campaign"} · Downwash`;
 }

@@ -63,7 +63,7 @@ export function make_margins(model) {
             "solved. Bands are 95 % Wilson intervals.",
         [
             h("p", {class: "panels-title key-line"}, key), h("h3", {class: "panels-title"}, "Flights that failed"),
-            ...panels_of(model, "failed_flights", "share of seeds"), h("h3", {class: "panels-title"}, "Solved"),
+            ...panels_of(model, "failed_flights", "share of seeds"), h("h3", {class: "panels-title"}, "Plans found"),
             ...panels_of(model, "solved", "share of seeds")
         ]);
 }

@@ -24,9 +24,9 @@ function dots(values, y, frame, style) {
 }
 
 /** Middle of a row's marks, below its words. */
-const row_at = (frame, index, height) => frame.top + (index + 1) * height - 14;
+export const row_at = (frame, index, height) => frame.top + (index + 1) * height - 14;
 
-function row_name(frame, y, text) {
+export function row_name(frame, y, text) {
     const letters = Math.floor((frame.right - frame.left) / 6.3);
     return s("text", {class: "row-name", x: frame.left, y}, isolated(text, letters));
 }

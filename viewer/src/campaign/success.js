@@ -41,14 +41,14 @@ export function make_success(model) {
         const cells = shown_cells(model, experiment).map((cell) => ({cell, steps: time_steps(cell)}));
         const times = cells.flatMap(({steps}) => steps.map((step) => step.at)).filter((time) => time > 0);
         if (times.length === 0) {
-            return "None of the planners shown has solved this.";
+            return "None of the planners shown has found a plan here.";
         }
         const end = model.time_limit_s ?? Math.max(...times);
         const told = cells.map(
-            ({cell}) => `${cell.planner.name}: ${cell.solved.hits} of ${cell.solved.attempts} seeds, half of them within ${
+            ({cell}) => `${cell.planner.name}: a plan for ${cell.solved.hits} of ${cell.solved.attempts} seeds, for half of all seeds within ${
                 quantity(cell.first_solution_s["50"], ".3~g", "s")}`);
         return {
-            label: `Share of seeds solved over the time of the search. ${told.join("; ")}.`,
+            label: `Share of seeds with a plan over the time of the search. ${told.join("; ")}.`,
             x: {
                 name: "time of the search [s]",
                 domain: around(Math.min(...times), Math.max(end, ...times), {is_log: true}),
@@ -59,9 +59,10 @@ export function make_success(model) {
         };
     }));
     return make_figure(
-        "success", "Success over time",
-        "Share of all attempted seeds with a first plan that the planner accepted; bands are 95 % Wilson intervals. " +
-            "Whether those plans survive their flights stands in the tables.",
+        "success", "First plan over time",
+        "Share of all attempted seeds with a first plan that the planner accepted by what its variant knows: MP-ARM the " +
+            "geometry, MP-ARM-DA the flight in free air, MP-ARM-ADA the flight near surfaces. Such a plan may fail when " +
+            "executed: “Flights that held”, above, says how many did. Bands are 95 % Wilson intervals.",
         panels);
 }
 

@@ -6,6 +6,8 @@ import {plain} from "../panel.js";
 
 const share = ({hits, attempts, low, high}) =>
     `${hits}/${attempts} [${number(100 * low, ".1f")}, ${number(100 * high, ".1f")} %]`;
+export const percent_text = ({hits, attempts, low, high}) =>
+    `${number((100 * hits) / attempts, ".1f")} % [${number(100 * low, ".1f")}, ${number(100 * high, ".1f")}]`;
 const seconds = (value) => !Number.isFinite(value) ? "none" :
     value < 1 ? `${number(1e3 * value, ".3~g")} ms` : `${number(value, ".3~g")} s`;
 const cost = (value) => (Number.isFinite(value) ? plain(value) : "none");
@@ -40,15 +42,15 @@ const causes = (counts) => Object.entries(counts).map(([cause, count]) => `${cau
 
 function flights_table(model) {
     return table(
-        "Success and flights",
+        "Flights",
         [
-            "problem", "planner", "solved", "failed flight", "solved and held", "least clearance", "discarded",
+            "problem", "planner", "flight held", "found a plan", "its flight failed", "least clearance", "discarded",
             "failures by cause"
         ],
         2,
         cells_of(model).map(
             ({cell, place}) =>
-                [...place, share(cell.solved), share(cell.failed_flights), share(cell.held),
+                [...place, share(cell.held), share(cell.solved), share(cell.failed_flights),
                  cell.least_clearance_m === null ? "–" : meters(cell.least_clearance_m), String(cell.discarded),
                  causes(cell.failures_by_cause)]));
 }
@@ -164,7 +166,8 @@ export function make_tables(model) {
         "section", {class: "tables", id: "tables", "aria-labelledby": "tables-title"},
         h("h2", {id: "tables-title"}, "Tables"),
         h("p", {class: "muted note"},
-          "Shares are of all attempted seeds, with 95 % Wilson intervals. A flight has failed if the reported plan, executed " +
+          "Shares are of all attempted seeds, with 95 % Wilson intervals. A search found a plan if the planner accepted it by " +
+              "what its variant knows. A flight has failed if the reported plan, executed " +
               "with direct aerodynamics up to the end of the hover at the goal, collided, left the flyable area, became " +
               "unstable or missed the goal. Discarded are plans of MP-ARM-ADA that failed so, or came nearer than the " +
               "margin, and were not reported. Verified is the time to the first plan that may be reported; MP-ARM-ADA " +
@@ -189,5 +192,6 @@ export function make_settings({figures}) {
         h("dl", {class: "pairs"},
           Object.entries(figures.settings)
               .map(([name, value]) => h("div", null, h("dt", null, foreign(name)),
-                                        h("dd", {class: /^[0-9a-f]{64}$/.test(value) ? "hash" : null}, foreign(value))))));
+                                        h("dd", {class: /^[0-9a-f]{64}$/.test(value) ? "hash" : null},
+                                          foreign(value ?? "none"))))));
 }

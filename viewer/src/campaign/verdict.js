@@ -43,8 +43,8 @@ export function make_head(model, theme_switch) {
     const {settings, stop_at_first_solution} = model.figures;
     const fact = (key, value) => h("span", {class: "fact"}, h("span", {class: "muted"}, key), " ", foreign(value));
     const limits = [
-        settings.time_limit_s === "none" ? null : `${settings.time_limit_s} s`,
-        settings.max_iterations === "none" ? null : `${settings.max_iterations} iterations`,
+        settings.time_limit_s === null ? null : `${settings.time_limit_s} s`,
+        settings.max_iterations === null ? null : `${settings.max_iterations} iterations`,
         stop_at_first_solution ? "up to the first solution" : null
     ].filter((limit) => limit !== null);
     return h(
@@ -74,7 +74,7 @@ export function make_verdict(model) {
                   h("dd", null,
                     h("span", {class: "figure"},
                       `${number(totals.held.hits, ",d")} of ${number(totals.held.attempts, ",d")}`),
-                    h("span", {class: "muted"}, "solved, and the flight held"),
+                    h("span", {class: "muted"}, "flights that held"),
                     h("span", {class: "muted"},
                       totals.failed_flights.attempts > 0 ?
                           `failed flights: ${number(totals.failed_flights.hits, ",d")}, 95 % interval ${

@@ -34,7 +34,8 @@ function make_player(model, note, signal) {
     }
     const element =
         h("div", {class: `explore${clock ? "" : " alone"}`},
-          h("div", {class: "scene-side"}, scene.element, clock ? make_readout(model, clock) : null,
+          h("div", {class: "scene-side"},
+            h("div", {class: "scene-bar"}, h("h3", null, "Scene"), scene.tools), scene.element, clock ? make_readout(model, clock) : null,
             h("p", {class: "hint muted"}, note), make_obstacle_table(model)),
           plots ? h("div", {class: "plot-side"}, h("h3", null, "Over time", plots.moment), plots.element) : null);
     return {element, clock};

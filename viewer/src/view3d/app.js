@@ -1,0 +1,193 @@
+// The 3-D view: a bundle of its own with three.js. x right, y away from the viewer, z up, as in the data.
+
+import * as three from "three";
+
+import {h} from "../dom.js";
+import {opening_of} from "../extents.js";
+import {number} from "../format.js";
+import {pose_at} from "../model.js";
+import {is_cut} from "../surroundings.js";
+import {make_camera} from "./camera.js";
+import {make_names, names_of} from "./names.js";
+import {draw_grid, draw_sheet, grid_around} from "./plane.js";
+import {draw_line, draw_solid, draw_tube, draw_vehicle} from "./solids.js";
+
+/** As in the scene: obstacles that the plane of motion cuts are darker than those beside it. */
+const palettes = {
+    light: {
+        paper: "#f7f8f9",
+        section: "#d3d9df",
+        projection: "#e4e9ee",
+        edge: "#5d6770",
+        vehicle: "#30363d",
+        body: "#fbe0cb",
+        flown: "#c2510a",
+        planned: "#30363d",
+        tip: "#00805e",
+        goal: "#a3397a"
+    },
+    dark: {
+        paper: "#13171c",
+        section: "#65717c",
+        projection: "#343d46",
+        edge: "#98a4ae",
+        vehicle: "#dfe5ea",
+        body: "#6b401f",
+        flown: "#ff9b57",
+        planned: "#dfe5ea",
+        tip: "#3fd0a4",
+        goal: "#f08cc8"
+    },
+};
+
+function draw_obstacles(world, obstacles, paint) {
+    for (const obstacle of obstacles) {
+        const {solid, section, projection} = obstacle;
+        if (solid) {
+            const name = is_cut(obstacle) ? "section" : "projection";
+            world.add(draw_solid(solid, name, paint, is_cut(obstacle) ? 0.6 : 0.25));
+        } else {
+            // Too large a mesh for a page: its outline in the plane of motion stands for it.
+            for (const ring of section.length > 0 ? section : projection) {
+                world.add(draw_line([...ring, ring[0]], "edge", paint, false));
+            }
+        }
+    }
+}
+
+function draw_goals(world, goals, paint) {
+    for (const goal of goals) {
+        const radius = Math.max(0.06, goal.tolerance_x_m ?? 0.1);
+        const material = new three.MeshBasicMaterial({transparent: true, opacity: 0.6});
+        paint(material, "goal");
+        const ball = new three.Mesh(new three.SphereBufferGeometry(radius, 24, 16), material);
+        ball.position.set(goal.x_m ?? 0, 0, goal.z_m ?? 0);
+        world.add(ball);
+    }
+}
+
+function draw_paths(world, {data}, size_m, paint) {
+    const points = (x_m, z_m) => Array.from(x_m, (x, i) => [x, z_m[i]]);
+    const radius = Math.min(0.03, 0.0018 * size_m);
+    world.add(
+        draw_tube(points(data.x_m, data.z_m), radius, "flown", paint),
+        draw_tube(points(data.ee_x_m, data.ee_z_m), 0.6 * radius, "tip", paint),
+        draw_line(points(data.ref_x_m, data.ref_z_m), "planned", paint, true));
+}
+
+function lights() {
+    const sun = new three.DirectionalLight(0xffffff, 0.25);
+    sun.position.set(-8, -14, 10);
+    return [new three.HemisphereLight(0xffffff, 0xb4bcc6, 0.85), sun];
+}
+
+function make_canvas(renderer) {
+    const canvas = renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute(
+        "aria-label", "The scene and the flight in three dimensions; the numbers stand in the tables of this page.");
+    return canvas;
+}
+
+/** @param {HTMLElement} stage */
+export function start(stage, model, clock) {
+    const {data, scene, robot} = model;
+    const painted = [];
+    const paint = (material, name) => painted.push([material, name]);
+    const renderer = new three.WebGLRenderer({antialias: true});
+    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    const canvas = make_canvas(renderer);
+    const grid = grid_around(data ? opening_of(model) : scene.bounds);
+    const ends = (list) => [list[0], list[list.length - 1]];
+    const extent = {x_m: ends(grid.x_m), z_m: ends(grid.z_m)};
+    const size_m = Math.max(extent.x_m[1] - extent.x_m[0], extent.z_m[1] - extent.z_m[0]);
+
+    const world = new three.Scene();
+    world.add(...lights(), draw_grid(grid, paint));
+    const sheet = model.map ? draw_sheet(model.map, grid) : null;
+    if (sheet) {
+        world.add(sheet.sheet);
+    }
+    draw_obstacles(world, scene.obstacles, paint);
+    draw_goals(world, model.goals, paint);
+    const vehicle = draw_vehicle(robot, paint);
+    vehicle.move({pitch_rad: 0, ...(model.solution.planning?.obstruction ?? model.start)});
+    world.add(vehicle.body);
+    if (data) {
+        draw_paths(world, model, size_m, paint);
+    }
+
+    let is_waiting = false, names = null, view = null;
+    const render = () => {
+        if (!is_waiting) {
+            is_waiting = true;
+            requestAnimationFrame(() => {
+                is_waiting = false;
+                renderer.render(world, view.camera);
+                names.draw(view.camera, stage.clientWidth, stage.clientHeight);
+            });
+        }
+    };
+    const {radius_m, positions_m} = robot.rotors;
+    const width_m = 2 * (radius_m + Math.max(...positions_m.map(([, y]) => Math.abs(y))));
+    view = make_camera(canvas, extent, width_m, scene.obstacles, render);
+    names = make_names(names_of(model, grid, extent));
+    stage.replaceChildren(canvas, names.element);
+
+    let is_framed = false;
+    new ResizeObserver(() => {
+        const width = stage.clientWidth, height = stage.clientHeight;
+        if (width > 0 && height > 0) {
+            renderer.setSize(width, height, false);
+            view.camera.aspect = width / height;
+            view.camera.updateProjectionMatrix();
+            if (!is_framed) {
+                is_framed = true;
+                view.home();
+            }
+            render();
+        }
+    }).observe(stage);
+
+    let is_following = false;
+    const reach_m = robot.arm.length_m + width_m;
+    const follow = (is_on) => {
+        is_following = is_on;
+        if (is_on) {
+            view.look_at(vehicle.body.position, 2.2 * reach_m);
+        } else {
+            view.home();
+        }
+    };
+    clock?.follow((row) => {
+        vehicle.move(pose_at(data, row));
+        if (is_following) {
+            view.move_to(vehicle.body.position);
+        }
+        render();
+    });
+    return {
+        follow,
+        note: `The grid lies in the plane of motion; its squares are ${number(grid.step_m, "~r")}\u00a0m wide. ` +
+            "Obstacles that the plane cuts are darker than those beside it.",
+        set_theme(theme) {
+            world.background = new three.Color(palettes[theme].paper);
+            painted.forEach(([material, name]) => material.color.set(palettes[theme][name]));
+            sheet?.set_theme(theme);
+            render();
+        },
+        /** Where the end effector is drawn, for tests. */
+        tip() {
+            const point = new three.Vector3(robot.arm.length_m, 0, 0);
+            vehicle.body.updateMatrixWorld(true);
+            const link = vehicle.body.children[vehicle.body.children.length - 1];
+            return link.localToWorld(point).toArray();
+        },
+        /** Where a point of the plane of motion is seen, from 0 to 1 from left to right and from top to bottom, for tests. */
+        seen_at(x_m, z_m) {
+            const {x, y} = new three.Vector3(x_m, 0, z_m).project(view.camera);
+            return [0.5 + x / 2, 0.5 - y / 2];
+        },
+    };
+}
