@@ -356,7 +356,7 @@ TEST_CASE("rejections are counted by cause") {
         problem.planner.max_iterations = 60;
         const SearchRecord& record = solve(problem).planning;
         CHECK(record.rejected.at(cause) > 0);
-        CHECK(record.rejected.size() == 9);
+        CHECK(record.rejected.size() == 10);
     }
 }
 
