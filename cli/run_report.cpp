@@ -7,16 +7,12 @@
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/progress.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
-namespace {
-
-constexpr char page_name[] = "report.html";
-
-}  // namespace
 
 ShownRun shown_run(RunRecord record, std::shared_ptr<const AeroMap> map, const std::filesystem::path& cache,
                    bool is_quiet, int threads) {
@@ -46,23 +42,18 @@ void require_pages() {
     }
 }
 
-void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
+void write_page(const std::filesystem::path& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
                 const std::filesystem::path& cache, bool is_quiet, int threads) {
     if (!has_pages()) {
         return;
     }
     try {
         const ShownRun run = shown_run(record, std::move(map), cache, is_quiet, threads);
-        folder.write(page_name, run_page(run.record, *run.model, run.map.get()));
+        write_made_from(source_of(folder, record), folder,
+                        {{run_page_name, run_page(run.record, *run.model, run.map.get())}});
     } catch (const std::runtime_error& error) {
-        remove_page(folder);
-        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", page_name, error.what()));
+        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", run_page_name, error.what()));
     }
-}
-
-void remove_page(const OutputFolder& folder) {
-    std::error_code ignored;
-    std::filesystem::remove(folder.path() / page_name, ignored);
 }
 
 }  // namespace downwash::cli

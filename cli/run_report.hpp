@@ -5,7 +5,6 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/output.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
@@ -34,11 +33,8 @@ struct ShownRun {
 void require_pages();
 
 /// Writes the page of a run beside its other files, if this build contains pages. The run stands without it: an error
-/// is reported on standard error, and no page of an earlier run stays. The parameters are those of shown_run().
-void write_page(const OutputFolder& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
+/// is reported on standard error. The parameters are those of shown_run().
+void write_page(const std::filesystem::path& folder, const RunRecord& record, std::shared_ptr<const AeroMap> map,
                 const std::filesystem::path& cache, bool is_quiet = false, int threads = default_threads());
-
-/// Removes the page of an earlier run.
-void remove_page(const OutputFolder& folder);
 
 }  // namespace downwash::cli

@@ -13,6 +13,7 @@
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -28,6 +29,7 @@ struct SolveArguments {
     std::optional<std::string> out;
     std::optional<double> wall_limit_s;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
+    bool force = false;
 };
 
 std::string announcement(const Problem& problem) {
@@ -80,7 +82,8 @@ ExitCode run(const SolveArguments& given) {
         given.is_quiet ? nullptr : print_outdated, given.is_quiet ? nullptr : print_warning);
     const Problem& read = plannable.problem;
     require_readable(read);
-    const OutputFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read));
+    RunFolder folder(given.out ? std::filesystem::path(*given.out) : default_folder(read), read, given.problem,
+                     given.force);
 
     SolveOptions options;
     options.threads = given.threads;
@@ -99,9 +102,7 @@ ExitCode run(const SolveArguments& given) {
     }
     const RunRecord record = write_results(folder, read, given.problem, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // whoever interrupted does not want to wait for a map
-        write_page(folder, record, solution.map, options.map_cache, given.is_quiet);
-    } else {
-        remove_page(folder);
+        write_page(folder.path(), record, solution.map, options.map_cache, given.is_quiet);
     }
     fmt::print("{}",
                given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
@@ -127,6 +128,7 @@ void add_solve(CLI::App& program, Action& action) {
     }
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
+    add_force(command, given.force);
     add_value(
         command, "--wall-limit S", given.wall_limit_s,
         "wall time of the whole command [s], reading and the aero map included; then the best plan so far is written")
