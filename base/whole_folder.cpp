@@ -45,7 +45,8 @@ fs::path resolved(const fs::path& place) {
 
 fs::path hidden(const fs::path& folder, const fs::path& place, const char* mark) {
     std::random_device random;
-    return folder / ("." + place.filename().string() + mark + std::to_string(getpid()) + "-" + std::to_string(random()));
+    return folder /
+           ("." + place.filename().string() + mark + std::to_string(getpid()) + "-" + std::to_string(random()));
 }
 
 /// The process in the name of a hidden folder of this place; nothing if it is not one.

@@ -34,8 +34,8 @@ class DOWNWASH_EXPORT OpenFolder {
     int descriptor_ = -1;
 };
 
-/// While it lives, no WholeFolder appears in this place, and nobody else has such a lock. Waits for its turn. For moments
-/// only: to write files beside those that are there. On file systems without locks it does nothing.
+/// While it lives, no WholeFolder appears in this place, and nobody else has such a lock. Waits for its turn. For
+/// moments only: to write files beside those that are there. On file systems without locks it does nothing.
 class DOWNWASH_EXPORT FolderLock {
  public:
     explicit FolderLock(const std::filesystem::path& place);
@@ -44,19 +44,20 @@ class DOWNWASH_EXPORT FolderLock {
     OpenFolder folder_;
 };
 
-/// A folder of files that belong together. It is written beside its place, under a hidden name, and appears there as one:
-/// whoever looks into it, also after a kill or a loss of power, finds all files of before or all new ones.
+/// A folder of files that belong together. It is written beside its place, under a hidden name, and appears there as
+/// one: whoever looks into it, also after a kill or a loss of power, finds all files of before or all new ones.
 ///
 /// Files with other names that are in the folder stay. If the folder cannot be moved, its files are replaced one by
-/// one: the current folder, a mount point, a folder of another user or with folders in it. The last file of a list is then
-/// removed first and put last, so that a kill leaves a folder without it.
+/// one: the current folder, a mount point, a folder of another user or with folders in it. The last file of a list is
+/// then removed first and put last, so that a kill leaves a folder without it.
 class DOWNWASH_EXPORT WholeFolder {
  public:
     using Files = std::vector<std::pair<std::string, std::string>>;  ///< names and contents
 
-    /// Claims the place for this process, until the end of this object or a kill, and removes what a killed process left.
-    /// @param place which may be there already or not; folders above it are made   @param names of all files that such a
-    /// folder can have; those that write() does not get disappear
+    /// Claims the place for this process, until the end of this object or a kill, and removes what a killed process
+    /// left.
+    /// @param place which may be there already or not; folders above it are made   @param names of all files that such
+    /// a folder can have; those that write() does not get disappear
     /// @throws FolderError if it cannot be written, or another process has claimed it
     WholeFolder(std::filesystem::path place, std::vector<std::string> names);
     ~WholeFolder();

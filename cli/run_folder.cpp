@@ -97,7 +97,8 @@ void write_made_from(const SourceFile& source, const fs::path& folder, const Nam
     const fs::path place = folder.empty() ? "." : folder;
     const FolderLock lock(place);
     const bool is_gone = !is_there(source.path) || read_file(source.path, source.text.size() + 1) != source.text;
-    if (std::error_code elsewhere; is_gone && fs::equivalent(place, fs::absolute(source.path).parent_path(), elsewhere)) {
+    if (std::error_code elsewhere;
+        is_gone && fs::equivalent(place, fs::absolute(source.path).parent_path(), elsewhere)) {
         throw UsageError("{} was replaced meanwhile, and nothing was written beside it: try again",
                          source.path.string());
     }

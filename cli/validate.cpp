@@ -107,9 +107,8 @@ ExitCode run(const ValidateArguments& given) {
         }
     }
     if (folder) {
-        write_validation(
-            *folder, validation, judge, claims.plan,
-            {given.problem, given.plan, source, seed, cache_folder(given.no_cache), given.is_quiet});
+        write_validation(*folder, validation, judge, claims.plan,
+                         {given.problem, given.plan, source, seed, cache_folder(given.no_cache), given.is_quiet});
     }
     if (given.as_json) {
         print_json(json_of(validation));

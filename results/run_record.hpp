@@ -48,8 +48,8 @@ struct RunRecord {
 /// @throws InputError if there is no such file or it is not what they write
 [[nodiscard]] DOWNWASH_EXPORT ProblemReference problem_of_run(const std::filesystem::path& folder);
 
-/// Checks that the files in a folder are of the same run, as far as they are there: for those who read its solution.json
-/// only. A plan that was written by hand holds no digests, and nothing is compared.
+/// Checks that the files in a folder are of the same run, as far as they are there: for those who read its
+/// solution.json only. A plan that was written by hand holds no digests, and nothing is compared.
 /// @throws InputError or ProblemFileError like read_run()
 DOWNWASH_EXPORT void require_whole_run(const std::filesystem::path& folder);
 

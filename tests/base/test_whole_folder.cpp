@@ -208,7 +208,8 @@ TEST_CASE("a kill at any moment leaves the old folder or the new one, and the ne
     CHECK(was_new);  // kills after the change were among them
 }
 
-TEST_CASE("where folders cannot change places, a kill leaves one of them, or an empty place and the old one is put back") {
+TEST_CASE(
+    "where folders cannot change places, a kill leaves one of them, or an empty place and the old one is put back") {
     const ScratchFolder folder(in_memory());
     bool was_missing = false;
     kill_everywhere(folder / "at", {System::no_exchange}, first, [&](bool is_over) {
@@ -226,9 +227,9 @@ TEST_CASE("where folders cannot change places, a kill leaves one of them, or an 
 
 TEST_CASE("where a folder cannot be moved, a kill leaves the old files, the new ones, or no whole folder") {
     const ScratchFolder folder(in_memory());
-    const auto [setting, others] = GENERATE(
-        std::pair(Setting{System::all_calls, true}, Content{}), std::pair(Setting{}, Content{{"below", "/"}}),
-        std::pair(Setting{System::no_links}, Content{{"notes.txt", "mine"}}));
+    const auto [setting, others] =
+        GENERATE(std::pair(Setting{System::all_calls, true}, Content{}), std::pair(Setting{}, Content{{"below", "/"}}),
+                 std::pair(Setting{System::no_links}, Content{{"notes.txt", "mine"}}));
     kill_everywhere(folder / "at", setting, with(first, others), [&, kept = others](bool is_over) {
         Content found = content_of(folder / "at/run");
         for (const auto& [name, text] : kept) {
@@ -284,7 +285,8 @@ TEST_CASE("a folder that cannot be written is refused at once, and nothing is le
     CHECK_THROWS_WITH(WholeFolder(folder / "file", names), reason(folder / "file") + "it is a file, expected a folder");
     CHECK_THROWS_WITH(WholeFolder(folder / "file/below", names), Catch::StartsWith(reason(folder / "file/below")));
     CHECK_THROWS_WITH(WholeFolder(folder / "dangling", names), Catch::StartsWith(reason(folder / "dangling")));
-    CHECK_THROWS_WITH(WholeFolder(folder / "odd", names), reason(folder / "odd/plan") + "it is a folder, expected a file");
+    CHECK_THROWS_WITH(WholeFolder(folder / "odd", names),
+                      reason(folder / "odd/plan") + "it is a folder, expected a file");
     if (geteuid() != 0) {  // nothing is forbidden to root
         write_run(folder / "locked/run", "first");
         fs::permissions(folder / "locked/run", fs::perms(0500));

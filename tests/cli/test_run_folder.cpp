@@ -150,8 +150,8 @@ TEST_CASE("Whoever reads the folder of a run refuses files of two runs, and a pl
             CAPTURE(name, reader);
             const Result refused = work.run(reader, default_place);
             check_rejected(refused, "solution.json beside it wrote");
-            CHECK_THAT(refused.err,
-                       Contains(name) && Contains("`downwash execute PROBLEM --plan " + default_place + "/solution.json`"));
+            CHECK_THAT(refused.err, Contains(name) && Contains("`downwash execute PROBLEM --plan " + default_place +
+                                                               "/solution.json`"));
         }
         work.succeed("execute one.yaml --out flown --quiet --plan", default_place + "/solution.json");
         write_file(work.in_run(default_place + "/" + name), own);
@@ -167,8 +167,8 @@ TEST_CASE("What is made from a run is not written beside another one") {
     write_file(work.in_run("one.yaml"), text);
     write_file(work.in_run("uncertain.yaml"), replaced(text, "uncertainty: none", "uncertainty: {}"));
     work.succeed("solve one.yaml --max-iterations 100 --out x");
-    const Program judge(work, words("validate uncertain.yaml --plan x --runs 300 --out x"));
-    REQUIRE(judge.has_said("flying the plan in 300 worlds"));
+    const Program judge(work, words("validate uncertain.yaml --plan x --runs 30 --out x"));
+    REQUIRE(judge.has_said("flying the plan in 30 worlds"));
     write_file(work.in_run("x/solution.json"), work.text("x/solution.json") + "\n");  // another run
     check_rejected(judge.wait(), "x/solution.json was replaced meanwhile");
     CHECK(work.files("x").size() == files_of_a_run);
