@@ -12,6 +12,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
@@ -31,7 +32,7 @@ struct ExecuteArguments {
     std::optional<std::string> out;
     PlannerOptions planner;
     int threads = default_threads();
-    bool is_quiet = false, as_json = false;
+    bool is_quiet = false, as_json = false, force = false;
 };
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
@@ -104,16 +105,17 @@ ExitCode run(const ExecuteArguments& given) {
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
         given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
     Solution solution = read_solution(plan_file(given.plan), read);
+    require_whole_plan(given.plan);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
-    const OutputFolder folder(folder_for(given, read));
+    RunFolder folder(folder_for(given, read), read, given.problem, given.force);
     fly(read, given.aero == "on", world, solution);
     if (world) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
     interruption.expect_results();
     const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
-    write_page(folder, record, given.threads);
+    write_page(folder.path(), record, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
                                    : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
@@ -141,6 +143,7 @@ void add_execute(CLI::App& program, Action& action) {
     add_out(command, "DIR", given.out,
             "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
             "itself is in that folder");
+    add_force(command, given.force);
     add_threads(command, given.threads);
     add_quiet(command, given.is_quiet);
     add_json(command, given.as_json, "solution.json");

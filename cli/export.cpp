@@ -7,7 +7,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
-#include "downwash/cli/output.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/exports/export_format.hpp"
 
@@ -64,7 +64,8 @@ ExitCode run(const ExportArguments& given) {
     if (chosen.is_to_be_flown && !given.anyway) {
         require_good_flight(record);
     }
-    write_result(file, exported(record, chosen, settings_of(given)));
+    write_made_from(source_of(run_folder(given.folder), record), file.parent_path(),
+                    {{file.filename().string(), exported(record, chosen, settings_of(given))}});
     fmt::print("{}\n", file.string());
     return ExitCode::done;
 }

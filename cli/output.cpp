@@ -67,6 +67,16 @@ void write_result(const fs::path& file, std::string_view content, std::string_vi
     with_usage_errors(file, option, [&] { write_file(file, content); });
 }
 
+void write_together(const fs::path& folder, const NamedTexts& files) {
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        std::error_code ignored;
+        fs::remove(folder / files[i].first, ignored);
+    }
+    for (const auto& [name, content] : files) {
+        write_result(folder / name, content);
+    }
+}
+
 void require_writable_result(const fs::path& file, std::string_view option) {
     with_usage_errors(file, option, [&] { require_writable(file); });
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace downwash {
@@ -40,6 +41,13 @@ void print_json(const Json& document);
 /// Writes a file that an option names, whole or not at all. @throws UsageError when that fails
 /// @param option its name, for messages; empty: none
 void write_result(const std::filesystem::path& file, std::string_view content, std::string_view option = {});
+
+/// Names of files in one folder, and their contents.
+using NamedTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes files that belong together, one after the other. It first removes all of before but the first one, so that
+/// files of two commands never stand side by side, even after a kill. @throws UsageError when that fails
+void write_together(const std::filesystem::path& folder, const NamedTexts& files);
 
 /// Checks that write_result() can begin, before anything is computed. @throws UsageError when it cannot
 void require_writable_result(const std::filesystem::path& file, std::string_view option);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -37,8 +38,7 @@ void write_pictures(const ReportArguments& given, const RunRecord& run) {
         PictureFormat format;
         const char* extension;
     };
-    std::vector<std::pair<std::string, std::string>>
-        pictures;  // names and contents: all are drawn before one is written
+    NamedTexts pictures;  // all are drawn before one is written
     for (const Wanted& as : {Wanted{given.as_svg, PictureFormat::svg, ".svg"},
                              {given.as_png, PictureFormat::png, ".png"},
                              {given.as_pdf, PictureFormat::pdf, ".pdf"}}) {
@@ -49,9 +49,9 @@ void write_pictures(const ReportArguments& given, const RunRecord& run) {
             pictures.emplace_back(std::string("plots") + as.extension, draw(plots, settings));
         }
     }
-    const OutputFolder folder(given.out.value_or(given.folder));
+    const OutputFolder folder(given.out.value_or(run_folder(given.folder)));
+    write_made_from(source_of(run_folder(given.folder), run), folder.path(), pictures);
     for (const auto& [name, content] : pictures) {
-        folder.write(name, content);
         fmt::print("{}\n", (folder.path() / name).string());
     }
 }
@@ -68,8 +68,9 @@ ExitCode run(const ReportArguments& given) {
     } else {
         require_pages();
         const RunRecord shown = read_run(run_folder(given.folder));
-        const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / "report.html";
-        write_result(page, run_page(shown, *make_flight_model(shown.problem), given.threads));
+        const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / run_page_name;
+        write_made_from(source_of(run_folder(given.folder), shown), page.parent_path(),
+                        {{page.filename().string(), run_page(shown, *make_flight_model(shown.problem), given.threads)}});
         fmt::print("{}\n", page.string());
     }
     return ExitCode::done;

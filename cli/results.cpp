@@ -67,12 +67,13 @@ std::filesystem::path default_folder(const Problem& problem) {
            fmt::format("{}-{}-{}", problem.name, name_of(problem.planner.variant), problem.planner.seed);
 }
 
-RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+RunRecord write_results(RunFolder& folder, const Problem& problem, const std::string& problem_file,
                         const std::vector<LocatedError>& warnings, const Solution& solution) {
     const Execution flight = solution.execution.value_or(no_flight(problem.robot));
     RunRecord record = run_record(problem, solution, flight);
-    for (auto& [name, content] : run_files(problem, problem_file, solution, flight, folder.path(), warnings)) {
-        folder.write(name, content);
+    NamedTexts files = run_files(problem, problem_file, solution, flight, folder.path(), warnings);
+    folder.write(files);
+    for (auto& [name, content] : files) {
         if (name == "effective.yaml") {
             record.problem_text = std::move(content);
         } else if (name == "solution.json") {
@@ -196,8 +197,11 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         }
     }
     text += row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
-    if (std::error_code ignored; std::filesystem::exists(folder / "report.html", ignored)) {
-        text += row("page", (folder / "report.html").string());
+    if (std::error_code ignored; std::filesystem::exists(folder / run_page_name, ignored)) {
+        text += row("page", (folder / run_page_name).string());
+    }
+    if (const std::string others = other_files_in(folder); !others.empty()) {
+        text += row("kept", others + ": of before, not of this run");
     }
     return text;
 }

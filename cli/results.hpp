@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "downwash/cli/exit_code.hpp"
-#include "downwash/cli/output.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -17,10 +17,10 @@ namespace downwash::cli {
 /// Where results go unless --out says otherwise: downwash-out/NAME-VARIANT-SEED.
 [[nodiscard]] std::filesystem::path default_folder(const Problem& problem);
 
-/// Writes effective.yaml, trajectory.csv, tree.csv and, last, solution.json.
+/// Writes effective.yaml, trajectory.csv, tree.csv and solution.json, which replace the run of before.
 /// @param problem_file as the user gave it   @param warnings of reading it
 /// @return the same run, as read_run() would read it from the folder
-RunRecord write_results(const OutputFolder& folder, const Problem& problem, const std::string& problem_file,
+RunRecord write_results(RunFolder& folder, const Problem& problem, const std::string& problem_file,
                         const std::vector<LocatedError>& warnings, const Solution& solution);
 
 /// The result of a search, in one sentence.

@@ -4,16 +4,12 @@
 
 #include <stdexcept>
 
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 
 namespace downwash::cli {
-namespace {
-
-constexpr char page_name[] = "report.html";
-
-}  // namespace
 
 void require_pages() {
     if (!has_pages()) {
@@ -23,21 +19,16 @@ void require_pages() {
     }
 }
 
-void write_page(const OutputFolder& folder, const RunRecord& record, int threads) {
+void write_page(const std::filesystem::path& folder, const RunRecord& record, int threads) {
     if (!has_pages()) {
         return;
     }
     try {
-        folder.write(page_name, run_page(record, *make_flight_model(record.problem), threads));
+        write_made_from(source_of(folder, record), folder,
+                        {{run_page_name, run_page(record, *make_flight_model(record.problem), threads)}});
     } catch (const std::runtime_error& error) {
-        remove_page(folder);
-        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", page_name, error.what()));
+        print_error(fmt::format("downwash: the results are written, but no {}: {}\n", run_page_name, error.what()));
     }
-}
-
-void remove_page(const OutputFolder& folder) {
-    std::error_code ignored;
-    std::filesystem::remove(folder.path() / page_name, ignored);
 }
 
 }  // namespace downwash::cli

@@ -13,6 +13,7 @@
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -28,6 +29,7 @@ struct SolveArguments {
     std::optional<std::string> out;
     std::optional<double> wall_limit_s;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
+    bool force = false;
 };
 
 std::string announcement(const Problem& problem) {
@@ -70,7 +72,7 @@ ExitCode run(const SolveArguments& given) {
     const Problem& read = plannable.problem;
     const std::filesystem::path out = given.out ? std::filesystem::path(*given.out) : default_folder(read);
     require_readable_again(read, out);
-    const OutputFolder folder(out);
+    RunFolder folder(out, read, given.problem, given.force);
 
     SolveOptions options;
     options.threads = given.threads;
@@ -89,9 +91,7 @@ ExitCode run(const SolveArguments& given) {
     }
     const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // without a map there was no search to be shown yet
-        write_page(folder, record, given.threads);
-    } else {
-        remove_page(folder);
+        write_page(folder.path(), record, given.threads);
     }
     fmt::print("{}",
                given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
@@ -117,6 +117,7 @@ void add_solve(CLI::App& program, Action& action) {
     }
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
+    add_force(command, given.force);
     add_value(
         command, "--wall-limit S", given.wall_limit_s,
         "wall time of the whole command [s], reading and the aero map included; then the best plan so far is written")

@@ -72,8 +72,8 @@ ExitCode run(const StudyUncertaintyArguments& given) {
         bench::run_study(parts, options);
     }
     const bench::StudyFigures figures = bench::figures_of(parts, folder.path());
-    folder.write("study.json", bench::json_of(figures) + "\n");
-    folder.write("study.md", bench::markdown_of(figures));
+    write_together(folder.path(),
+                   {{"study.json", bench::json_of(figures) + "\n"}, {"study.md", bench::markdown_of(figures)}});
     if (given.as_json) {
         fmt::print("{}\n", bench::json_of(figures));
     } else {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "downwash/base/files.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/progress.hpp"
@@ -17,6 +18,7 @@ namespace downwash::cli {
 namespace {
 
 constexpr std::uint64_t most_runs = 10'000'000;
+constexpr std::size_t largest_solution = 256UL * 1024 * 1024;  // bytes
 
 struct ValidateArguments {
     std::string problem;
@@ -74,6 +76,8 @@ ExitCode run(const ValidateArguments& given) {
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
     check_options(given, problem);
     const Claims claims = read_claims(plan_file(given.plan), problem);
+    require_whole_plan(given.plan);
+    const SourceFile source{plan_file(given.plan), read_whole_file(plan_file(given.plan), largest_solution)};
     const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
@@ -104,7 +108,7 @@ ExitCode run(const ValidateArguments& given) {
     }
     if (folder) {
         write_validation(*folder, validation, judge, claims.plan,
-                         {given.problem, given.plan, plan_file(given.plan), seed, given.threads});
+                         {given.problem, given.plan, source, seed, given.threads});
     }
     if (given.as_json) {
         print_json(json_of(validation));

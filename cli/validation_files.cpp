@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "downwash/base/files.hpp"
+#include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
 #include "downwash/report/validation_page.hpp"
@@ -17,9 +17,9 @@
 namespace downwash::cli {
 namespace {
 
+constexpr char findings_name[] = "validation.json";
 constexpr char page_name[] = "validation.html";
-constexpr std::size_t most_played = 5;                     ///< of the worst flights
-constexpr std::size_t largest_file = 256UL * 1024 * 1024;  ///< bytes
+constexpr std::size_t most_played = 5;  ///< of the worst flights
 
 /// The judge's rows with the place of the end effector, up to where the vehicle was lost.
 NumberTable table_of(const judge::JudgedFlight& flight, const ArmParameters& arm) {
@@ -76,7 +76,7 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
     record.findings = findings;
     record.is_valid = validation.is_valid();
     record.has_flight_claims = validation.has_flight_claims;
-    record.solution_text = read_whole_file(source.plan_file, largest_file);
+    record.solution_text = source.solution.text;
     record.seed = source.seed;
     record.command = command_of(validation, source);
     record.flights.push_back(playable(validation.flight, problem, source, validation.world));
@@ -100,14 +100,18 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
 void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
                       const Plan& plan, const ValidationSource& source) {
     const std::string findings = text_of(json_of(validation));
-    folder.write("validation.json", findings);
+    // The page takes a while and is written when the findings are safe; that of before goes first.
+    std::error_code ignored;
+    std::filesystem::remove(folder.path() / page_name, ignored);
+    write_made_from(source.solution, folder.path(), {{findings_name, findings}});
     if (!has_pages()) {
         return;
     }
     const Problem& problem = judge.problem();
     const auto model = make_flight_model(problem);
     const ValidationRecord record = record_of(validation, findings, judge, plan, source);
-    folder.write(page_name, validation_page(record, problem, *model, source.threads));
+    write_made_from({folder.path() / findings_name, findings}, folder.path(),
+                    {{page_name, validation_page(record, problem, *model, source.threads)}});
 }
 
 }  // namespace downwash::cli

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/validation.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/judge/plan_judge.hpp"
@@ -17,7 +18,7 @@ inline constexpr double shown_clearance_step_s = 0.1;
 struct ValidationSource {
     std::string problem_file;  ///< as the user gave it
     std::string plan;          ///< as the user gave it: solution.json or its folder
-    std::string plan_file;     ///< solution.json itself
+    SourceFile solution;       ///< solution.json itself
     std::uint64_t seed = 1;    ///< of the worlds
     int threads = 1;
 };

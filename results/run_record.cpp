@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr int deepest_nesting = 32;
+constexpr char solution_name[] = "solution.json";
 
 [[noreturn]] void report(const fs::path& file, const std::string& message) {
     throw InputError({KeyError{"", file.string() + ": " + message}});
@@ -47,7 +48,7 @@ std::string text_at(const nlohmann::json& json, const char* pointer) {
 /// What solution.json says of itself and of the files beside it.
 struct Claims {
     bool has_plan = false;
-    std::string problem_sha256;
+    ProblemReference problem;
     FileDigests files;  ///< empty in solutions of former versions
 };
 
@@ -72,7 +73,8 @@ Claims take_solution(const fs::path& file, RunRecord& run) {
     Claims claims;
     const auto plan = solution.find("plan");
     claims.has_plan = plan != solution.end() && !plan->is_null();
-    claims.problem_sha256 = text_at(solution, "/problem/sha256");
+    claims.problem = {text_at(solution, "/problem/name"), text_at(solution, "/problem/file"),
+                      text_at(solution, "/problem/sha256")};
     if (const auto files = solution.find("files"); files != solution.end() && files->is_object()) {
         for (const auto& [name, digest] : files->items()) {
             claims.files[name] = digest.is_string() ? digest.get<std::string>() : "";
@@ -86,8 +88,9 @@ void check_digest(const fs::path& file, const std::string& digest, const std::st
     if (!claimed.empty() && digest != claimed) {
         report(file,
                "this is not the file that the run of the solution.json beside it wrote: it was changed, or another "
-               "run wrote into this folder. Plan again with `downwash solve`, or execute the plan again with "
-               "`downwash execute PROBLEM --plan solution.json`");
+               "run wrote into this folder. Plan again with `downwash solve`, or execute that plan alone again with "
+               "`downwash execute PROBLEM --plan " +
+                   (file.parent_path() / solution_name).string() + "`");
     }
 }
 
@@ -97,6 +100,11 @@ void check_file(const fs::path& file, const std::string& content, const FileDige
     if (claimed != digests.end()) {
         check_digest(file, sha256_hex(content), claimed->second);
     }
+}
+
+/// The same for the problem in effective.yaml.
+void check_problem(const fs::path& file, const Problem& problem, const Claims& claims) {
+    check_digest(file, problem_sha256(problem), claims.problem.sha256);
 }
 
 [[noreturn]] void throw_at_row(const fs::path& file, const NumberTable& table, std::size_t row,
@@ -197,8 +205,7 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
     const FileDigests digests{{files[1].first, sha256_hex(files[1].second)},
                               {files[2].first, sha256_hex(files[2].second)}};
     files.emplace_back(
-        "solution.json",
-        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
+        solution_name, solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
     return files;
 }
 
@@ -208,13 +215,13 @@ RunRecord read_run(const fs::path& folder) {
         report(folder, "there is no such folder; expected one that `downwash solve` wrote");
     }
     RunRecord run;
-    const fs::path solution = folder / "solution.json";
+    const fs::path solution = folder / solution_name;
     run.solution_text = text_of(solution);
     const Claims claims = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_problem(problem);
-    check_digest(problem, problem_sha256(run.problem), claims.problem_sha256);
+    check_problem(problem, run.problem, claims);
     if (claims.has_plan) {
         run.plan = read_solution(solution.string(), run.problem).plan;
     }
@@ -231,6 +238,27 @@ RunRecord read_run(const fs::path& folder) {
         check_file(tree, tree_text, claims.files);
     }
     return run;
+}
+
+ProblemReference problem_of_run(const fs::path& folder) {
+    RunRecord run;
+    run.solution_text = text_of(folder / solution_name);
+    return take_solution(folder / solution_name, run).problem;
+}
+
+void require_whole_run(const fs::path& folder) {
+    RunRecord run;
+    run.solution_text = text_of(folder / solution_name);
+    const Claims claims = take_solution(folder / solution_name, run);
+    std::error_code ignored;
+    for (const char* name : {"trajectory.csv", "tree.csv"}) {
+        if (const fs::path file = folder / name; fs::exists(file, ignored)) {
+            check_file(file, text_of(file), claims.files);
+        }
+    }
+    if (const fs::path problem = folder / "effective.yaml"; fs::exists(problem, ignored)) {
+        check_problem(problem, read_problem(problem), claims);
+    }
 }
 
 }  // namespace downwash

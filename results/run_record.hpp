@@ -11,6 +11,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/number_table.hpp"
+#include "downwash/results/solution_file.hpp"
 
 namespace downwash {
 
@@ -44,5 +45,14 @@ struct RunRecord {
 /// @throws ProblemFileError or InputError with the place of every error: a file that is missing or is not what they
 /// write
 [[nodiscard]] DOWNWASH_EXPORT RunRecord read_run(const std::filesystem::path& folder);
+
+/// Which problem the run in a folder solves, as its solution.json says. What it does not say is empty.
+/// @throws InputError if there is no such file or it is not what they write
+[[nodiscard]] DOWNWASH_EXPORT ProblemReference problem_of_run(const std::filesystem::path& folder);
+
+/// Checks that the files in a folder are of the same run, as far as they are there: for those who read its
+/// solution.json only. A plan that was written by hand holds no digests, and nothing is compared.
+/// @throws InputError or ProblemFileError like read_run()
+DOWNWASH_EXPORT void require_whole_run(const std::filesystem::path& folder);
 
 }  // namespace downwash

@@ -50,13 +50,6 @@ TEST_CASE("A run is exported in every format, under the usual name") {
     }
 }
 
-TEST_CASE("Results stand without their page") {
-    const Workspace work;
-    std::filesystem::create_directories(work.in_run("x/report.html"));
-    const Result result = work.succeed("solve", problem_file("open_air"), "--max-iterations 100 --out x");
-    CHECK_THAT(result.out, StartsWith("Solved. "));
-}
-
 TEST_CASE("A plan whose flight failed is not handed on unasked") {
     const Workspace work;
     REQUIRE(

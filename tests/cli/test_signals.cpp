@@ -99,6 +99,21 @@ TEST_CASE("Files that may not grow are an error with its reason, like a full dis
     }
 }
 
+TEST_CASE("Results stand without their page, and the page of before is gone") {
+    const Workspace work;
+    const Words command =
+        words("solve", problem_file("bridge_inspection"), "--variant mp-arm-da --max-iterations 1 --out x");
+    REQUIRE(work.run(command).code == 1);  // without a plan every other file is small
+    if (has_pages) {
+        const FileSizeLimit limit(work.text("x/report.html").size() - 1);
+        const Result result = work.run(command);
+        CHECK(result.code == 1);
+        CHECK_THAT(result.out, Catch::StartsWith("No solution within the limits"));
+        CHECK_THAT(result.err, Catch::Contains("report.html cannot be written: File too large"));
+        CHECK(work.files("x").size() == files_of_a_run - 1);
+    }
+}
+
 TEST_CASE("Help that cannot be written is an error") {
     const Workspace work;
     const FileSizeLimit limit(0);

@@ -6,6 +6,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/solved_run.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/problems/problem_writer.hpp"
 #include "downwash/results/run_record.hpp"
 
 using namespace downwash;
@@ -86,9 +87,28 @@ TEST_CASE("files of two runs in one folder are no run, whichever of them is the 
         const std::string own = content_of(run.file(name));
         write_file(run.file(name), content_of(other.file(name)));
         CHECK_THAT(error_of(run), Catch::Contains("solution.json beside it"));
+        CHECK_THAT(first_error_of([&run] { return require_whole_run(run.folder()), 0; }),
+                   Catch::Contains("solution.json beside it"));
         write_file(run.file(name), own);
     }
     CHECK(error_of(run).empty());
+    for (const char* name : {"effective.yaml", "trajectory.csv", "tree.csv"}) {  // a plan may be alone
+        CHECK_NOTHROW(require_whole_run(run.folder()));
+        std::filesystem::remove(run.file(name));
+    }
+    CHECK_NOTHROW(require_whole_run(run.folder()));
+}
+
+TEST_CASE("a folder tells which problem its run solves") {
+    const SolvedRun run;
+    const ProblemReference problem = problem_of_run(run.folder());
+    CHECK(problem.name == run.problem.name);
+    CHECK(problem.file == "problem.yaml");
+    CHECK(problem.sha256 == problem_sha256(run.problem));
+    write_file(run.file("solution.json"), R"({"schema": "downwash/solution/v1", "plan": null})");
+    CHECK(problem_of_run(run.folder()).sha256.empty());
+    write_file(run.file("solution.json"), "{}");
+    CHECK_THROWS_AS(problem_of_run(run.folder()), InputError);
 }
 
 TEST_CASE("files that no run left behind are errors with their place") {

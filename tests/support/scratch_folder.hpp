@@ -9,8 +9,8 @@ namespace downwash::test {
 /// An empty folder that disappears with the test.
 class ScratchFolder {
  public:
-    ScratchFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "downwash-test-XXXXXX").string();
+    explicit ScratchFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
+        std::string name = (in / "downwash-test-XXXXXX").string();
         path_ = mkdtemp(name.data());
     }
     ~ScratchFolder() {
