@@ -12,6 +12,7 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
+#include "downwash/results/result_limits.hpp"
 #include "downwash/report/validation_page.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 
 constexpr char page_name[] = "validation.html";
 constexpr std::size_t most_played = 5;                     ///< of the worst flights
-constexpr std::size_t largest_file = 256UL * 1024 * 1024;  ///< bytes
 
 /// The judge's rows with the place of the end effector, up to where the vehicle was lost.
 NumberTable table_of(const judge::JudgedFlight& flight, const ArmParameters& arm) {
@@ -77,7 +77,7 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
     record.findings = findings;
     record.is_valid = validation.is_valid();
     record.has_flight_claims = validation.has_flight_claims;
-    record.solution_text = read_whole_file(source.plan_file, largest_file);
+    record.solution_text = read_whole_file(source.plan_file, max_solution_bytes);
     record.seed = source.seed;
     record.command = command_of(validation, source);
     record.flights.push_back(playable(validation.flight, problem, source, validation.world));

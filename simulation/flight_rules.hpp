@@ -68,7 +68,8 @@ T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& sta
                                         lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
     T rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), T(0));
     rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
-    rejection = lane::select(saturation > T(limits.max_saturation), number_of(Rejection::saturation), rejection);
+    // Not a number either: a limit of the actuators may have hidden that nothing sensible was asked of them.
+    rejection = lane::select(saturation <= T(limits.max_saturation), rejection, number_of(Rejection::saturation));
     return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
 }
 
