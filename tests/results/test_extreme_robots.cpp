@@ -86,7 +86,7 @@ Problem short_way(const Robot& robot) {
     Problem problem;
     problem.name = "extreme";
     problem.robot = robot;
-    problem.bounds = {-300, 300, -300, 300};
+    problem.bounds = {-20, 20, -20, 20};
     problem.start.x_m = 0;
     problem.start.z_m = 2;
     problem.start.arm_rad = test::quarter_turn;
@@ -101,13 +101,15 @@ Problem short_way(const Robot& robot) {
 /// Writes a run and reads it again: throws where a number is not finite or beyond its range.
 void check_readable(const Problem& problem, const Solution& solution) {
     const ScratchFolder folder;
-    const Execution flight = solution.execution.value_or(Execution());
+    Execution nothing_flown;
+    nothing_flown.rotor_count = static_cast<int>(problem.robot.rotors.positions_m.size());
+    const Execution flight = solution.execution.value_or(nothing_flown);
     for (const auto& [name, content] : run_files(problem, "problem.yaml", solution, flight, folder.path())) {
         write_file(folder / name, content);
     }
     const RunRecord record = read_run(folder.path());
     CHECK(record.flight.rows() == flight.rows.size());
-    if (solution.plan) {
+    if (solution.execution) {
         const Claims claims = read_claims((folder / "solution.json").string(), record.problem);
         REQUIRE(claims.flight.has_value());
         CHECK(claims.flight->energy_j == flight.energy_j);
@@ -127,6 +129,7 @@ Solution flown_by(const Robot& robot, const Problem& problem) {
     const Configuration goal{start.x_m + 0.5, start.z_m + 0.5, start.arm_rad};
     Solution solution;
     solution.status = Status::solved;
+    solution.algorithm = "rrt-star";
     solution.plan = Plan{{{0, at_rest(start)}, {std::llround(2 / tick_s), at_rest(goal)}}, tick_s};
     solution.execution =
         execute(*model, start_state(*model, problem.start), solution.plan->reference, problem.goal, false);
@@ -198,6 +201,6 @@ TEST_CASE("a flight whose numbers are no longer finite is unstable, and ends wit
     CHECK(solution.execution->outcome == Outcome::unstable);
     check_readable(problem, solution);
     const judge::JudgedFlight judged = judge::PlanJudge(broken).fly(*solution.plan, {});
-    CHECK(judged.outcome == Outcome::unstable);
+    CHECK(judged.outcome == judge::Outcome::unstable);
     CHECK(std::isfinite(judged.energy_j));
 }
