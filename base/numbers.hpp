@@ -31,6 +31,17 @@ template <class T, class Struct>
     __builtin_memcpy(reinterpret_cast<unsigned char*>(&to) + static_cast<unsigned>(i) * sizeof(T), &number, sizeof(T));
 }
 
+/// Whether all numbers of a struct are at most so large in size; none of them is NaN then.
+template <class Struct>
+[[nodiscard]] inline bool are_within(const Struct& numbers, double max) noexcept {
+    bool all = true;
+    for (int i = 0; i < number_count<double, Struct>; ++i) {
+        const double number = number_at<double>(numbers, i);
+        all = all && number <= max && number >= -max;
+    }
+    return all;
+}
+
 /// Number by number those of `yes` where a condition holds, those of `no` elsewhere.
 /// @param condition of the lane type that lane::select() takes for T
 template <class T, template <class> class Struct, class Condition>

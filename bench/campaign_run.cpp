@@ -1,9 +1,11 @@
 #include "downwash/bench/campaign_run.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <utility>
 
 #include "downwash/base/parallel.hpp"
@@ -193,7 +195,8 @@ void fill(Run& run, const Solution& solution) {
                                flight.length_m, flight.min_clearance_m,  flight.goal_error_m};
 }
 
-/// One run: the search and the flight of its plan. An error is in the result, never thrown.
+/// One run: the search and the flight of its plan. An error is in the result, never thrown, apart from std::bad_alloc:
+/// that there was no memory left says nothing about the search.
 /// @param how the map to use, the stop token, and whether to stop at the first solution
 /// @param evaluation flies the plan after the clock has stopped; nullptr: it is not flown in other worlds
 Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how,
@@ -211,6 +214,8 @@ Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, co
     } catch (const InputError& error) {
         run.status = RunStatus::impossible;
         run.error = error.what();
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& error) {
         run.status = RunStatus::error;
         run.error = error.what();
@@ -323,6 +328,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     }
 
     std::mutex writing;
+    std::atomic<std::size_t> out_of_memory = 0;
     const auto do_task = [&](std::size_t i) {
         if (options.stop.stop_requested()) {
             return;
@@ -333,13 +339,17 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
         how.stop_at_first_solution = plan.stop_at_first_solution;
         how.map = maps[task.experiment];
         how.map_cache = options.map_cache;
-        Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how,
-                          evaluations[task.experiment].get());
-        run.experiment = task.experiment;
-        run.planner = task.planner;
-        const std::scoped_lock lock(writing);
-        if (!options.stop.stop_requested()) {
-            store.add(run);
+        try {
+            Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how,
+                              evaluations[task.experiment].get());
+            run.experiment = task.experiment;
+            run.planner = task.planner;
+            const std::scoped_lock lock(writing);
+            if (!options.stop.stop_requested()) {
+                store.add(run);
+            }
+        } catch (const std::bad_alloc&) {  // not finished: --resume repeats it
+            ++out_of_memory;
         }
     };
     const double earlier = static_cast<double>(store.size());
@@ -349,7 +359,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                                 static_cast<double>(plan.run_count()));
         }
     });
-    return {plan.run_count(), store.size()};
+    return {plan.run_count(), store.size(), out_of_memory};
 }
 
 }  // namespace downwash::bench

@@ -25,7 +25,8 @@ struct CampaignRunOptions {
 /// The progress of a campaign.
 struct CampaignProgress {
     std::size_t planned = 0;
-    std::size_t done = 0;  ///< earlier ones included; fewer than planned after a stop
+    std::size_t done = 0;           ///< earlier ones included; fewer than planned after a stop
+    std::size_t out_of_memory = 0;  ///< runs that ended for want of memory: not done, and repeated by the next resume
 };
 
 /// Everything that a campaign runs on this machine.

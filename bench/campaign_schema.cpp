@@ -1,13 +1,16 @@
 #include "downwash/bench/campaign_schema.hpp"
 
+#include <array>
+
 #include "downwash/base/version.hpp"
+#include "downwash/bench/campaign_checksums.hpp"
 
 namespace downwash::bench {
 namespace {
 
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 5;
+constexpr std::uint64_t layout_version = 6;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -56,6 +59,10 @@ CREATE TABLE rejections (
 CREATE TABLE errors (
   runid INTEGER PRIMARY KEY, message TEXT NOT NULL,
   FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
+CREATE TABLE checksums (
+  runid INTEGER PRIMARY KEY, checksum TEXT NOT NULL,
+  FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE);
+CREATE TABLE campaign_checksum (checksum TEXT NOT NULL, finished_runs INTEGER NOT NULL);
 CREATE TABLE campaign (place INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
 CREATE TABLE campaign_limits (
   time_limit_s REAL, stop_at_first_solution INTEGER NOT NULL, evaluation_worlds INTEGER NOT NULL);
@@ -74,8 +81,9 @@ constexpr const char* expectation_columns =
     "verified_median_s, cost_after_s, cost_to_best, cheaper_than, cheaper_than_after_s, "
     "max_failure_share, certified_ratio, first_certified_median_s";
 
+/// The first variant where none has that name: the checksum tells.
 Variant variant_of(const std::string& name) {
-    return named(name, {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada});
+    return named(name, {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}).value_or(Variant::mp_arm);
 }
 
 std::string all_settings(const CampaignPlan& plan) {
@@ -109,6 +117,15 @@ void write_what_runs(const Database& database, const CampaignPlan& plan) {
     }
 }
 
+/// Every table, index, view and trigger as it was made.
+std::vector<std::array<std::string, 4>> schema_of(const Database& database) {
+    std::vector<std::array<std::string, 4>> schema;
+    database.for_each<std::string, std::string, std::string, std::string>(
+        "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY name",
+        [&](const auto&... columns) { schema.push_back({columns...}); });
+    return schema;
+}
+
 }  // namespace
 
 bool is_new(const Database& database) {
@@ -116,10 +133,22 @@ bool is_new(const Database& database) {
 }
 
 void require_layout(const Database& database, const std::filesystem::path& file) {
-    if (database.number("PRAGMA application_id") != application_id ||
-        database.number("PRAGMA user_version") != layout_version) {
+    if (database.number("PRAGMA application_id") != application_id) {
+        throw CampaignError(file.string() + " holds no results of a campaign; choose another folder");
+    }
+    if (const std::uint64_t found = database.number("PRAGMA user_version"); found != layout_version) {
+        throw CampaignError(file.string() + " holds no results that this version can read: its layout is number " +
+                            std::to_string(found) + ", not " + std::to_string(layout_version) +
+                            ". Report it with the version of downwash that wrote it, or run the campaign again into "
+                            "another folder");
+    }
+    // A table may be a view that never ends, or have triggers that change what we read.
+    const Database ours(":memory:", true);
+    ours.execute(layout);
+    if (schema_of(database) != schema_of(ours)) {
         throw CampaignError(file.string() +
-                            " holds no results of a campaign that this version can read; choose another folder");
+                            " has other tables than `downwash bench run` makes: it is damaged, or another program "
+                            "wrote into it. Restore it from a copy, or run the campaign again into another folder");
     }
 }
 
@@ -146,9 +175,10 @@ void write_plan(const Database& database, const CampaignPlan& plan) {
     }
     database.insert("campaign_limits", plan.time_limit_s, std::uint64_t{plan.stop_at_first_solution ? 1U : 0U},
                     plan.evaluation_worlds);
+    database.insert("campaign_checksum", checksum_of(plan), std::uint64_t{0});
 }
 
-CampaignPlan read_plan(const Database& database) {
+CampaignPlan read_plan(const Database& database, const std::filesystem::path& file) {
     using Text = std::string;
     using OptionalNumber = std::optional<double>;
     CampaignPlan plan;
@@ -166,7 +196,9 @@ CampaignPlan read_plan(const Database& database) {
         });
     database.for_each<std::uint64_t, Text, double>("SELECT plannerid, name, value FROM planner_parameters",
                                                    [&](std::uint64_t planner, const Text& name, double value) {
-                                                       plan.planners.at(planner - 1).parameters[name] = value;
+                                                       if (planner >= 1 && planner <= plan.planners.size()) {
+                                                           plan.planners[planner - 1].parameters[name] = value;
+                                                       }
                                                    });
     database.for_each<std::uint64_t>("SELECT seed FROM campaign_seeds ORDER BY place", [&](std::uint64_t seed) {
         plan.seeds.push_back(static_cast<std::uint32_t>(seed));
@@ -187,6 +219,14 @@ CampaignPlan read_plan(const Database& database) {
             plan.stop_at_first_solution = stops != 0;
             plan.evaluation_worlds = worlds;
         });
+    std::string checksum;
+    database.for_each<Text>("SELECT checksum FROM campaign_checksum", [&](const Text& found) { checksum = found; });
+    if (checksum != checksum_of(plan)) {
+        throw CampaignError(file.string() +
+                            ": what says which runs belong to the campaign is damaged (settings, problems, planners, "
+                            "seeds or targets). Restore the file from a copy, or run the campaign again into another "
+                            "folder");
+    }
     return plan;
 }
 

@@ -15,7 +15,8 @@ namespace downwash::bench {
 class CampaignStore {
  public:
     /// Begins the results of a campaign in a folder, or continues those that are there.
-    /// @param resumes whether existing results may be continued; they are an error otherwise
+    /// @param resumes whether existing results may be continued; they are an error otherwise. Runs in them that are
+    /// damaged are removed and missing then
     /// @throws CampaignError when they were begun with other settings, or another program is running the campaign
     CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes);
     ~CampaignStore();
@@ -50,7 +51,8 @@ class CampaignStore {
 };
 
 /// Reads what a campaign has left in a folder, finished or not.
-/// @throws CampaignError, DatabaseError
+/// @throws CampaignError, DatabaseError: no such file, another layout, a file that was changed or damaged; the message
+/// names every run that is not what was written, and says what to do
 [[nodiscard]] CampaignResults read_results(const std::filesystem::path& folder);
 
 }  // namespace downwash::bench

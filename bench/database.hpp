@@ -20,11 +20,18 @@ struct DatabaseError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A file of results grows no larger, and larger ones are not read [bytes].
+inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 30U;
+/// The same for one of its texts.
+inline constexpr int max_database_text_bytes = 1 << 24U;
+
 /// One SQLite file. Every statement is committed at once, unless a Transaction lives. Values are double,
-/// std::uint64_t, text and optional ones of these, which are NULL when empty.
+/// std::uint64_t, text and optional ones of these, which are NULL when empty. A file may come from anybody: neither its
+/// schema nor its content makes a statement run code or take longer than the file is large.
 class Database {
  public:
-    /// Opens a file. @throws DatabaseError when it does not exist, unless it is to be created, or is no database
+    /// Opens a file. @throws DatabaseError when it does not exist, unless it is to be created, or is no database or too
+    /// large
     explicit Database(const std::filesystem::path& file, bool creates = false);
 
     /// Runs one statement; the values are those of its question marks.
@@ -45,8 +52,8 @@ class Database {
         run("INSERT INTO " + into + " VALUES (" + marks + ")", values...);
     }
 
-    /// Calls take(column...) for every row of an answer.
-    /// @throws DatabaseError where a column is not of its type, which only another program can have written
+    /// Calls take(column...) for every row of an answer. A value of another type than its column is converted, and is
+    /// 0 or empty where it cannot be: checksums tell what was not written by us.
     template <class... Columns, class Take>
     void for_each(std::string_view sql, const Take& take) const {
         const Statement row = prepare(sql);
@@ -97,19 +104,23 @@ class Database {
         }
     }
 
+    void protect();
     void check(int result) const;
     [[noreturn]] void fail() const;
-    /// Throws unless a column has the type of that name.
-    void require(bool is_right, const char* name) const;
 
     std::string file_;
+    std::uint64_t max_work_ = 0;                ///< of one statement, in steps of SQLite's virtual machine
+    std::unique_ptr<std::uint64_t> work_left_;  ///< of the present one
     std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// All that is written during its lifetime, or none of it.
+/// All that is written during its lifetime, or none of it. All that is read is of one moment.
 class Transaction {
  public:
-    explicit Transaction(const Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+    enum class Kind : std::uint8_t { reading, writing };
+    explicit Transaction(const Database& database, Kind kind = Kind::writing) : database_(database) {
+        database_.execute(kind == Kind::writing ? "BEGIN IMMEDIATE" : "BEGIN");
+    }
     ~Transaction();
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;

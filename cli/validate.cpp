@@ -12,13 +12,13 @@
 #include "downwash/cli/validation_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/claims.hpp"
+#include "downwash/results/result_limits.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::cli {
 namespace {
 
 constexpr std::uint64_t most_runs = 10'000'000;
-constexpr std::size_t largest_solution = 256UL * 1024 * 1024;  // bytes
 
 struct ValidateArguments {
     std::string problem;
@@ -77,7 +77,7 @@ ExitCode run(const ValidateArguments& given) {
     check_options(given, problem);
     const Claims claims = read_claims(plan_file(given.plan), problem);
     require_whole_plan(given.plan);
-    const SourceFile source{plan_file(given.plan), read_whole_file(plan_file(given.plan), largest_solution)};
+    const SourceFile source{plan_file(given.plan), read_whole_file(plan_file(given.plan), max_solution_bytes)};
     const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 

@@ -254,11 +254,11 @@ struct ModelInversion {
                      .at_least(0)
                      .at_most(10));
         rows.add(rows.number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
-                     .above(0)
+                     .at_least(0.01)
                      .below(90));
         rows.add(rows.number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
                              &Law::min_vertical_force_ratio)
-                     .above(0)
+                     .at_least(1e-3)
                      .at_most(1));
     }
 };

@@ -156,7 +156,7 @@ FactorGrid::FactorGrid(FactorGridParts parts) : parts_(std::move(parts)) {
     check_offsets(parts_, errors);
     const std::size_t nodes = checked_nodes(parts_);
     if (nodes == 0) {
-        errors.push_back({"", "the grid has more than 2^27 nodes"});
+        errors.push_back({"", "the grid has more than 2^24 nodes: expected a larger step or a smaller extent"});
     } else {
         check_fields(parts_, nodes, errors);
     }

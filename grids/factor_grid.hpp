@@ -57,7 +57,7 @@ struct FactorGridParts {
 class DOWNWASH_EXPORT FactorGrid {
  public:
     /// @throws InputError if an axis is not finite, is larger than 1e6 m, or has high <= low (y of a planar grid: not
-    /// 0, 0, 1), if the grid has more than 2^27 nodes, if a field is unknown, missing, of another length or out of
+    /// 0, 0, 1), if the grid has more than 2^24 nodes, if a field is unknown, missing, of another length or out of
     /// range (factors: 0 to 100), or if a piece of provenance does not fit on one line of text
     explicit FactorGrid(FactorGridParts parts);
 
@@ -106,7 +106,7 @@ class DOWNWASH_EXPORT FactorGrid {
 };
 
 /// A grid has no more nodes than this, all layers together.
-inline constexpr std::size_t max_grid_nodes = std::size_t{1} << 27U;
+inline constexpr std::size_t max_grid_nodes = std::size_t{1} << 24U;
 
 /// No value of a grid is larger.
 inline constexpr double max_grid_factor = 100;

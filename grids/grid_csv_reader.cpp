@@ -15,7 +15,7 @@ namespace downwash {
 namespace {
 
 /// Larger grids belong into .vti files.
-constexpr std::size_t max_rows = std::size_t{1} << 24U;
+constexpr std::size_t max_rows = max_grid_nodes;
 constexpr std::size_t max_columns = 256;
 /// How far a coordinate may be off its node, in steps.
 constexpr double spacing_slack = 1e-6;
@@ -146,7 +146,7 @@ class CsvReader {
         }
         csv_.lines.push_back(static_cast<std::uint32_t>(line_.number()));
         if (csv_.lines.size() > max_rows) {
-            errors_.add(line_.number(), 1, "more than 2^24 rows: expected a larger grid as .vti");
+            errors_.add(line_.number(), 1, "more than 2^24 rows: expected a larger step or a smaller extent");
             errors_.throw_any();
         }
     }

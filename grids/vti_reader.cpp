@@ -83,7 +83,7 @@ class VtiReader {
             nodes *= high - low + 1;
         }
         if (nodes > static_cast<double>(max_grid_nodes)) {
-            file_.fail(image_, "the grid has " + to_text(nodes) + " nodes: expected at most 2^27");
+            file_.fail(image_, "the grid has " + to_text(nodes) + " nodes: expected at most 2^24, a larger step or a smaller extent");
         }
     }
 
@@ -194,7 +194,8 @@ class VtiReader {
         const std::size_t layer_nodes = count_[0] * count_[1] * count_[2];
         const std::size_t layers = std::max<std::size_t>(1, parts_.lateral_offsets_m.size());
         if (layers * layer_nodes > max_grid_nodes) {
-            file_.fail(image_, "the grid has more than 2^27 nodes in its " + std::to_string(layers) + " layers");
+            file_.fail(image_, "the grid has more than 2^24 nodes in its " + std::to_string(layers) +
+                                   " layers: expected a larger step, a smaller extent or fewer layers");
         }
         std::vector<double> values;
         for (std::size_t layer = 0; layer < layers; ++layer) {

@@ -1,6 +1,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include "downwash/base/base64.hpp"
 #include "downwash/base/byte_order.hpp"
@@ -84,18 +86,27 @@ std::string vti_text(const FactorGrid& grid) {
     head += "    <Piece Extent=\"" + extent_of(grid) + "\">\n      <PointData Scalars=\"" +
             (grid.lateral_offsets_m().empty() ? "factor" : "factor_1") + "\">\n";
 
-    std::string data;
     const std::size_t layer_nodes = grid.nodes() / grid.layers();
+    const std::size_t array_letters = base64_letters((layer_nodes + 1) * sizeof(double));
+    std::size_t offset = 0;
     for (const GridField& field : grid.fields()) {
-        for (std::size_t layer = 0; layer < grid.layers(); ++layer) {
+        for (std::size_t layer = 0; layer < grid.layers(); ++layer, offset += array_letters) {
             const std::string number = grid.lateral_offsets_m().empty() ? "" : "_" + std::to_string(layer + 1);
             head += "        <DataArray type=\"Float64\" Name=\"" + field.name + number +
-                    "\" format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
-            data += array_data(field.values.data() + layer * layer_nodes, layer_nodes);
+                    "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
         }
     }
     head += "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"base64\">\n_";
-    return head + data + "\n  </AppendedData>\n</VTKFile>\n";
+    const std::string_view tail = "\n  </AppendedData>\n</VTKFile>\n";
+    std::string text = std::move(head);
+    text.reserve(text.size() + offset + tail.size());  // large: only once in memory
+    for (const GridField& field : grid.fields()) {
+        for (std::size_t layer = 0; layer < grid.layers(); ++layer) {
+            text += array_data(field.values.data() + layer * layer_nodes, layer_nodes);
+        }
+    }
+    text += tail;
+    return text;
 }
 
 }  // namespace downwash

@@ -74,9 +74,11 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
                 break;
             }
         }
-        state = hover.state();
-        state.energy_j = 0;
-        memory = hover.memory();
+        if (flight.outcome == Outcome::ok) {
+            state = hover.state();
+            state.energy_j = 0;
+            memory = hover.memory();
+        }
     }
 
     Loop loop(setting.law, plant, world, problem.robot, state, memory);

@@ -15,6 +15,7 @@ constexpr double unstable_pitch_rad = 80 * std::numbers::pi / 180;
 constexpr double unstable_error_m = 3;
 constexpr double settling_s = 1;
 constexpr double slow_m_s = 0.05;
+constexpr double max_number = 1e20;
 /// Between two poses a tick apart contact is looked for down to stretches in which nothing moves farther [m].
 constexpr double unseen_motion_m = 1e-4;
 
@@ -40,13 +41,18 @@ double norm(Planar v) {
     return std::hypot(v.x, v.z);
 }
 
+/// Whether no number is NaN or beyond what can be computed with.
+bool is_usable(const Motion& m) {
+    const double all[] = {m.position_m.x,   m.position_m.z,   m.pitch_rad,        m.arm_rad,
+                          m.velocity_m_s.x, m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s};
+    return std::all_of(std::begin(all), std::end(all), [](double x) { return std::abs(x) <= max_number; });
+}
+
 }  // namespace
 
 bool is_stable(const Motion& m, const ReferencePoint& reference) {
-    const double all[] = {m.position_m.x,   m.position_m.z,   m.pitch_rad,        m.arm_rad,
-                          m.velocity_m_s.x, m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s};
-    return std::all_of(std::begin(all), std::end(all), [](double x) { return std::isfinite(x); }) &&
-           std::abs(m.pitch_rad) <= unstable_pitch_rad && error_m(m, reference) <= unstable_error_m;
+    return is_usable(m) && std::abs(m.pitch_rad) <= unstable_pitch_rad &&
+           error_m(m, reference) <= unstable_error_m;
 }
 
 Umpire::Umpire(const Problem& problem, const SurfaceEffects* effects, const Obstacles& obstacles, const World& world,
@@ -64,6 +70,10 @@ Umpire::Umpire(const Problem& problem, const SurfaceEffects* effects, const Obst
 
 bool Umpire::sees(const Loop& loop, const ReferencePoint& reference) {
     const Motion motion = loop.motion();
+    if (!is_usable(motion) || !(loop.state().energy_j <= max_number)) {  // no row: nothing follows from it
+        flight_.outcome = Outcome::unstable;
+        return false;
+    }
     const double clearance_m = obstacles_.clearance_m(among_obstacles(motion));
     const bool is_contact = clearance_m <= 0;
     add_row(motion, reference, clearance_m, loop.state().energy_j);

@@ -83,15 +83,23 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
 
 std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
     const double max_s = static_cast<double>(max_plan_ticks) / p.robot.controller.rate_hz;
+    std::vector<KeyError> errors = in_each_goal(p, [&](const Goal& goal, const std::string& key) {
+        return goal.hold_s <= max_s
+                   ? std::vector<KeyError>()
+                   : std::vector<KeyError>{{key + ".hold_s", "is " + to_text(goal.hold_s) + ": expected at most " +
+                                                                 to_text(max_s) + " s, " +
+                                                                 std::to_string(max_plan_ticks) + " control ticks"}};
+    });
     double sum_s = 0;
     for (const Goal& stop : p.stops) {
         sum_s += stop.hold_s;
     }
-    if (sum_s < max_s) {
-        return {};
+    if (sum_s >= max_s) {
+        errors.push_back(
+            {"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
+                         to_text(max_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"});
     }
-    return {{"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
-                         to_text(max_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"}};
+    return errors;
 }
 
 std::vector<KeyError> configurations_outside_bounds(const Problem& p) {

@@ -43,6 +43,12 @@ Parameter<Problem> positive(std::string_view path, std::string_view description,
     return number(path, description, member).above(0).at_most(most);
 }
 
+/// Far below what moves a vehicle; with less, a motion has more control ticks than can be counted.
+template <class Member>
+Parameter<Problem> motion_limit(std::string_view path, std::string_view description, double most, Member member) {
+    return number(path, description, member).at_least(1e-6).at_most(most);
+}
+
 void add_robot(Rows& rows) {
     rows.push_back(group("robot", "the aerial manipulator, here or in a file of its own").is_required().or_file());
     for (const Parameter<Robot>& inner : robot_parameters().rows()) {
@@ -121,18 +127,18 @@ void add_start(Rows& rows) {
 
 void add_motion(Rows& rows) {
     rows.push_back(group("motion", "limits of the reference"));
-    rows.push_back(positive(
+    rows.push_back(motion_limit(
         "motion.max_speed_m_s", "speed", 100, [](auto& p) -> auto& { return p.motion.max_speed_m_s; }));
-    rows.push_back(positive(
+    rows.push_back(motion_limit(
         "motion.max_acceleration_m_s2", "acceleration", 100,
         [](auto& p) -> auto& { return p.motion.max_acceleration_m_s2; }));
-    rows.push_back(positive(
+    rows.push_back(motion_limit(
         "motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000,
         [](auto& p) -> auto& { return p.motion.max_jerk_m_s3; }));
-    rows.push_back(positive(
+    rows.push_back(motion_limit(
         "motion.max_arm_rate_deg_s", "rate of the arm's joint", 3600,
         [](auto& p) -> auto& { return p.motion.max_arm_rate_rad_s; }));
-    rows.push_back(positive(
+    rows.push_back(motion_limit(
         "motion.max_arm_acceleration_deg_s2", "acceleration of the arm's joint", 36000,
         [](auto& p) -> auto& { return p.motion.max_arm_acceleration_rad_s2; }));
 }

@@ -26,7 +26,7 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
         reader.report(*outcome, "expected a name");
     }
     if (const auto clearance = reader.required(*node, "min_clearance_m"); clearance && !clearance->json->is_null()) {
-        flight.min_clearance_m = reader.number(*clearance);
+        flight.min_clearance_m = reader.figure(*clearance);
     }
     const auto amount = [&](const char* name) {
         const auto member = reader.required(*node, name);

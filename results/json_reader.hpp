@@ -14,6 +14,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/simulation/execution.hpp"
 
 namespace downwash::problems {
 
@@ -62,33 +63,38 @@ class JsonReader {
         return node;
     }
 
-    std::optional<double> number(const Node& node) {
+    /// @param max greatest size
+    std::optional<double> number(const Node& node, double max = greatest_number) {
         if (!node.json->is_number()) {
             report(node, "expected a number, found " + std::string(node.json->type_name()));
             return std::nullopt;
         }
         const double value = node.json->get<double>();
-        if (!std::isfinite(value) || std::abs(value) > greatest_number) {
-            report(node, "expected a number between -1e6 and 1e6, found " + to_text(value));
+        if (!(std::abs(value) <= max)) {
+            report(node,
+                   "expected a number between -" + to_text(max) + " and " + to_text(max) + ", found " + to_text(value));
             return std::nullopt;
         }
         return value;
     }
+
+    /// A figure of a flight, which may be as large as the flight's numbers.
+    std::optional<double> figure(const Node& node) { return number(node, max_result); }
 
     double required_number(const Node& group, const char* name) {
         const auto node = required(group, name);
         return node ? number(*node).value_or(0) : 0;
     }
 
-    /// A number of any size >= 0, `otherwise` when it is missing or null.
+    /// A number from 0 to max_result, `otherwise` when it is missing or null.
     double amount(const Node& group, const char* name, double otherwise) {
         const auto node = member(group, name);
         if (!node || node->json->is_null()) {
             return otherwise;
         }
         const double value = node->json->is_number() ? node->json->get<double>() : -1;
-        if (!(value >= 0 && std::isfinite(value))) {
-            report(*node, "expected a number that is not negative");
+        if (!(value >= 0 && value <= max_result)) {
+            report(*node, "expected a number from 0 to " + to_text(max_result));
             return otherwise;
         }
         return value;

@@ -6,12 +6,12 @@
 #include "downwash/base/csv_lines.hpp"
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/results/result_limits.hpp"
 
 namespace downwash {
 namespace {
 
 constexpr std::size_t max_columns = 200;
-constexpr std::size_t max_cells = 20'000'000;
 
 bool is_name(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
@@ -88,8 +88,9 @@ NumberTable read_number_table(std::string_view text, const std::string& file,
     }
     errors.throw_any();
     while (lines.next()) {
-        if (table.rows() * table.columns.size() >= max_cells) {
-            errors.add(lines.number(), "more than " + std::to_string(max_cells) + " numbers");
+        if (table.rows() * table.columns.size() >= max_table_numbers) {
+            errors.add(lines.number(),
+                       "more than " + std::to_string(max_table_numbers) + " numbers, the most that a run writes");
             break;
         }
         read_row(lines, table, errors);

@@ -27,7 +27,7 @@ struct NumberTable {
 /// @param required names that must be among the columns
 /// @throws InputError with the place of every error (twenty at most): a name missing, twice or
 /// not of letters, digits and _; a row of another length,
-/// a cell that is neither empty nor a finite number, more than 200 columns or 20 million cells
+/// a cell that is neither empty nor a finite number, more than 200 columns or 40 million cells
 [[nodiscard]] DOWNWASH_EXPORT NumberTable read_number_table(std::string_view text, const std::string& file,
                                                             const std::vector<std::string>& required);
 

@@ -6,13 +6,12 @@
 namespace downwash::problems {
 namespace {
 
-constexpr std::int64_t max_ticks = 1'000'000;  // nearly three hours at 100 Hz
-constexpr double tolerance = 1e-9;             // of numbers that should be equal
+constexpr double tolerance = 1e-9;  // of numbers that should be equal
 
 /// The control tick at which a knot stands; nothing when it stands between two.
 std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
     const double ticks = std::round(t_s / tick_s);
-    if (!(ticks >= 0 && ticks <= static_cast<double>(max_ticks)) ||
+    if (!(ticks >= 0 && ticks <= static_cast<double>(max_plan_ticks)) ||
         std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
         return std::nullopt;
     }
@@ -26,7 +25,7 @@ ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
         knot.tick = *tick;
     } else {
         reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
-                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_ticks) + " of them");
+                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_plan_ticks) + " of them");
     }
     constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
                                std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};

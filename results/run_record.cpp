@@ -10,6 +10,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/results/result_limits.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/results/trajectory_csv.hpp"
 #include "downwash/results/tree_csv.hpp"
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr int deepest_nesting = 32;
 constexpr char solution_name[] = "solution.json";
 
@@ -27,17 +27,12 @@ constexpr char solution_name[] = "solution.json";
     throw InputError({KeyError{"", file.string() + ": " + message}});
 }
 
-std::string text_of(const fs::path& file) {
-    std::string text;
+std::string text_of(const fs::path& file, std::size_t max_bytes = max_table_bytes) {
     try {
-        text = read_file(file, largest_file + 1);
+        return read_whole_file(file, max_bytes);
     } catch (const FileError& error) {
         throw InputError({KeyError{"", file.string() + " " + error.what()}});
     }
-    if (text.size() > largest_file) {
-        report(file, "larger than " + std::to_string(largest_file >> 20U) + " MiB, more than any run leaves behind");
-    }
-    return text;
 }
 
 std::string text_at(const nlohmann::json& json, const char* pointer) {
@@ -112,9 +107,6 @@ void check_problem(const fs::path& file, const Problem& problem, const Claims& c
     throw InputError({KeyError{"", file.string() + ":" + std::to_string(table.lines[row]) + ": " + message}});
 }
 
-/// Far beyond everything that flies.
-constexpr double greatest_number = 1e9;
-
 /// @param may_be_empty the one column whose cells may be
 void check_numbers(const fs::path& file, const NumberTable& table, std::string_view may_be_empty) {
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
@@ -123,8 +115,8 @@ void check_numbers(const fs::path& file, const NumberTable& table, std::string_v
             if (std::isnan(number) && table.names[column] != may_be_empty) {
                 throw_at_row(file, table, row, table.names[column] + " is empty");
             }
-            if (std::abs(number) > greatest_number) {
-                throw_at_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e9");
+            if (std::abs(number) > max_result) {
+                throw_at_row(file, table, row, table.names[column] + " is " + to_text(number) + ", beyond +-1e30");
             }
         }
     }
@@ -216,7 +208,7 @@ RunRecord read_run(const fs::path& folder) {
     }
     RunRecord run;
     const fs::path solution = folder / solution_name;
-    run.solution_text = text_of(solution);
+    run.solution_text = text_of(solution, max_solution_bytes);
     const Claims claims = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);

@@ -4,12 +4,12 @@
 
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/json_place.hpp"
+#include "downwash/results/result_limits.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash::problems {
 namespace {
 
-constexpr std::size_t largest_file = 256UL * 1024 * 1024;  // bytes
 constexpr std::size_t deepest_nesting = 32;
 
 [[noreturn]] void throw_at(const std::string& path, TextPlace place, const std::string& message) {
@@ -26,8 +26,10 @@ std::string read_text(const std::string& path) {
     char block[65536];
     while (stream.read(block, sizeof block), stream.gcount() > 0) {
         text.append(block, static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > largest_file) {
-            throw_at(path, {}, "is larger than 256 MiB and hardly the file of a plan");
+        if (text.size() > max_solution_bytes) {
+            throw_at(path, {},
+                     "is larger than " + std::to_string(max_solution_bytes >> 20U) +
+                         " MiB, more than any plan of `solve` takes: expected its solution.json");
         }
     }
     return text;

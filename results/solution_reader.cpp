@@ -122,7 +122,7 @@ void read_certificate(JsonReader& reader, const Node& root, std::optional<Certif
     // What flew far from every obstacle has no clearance: null.
     const auto clearance = [&](const Node& group, const char* name) {
         const auto value = JsonReader::member(group, name);
-        return value && !value->json->is_null() ? reader.number(*value).value_or(0)
+        return value && !value->json->is_null() ? reader.figure(*value).value_or(0)
                                                 : std::numeric_limits<double>::infinity();
     };
     if (const auto all = JsonReader::member(*node, "clearance_m"); all && all->json->is_object()) {

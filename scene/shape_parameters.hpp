@@ -29,7 +29,7 @@ void add_shape_rows(std::vector<Parameter<Model>>& rows, const std::string& path
     };
 
     const auto add_length = [&](Parameter<Model> row) {
-        rows.push_back(std::move(row).is_required().above(0).at_most(1e5));
+        rows.push_back(std::move(row).is_required().at_least(1e-6).at_most(1e5));
     };
     rows.push_back(alternative<Box, Model>(path + ".box", "a solid box", shape));
     add_length(vector<Model>(

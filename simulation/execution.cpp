@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "downwash/base/numbers.hpp"
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
@@ -37,35 +38,17 @@ class Recorder {
     /// Flown so far.
     [[nodiscard]] std::int64_t ticks() const noexcept { return tick_; }
 
-    void add_row(const FlightState& state, const ReferencePoint& reference, const Given& given) {
-        FlightRow row;
-        row.t_s = static_cast<double>(tick_++) * model_.tick().tick_s;
-        row.reference = reference;
-        std::copy(std::begin(state.plant.q), std::end(state.plant.q), row.q);
-        std::copy(std::begin(state.plant.u), std::end(state.plant.u), row.u);
-        const auto attitude = dynamics::attitude(plant_, row.q[2], row.q[3]);
-        const bool has_lag = plant_.rotor_time_constant_s > 0;
-        const double* thrust_n = has_lag ? state.plant.thrust_n : given.command.thrust_n;
-        for (int i = 0; i < plant_.rotor_count; ++i) {
-            const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
-            row.rotor_command_n[i] = given.command.thrust_n[i];
-            row.rotor_lag_n[i] = state.plant.thrust_n[i];
-            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z);
-            row.thrust_command_n += row.rotor_command_n[i];
-            row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
-            const double free_air_n = dynamics::free_air_thrust(surroundings_, i, thrust_n[i]);
-            row.thrust_n += row.rotor_factor[i] * free_air_n;
-            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * free_air_n;
+    /// @return false if the commands are beyond max_result, and the row holds none
+    bool add_row(const FlightState& state, const ReferencePoint& reference, const Given& given) {
+        FlightRow row = row_of(state, reference, given);
+        const bool is_usable = is_in_range(row) && given.saturation <= max_result;
+        if (!is_usable) {
+            row = row_of(state, reference, Given{});
         }
-        row.arm_torque_nm = given.command.joint_torque_nm;
-        row.clearance_m = clearance_m_;
-        const auto tip = dynamics::end_effector_position(plant_, attitude, row.q[0], row.q[1]);
-        row.end_effector_x_m = tip.x;
-        row.end_effector_z_m = tip.z;
-        row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
-        row.energy_j = state.plant.energy_j;
+        ++tick_;
         execution_.rows.push_back(row);
-        execution_.max_saturation = std::max(execution_.max_saturation, given.saturation);
+        execution_.max_saturation = std::max(execution_.max_saturation, is_usable ? given.saturation : max_result);
+        return is_usable;
     }
 
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
@@ -98,7 +81,9 @@ class Recorder {
 
     Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
                          const FlightState& next, const ReferencePoint& next_reference) {
-        add_row(before, reference, given);
+        if (!add_row(before, reference, given) || !are_within(next.plant, max_state)) {
+            return Rejection::unstable;
+        }
         simulation::add_tick(execution_, plant_, before, next);
         const Rejection rejection = judge(next, next_reference, &before);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
@@ -106,6 +91,41 @@ class Recorder {
     }
 
  private:
+    static bool is_in_range(FlightRow row) {
+        row.clearance_m = std::isinf(row.clearance_m) ? 0 : row.clearance_m;
+        return are_within(row, max_result);
+    }
+
+    [[nodiscard]] FlightRow row_of(const FlightState& state, const ReferencePoint& reference, const Given& given) {
+        FlightRow row;
+        row.t_s = static_cast<double>(tick_) * model_.tick().tick_s;
+        row.reference = reference;
+        std::copy(std::begin(state.plant.q), std::end(state.plant.q), row.q);
+        std::copy(std::begin(state.plant.u), std::end(state.plant.u), row.u);
+        const auto attitude = dynamics::attitude(plant_, row.q[2], row.q[3]);
+        const bool has_lag = plant_.rotor_time_constant_s > 0;
+        const double* thrust_n = has_lag ? state.plant.thrust_n : given.command.thrust_n;
+        for (int i = 0; i < plant_.rotor_count; ++i) {
+            const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
+            row.rotor_command_n[i] = given.command.thrust_n[i];
+            row.rotor_lag_n[i] = state.plant.thrust_n[i];
+            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z);
+            row.thrust_command_n += row.rotor_command_n[i];
+            row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
+            const double free_air_n = dynamics::free_air_thrust(surroundings_, i, thrust_n[i]);
+            row.thrust_n += row.rotor_factor[i] * free_air_n;
+            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * free_air_n;
+        }
+        row.arm_torque_nm = given.command.joint_torque_nm;
+        row.clearance_m = clearance_m_;
+        const auto tip = dynamics::end_effector_position(plant_, attitude, row.q[0], row.q[1]);
+        row.end_effector_x_m = tip.x;
+        row.end_effector_z_m = tip.z;
+        row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
+        row.energy_j = state.plant.energy_j;
+        return row;
+    }
+
     const FlightModel& model_;
     const PlantModel& plant_;
     const FlownWorld* world_;
@@ -203,9 +223,11 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
                                                 ceiling, dynamics::RefinedStep{}, state, after);
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
-    Given given{};
-    static_cast<void>(simulation::quiet_tick(model, state, reference, factor, given, dynamics::OneStep{}, world));
-    recorder.add_row(state, reference, given);
+    if (execution.rows.empty() || are_within(state.plant, max_state)) {
+        Given given{};
+        static_cast<void>(simulation::quiet_tick(model, state, reference, factor, given, dynamics::OneStep{}, world));
+        recorder.add_row(state, reference, given);
+    }
 
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;

@@ -30,6 +30,12 @@ inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcom
 /// How a flight that ended early for this reason counts; `unstable` where no other outcome says why.
 [[nodiscard]] DOWNWASH_EXPORT Outcome outcome_of(Rejection rejection);
 
+/// No number of a flight is larger in size, infinite clearances apart: beyond, it says nothing about a vehicle, and a
+/// flight that comes to such a number is unstable. So is no number of a file of results.
+inline constexpr double max_result = 1e30;
+/// The same for the state of a vehicle, so that what follows from it is within max_result.
+inline constexpr double max_state = 1e20;
+
 /// The vehicle at one control tick and the commands it holds until the next; SI units, plane coordinates.
 struct FlightRow {
     double t_s = 0;
@@ -71,7 +77,9 @@ struct Execution : FlightSums {
     std::vector<GoalVisit> goals;  ///< one for each, in their order
     int rotor_count = 0;
     bool has_rotor_lag = false;
-    std::vector<FlightRow> rows;  ///< one per control tick, the last one at the end of the flight
+    /// One per control tick, the last one at the end of the flight, or one tick before where its numbers at the end are
+    /// beyond max_result. Commands beyond it are 0.
+    std::vector<FlightRow> rows;
 };
 
 /// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.

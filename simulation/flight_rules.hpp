@@ -69,7 +69,8 @@ T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& sta
     T rejection = lane::select(beyond_arm > T(0), number_of(Rejection::arm_limits), T(0));
     rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), rejection);
     rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
-    rejection = lane::select(saturation > T(limits.max_saturation), number_of(Rejection::saturation), rejection);
+    // Not a number either: a limit of the actuators may have hidden that nothing sensible was asked of them.
+    rejection = lane::select(saturation <= T(limits.max_saturation), rejection, number_of(Rejection::saturation));
     return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
 }
 

@@ -15,6 +15,14 @@ namespace {
 
 using Rows = std::vector<Parameter<Robot>>;
 
+// What is smaller than anything that flies: with these, and the upper ends of the ranges below, no number of a flight
+// overflows before the flight is unstable.
+constexpr double min_mass_kg = 1e-4;
+constexpr double min_inertia_kg_m2 = 1e-10;
+constexpr double min_length_m = 1e-4;
+constexpr double min_force_n = 1e-3;
+constexpr double min_torque_nm = 1e-6;
+
 // The factories for this table's Model; the members are named by lambdas.
 template <class Member>
 Parameter<Robot> number(std::string_view path, std::string_view description, Member member) {
@@ -46,14 +54,14 @@ void add_multirotor(Rows& rows) {
                        "multirotor.mass_kg", "mass, rotors and battery included, arm excluded",
                        [](auto& r) -> auto& { return r.multirotor.mass_kg; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_mass_kg)
                        .at_most(1e4));
     rows.push_back(number(
                        "multirotor.pitch_inertia_kg_m2",
                        "moment of inertia about the pitch axis through its centre of mass",
                        [](auto& r) -> auto& { return r.multirotor.pitch_inertia_kg_m2; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_inertia_kg_m2)
                        .at_most(1e5));
     add_drag(
         rows, "multirotor", "air drag at its centre of mass; none where it is left out",
@@ -78,7 +86,7 @@ void add_rotors(Rows& rows) {
     rows.push_back(number(
                        "rotors.radius_m", "radius", [](auto& r) -> auto& { return r.rotors.radius_m; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_length_m)
                        .at_most(10));
     rows.push_back(parameters::points<Robot>(
                        "rotors.positions_m", "hubs from the multirotor's centre of mass",
@@ -95,7 +103,7 @@ void add_rotors(Rows& rows) {
                        "rotors.max_thrust_n", "greatest thrust of one rotor in free air that can be commanded",
                        [](auto& r) -> auto& { return r.rotors.max_thrust_n; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_force_n)
                        .at_most(1e5));
     rows.push_back(number(
                        "rotors.time_constant_s", "of the first-order lag of thrust behind command; 0 for none",
@@ -106,7 +114,7 @@ void add_rotors(Rows& rows) {
                        "rotors.power_coefficient_w_n1p5", "power of one rotor is this times its commanded thrust^1.5",
                        [](auto& r) -> auto& { return r.rotors.power_coefficient_w_n1p5; })
                        .is_required()
-                       .above(0)
+                       .at_least(1e-6)
                        .at_most(1e6));
 }
 
@@ -139,12 +147,12 @@ void add_arm(Rows& rows) {
     rows.push_back(number(
                        "arm.length_m", "joint to end effector", [](auto& r) -> auto& { return r.arm.length_m; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_length_m)
                        .at_most(100));
     rows.push_back(number(
                        "arm.mass_kg", "mass, end effector included", [](auto& r) -> auto& { return r.arm.mass_kg; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_mass_kg)
                        .at_most(1e4));
     rows.push_back(number(
                        "arm.center_of_mass_m", "joint to the arm's centre of mass",
@@ -156,20 +164,20 @@ void add_arm(Rows& rows) {
                        "arm.inertia_kg_m2", "moment of inertia about the arm's own centre of mass",
                        [](auto& r) -> auto& { return r.arm.inertia_kg_m2; })
                        .is_required()
-                       .above(0)
+                       .at_least(min_inertia_kg_m2)
                        .at_most(1e5));
     rows.push_back(
         number(
             "arm.radius_m", "radius of the capsule that encloses it", [](auto& r) -> auto& { return r.arm.radius_m; })
             .is_required()
-            .above(0)
+            .at_least(min_length_m)
             .at_most(10));
     rows.push_back(arm_limits());
     rows.push_back(
         number(
             "arm.max_torque_nm", "greatest torque of the joint", [](auto& r) -> auto& { return r.arm.max_torque_nm; })
             .is_required()
-            .above(0)
+            .at_least(min_torque_nm)
             .at_most(1e5));
     add_drag(
         rows, "arm", "air drag of the whole arm in a stream across it; none where it is left out",

@@ -115,7 +115,7 @@ TEST_CASE("what is no image of thrust factors is an error with its place") {
          "and one along y"},
         {with(with(ascii, "Extent=\"0 2 0 0 0 1\"", "Extent=\"0 99999 0 99999 0 99999\""),
               "Piece Extent=\"0 2 0 0 0 1\"", "Piece Extent=\"0 99999 0 99999 0 99999\""),
-         "g.vti:3:4: the grid has 1e+15 nodes: expected at most 2^27"},
+         "g.vti:3:4: the grid has 1e+15 nodes: expected at most 2^24, a larger step or a smaller extent"},
         {with(ascii, "0 2 0 0 0 1", "0 2 0 0 0 x"),
          "g.vti:3:4: WholeExtent=\"0 2 0 0 0 x\": expected 6 finite numbers"},
         {with(ascii, "Origin=\"10", "Origin=\"inf"), "g.vti:3:4: Origin=\"inf -2 0.5\": expected 3 finite numbers"},
