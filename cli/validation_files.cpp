@@ -12,15 +12,15 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
-#include "downwash/results/result_limits.hpp"
 #include "downwash/report/validation_page.hpp"
+#include "downwash/results/result_limits.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::cli {
 namespace {
 
 constexpr char page_name[] = "validation.html";
-constexpr std::size_t most_played = 5;                     ///< of the worst flights
+constexpr std::size_t most_played = 5;  ///< of the worst flights
 
 /// The judge's rows with the place of the end effector, up to where the vehicle was lost.
 NumberTable table_of(const judge::JudgedFlight& flight, const ArmParameters& arm) {

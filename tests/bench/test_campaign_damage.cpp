@@ -90,7 +90,7 @@ TEST_CASE("a damaged byte in a file of results is noticed or changes nothing") {
             CHECK_THAT(error.what(), Catch::Contains(file.string()));
         }
     }
-    CHECK(noticed > 10);        // most bytes of a small file are unused
+    CHECK(noticed > 10);  // most bytes of a small file are unused
 }
 
 TEST_CASE("a schema that is not ours is an error before anything is asked of it") {
