@@ -21,7 +21,9 @@ GridAxis axis_over(double low_m, double high_m, double step_m, const char* name)
     }
     const double steps = std::max(1.0, std::ceil((high_m - low_m) / step_m - 1e-9));
     if (!(steps < static_cast<double>(max_grid_nodes))) {
-        throw_input_error("a grid in steps of " + to_text(step_m, 6) + " m has " + to_text(steps, 3) + " nodes along " + name + ", more than the " + std::to_string(max_grid_nodes) + " that are possible: choose a larger step or smaller bounds");
+        throw_input_error("a grid in steps of " + to_text(step_m, 6) + " m has " + to_text(steps, 3) + " nodes along " +
+                          name + ", more than the " + std::to_string(max_grid_nodes) +
+                          " that are possible: choose a larger step or smaller bounds");
     }
     return {low_m, high_m, static_cast<std::size_t>(steps) + 1};
 }
@@ -31,7 +33,8 @@ void require_storable(const FactorGridParts& parts, std::size_t layers) {
                          static_cast<double>(parts.z.count) * static_cast<double>(layers);
     if (nodes > static_cast<double>(max_grid_nodes)) {
         throw_input_error("a grid of " + to_text(nodes, 3) + " nodes is more than the " +
-                          std::to_string(max_grid_nodes) + " that are possible: choose a larger step, smaller bounds or one rotor");
+                          std::to_string(max_grid_nodes) +
+                          " that are possible: choose a larger step, smaller bounds or one rotor");
     }
 }
 

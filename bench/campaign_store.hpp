@@ -30,7 +30,7 @@ class CampaignStore {
     [[nodiscard]] std::size_t size() const noexcept { return done_.size(); }
 
     /// Adds a run and commits it. @throws DatabaseError when it cannot be written
-    void add(const Run& run);
+    void add(const Run& finished);
 
  private:
     /// Locks a folder for this process.

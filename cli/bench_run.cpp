@@ -56,9 +56,10 @@ ExitCode run(const BenchRunArguments& given) {
                has_page ? ", report.html shows them" : "",
                is_over ? "see downwash bench report " + options.out.string() : "--resume continues with the others");
     if (progress.out_of_memory > 0) {
-        print_error(fmt::format("downwash: {} of the runs found no memory and are not finished: --resume repeats them; fewer "
-                                "--jobs need less\n",
-                                progress.out_of_memory));
+        print_error(
+            fmt::format("downwash: {} of the runs found no memory and are not finished: --resume repeats them; fewer "
+                        "--jobs need less\n",
+                        progress.out_of_memory));
         return ExitCode::bad_input;
     }
     return is_over ? ExitCode::done : interruption.code();

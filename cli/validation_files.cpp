@@ -11,8 +11,8 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
-#include "downwash/results/result_limits.hpp"
 #include "downwash/report/validation_page.hpp"
+#include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::cli {

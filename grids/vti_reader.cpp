@@ -83,7 +83,8 @@ class VtiReader {
             nodes *= high - low + 1;
         }
         if (nodes > static_cast<double>(max_grid_nodes)) {
-            file_.fail(image_, "the grid has " + to_text(nodes) + " nodes: expected at most 2^24, a larger step or a smaller extent");
+            file_.fail(image_, "the grid has " + to_text(nodes) +
+                                   " nodes: expected at most 2^24, a larger step or a smaller extent");
         }
     }
 

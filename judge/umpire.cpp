@@ -51,8 +51,7 @@ bool is_usable(const Motion& m) {
 }  // namespace
 
 bool is_stable(const Motion& m, const ReferencePoint& reference) {
-    return is_usable(m) && std::abs(m.pitch_rad) <= unstable_pitch_rad &&
-           error_m(m, reference) <= unstable_error_m;
+    return is_usable(m) && std::abs(m.pitch_rad) <= unstable_pitch_rad && error_m(m, reference) <= unstable_error_m;
 }
 
 Umpire::Umpire(const Problem& problem, const SurfaceEffects* effects, const Obstacles& obstacles, const World& world,

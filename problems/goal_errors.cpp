@@ -95,9 +95,9 @@ std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
         sum_s += stop.hold_s;
     }
     if (sum_s >= max_s) {
-        errors.push_back(
-            {"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
-                         to_text(max_s) + " s, " + std::to_string(max_plan_ticks) + " control ticks, in one plan"});
+        errors.push_back({"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
+                                      to_text(max_s) + " s, " + std::to_string(max_plan_ticks) +
+                                      " control ticks, in one plan"});
     }
     return errors;
 }

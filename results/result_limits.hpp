@@ -5,15 +5,12 @@
 #include "downwash/controllers/plan.hpp"
 #include "downwash/dynamics/plant.hpp"
 
-// What the readers of results accept. A run never writes more: its flight is at most max_plan_ticks long and its last
-// hover as long again, and a step of a plan takes half a second or more. How large numbers may be: see max_result.
+// Private to results/. What the readers of tables accept. A run never writes more: its flight is at most max_plan_ticks
+// long and its last hover as long again. How large numbers may be: see max_result; solution files: max_solution_bytes.
 
 namespace downwash {
 
-/// Larger solution files are not read [bytes]: their JSON takes up to thirty times the memory.
-inline constexpr std::size_t max_solution_bytes = std::size_t{16} << 20U;
-
-/// The same for a table, trajectory.csv or tree.csv.
+/// Larger tables, trajectory.csv or tree.csv, are not read [bytes].
 inline constexpr std::size_t max_table_bytes = std::size_t{1} << 30U;
 
 /// Tables of more numbers are not read.

@@ -4,7 +4,6 @@
 
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/json_place.hpp"
-#include "downwash/results/result_limits.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash::problems {

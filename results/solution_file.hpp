@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@ namespace downwash {
 
 /// The `schema` of the files that this version writes and reads.
 inline constexpr char solution_schema[] = "downwash/solution/v1";
+
+/// Larger solution files are not read [bytes]: their JSON takes up to thirty times the memory. A run never writes one:
+/// a step of a plan takes half a second or more.
+inline constexpr std::size_t max_solution_bytes = std::size_t{16} << 20U;
 
 /// How a solution names the problem that it solves.
 struct ProblemReference {

@@ -30,12 +30,12 @@ bool Lines::next() {
     while (words_.empty() && !rest_.empty()) {
         ++line_;
         const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        if (end > max_line_bytes) {
-            fail("is longer than 1 MiB: expected one statement in a line, and faces of fewer corners");
-        }
         std::string_view line = rest_.substr(0, end);
         rest_.remove_prefix(std::min(end + 1, rest_.size()));
         for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
+            if (words_.size() == max_words) {
+                fail("has more than " + std::to_string(max_words) + " words: expected one statement in a line");
+            }
             words_.push_back(word);
         }
     }

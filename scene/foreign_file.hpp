@@ -14,8 +14,8 @@ namespace downwash::foreign {
 
 /// Larger files are rejected unread.
 inline constexpr std::size_t max_file_bytes = 512UL * 1024 * 1024;
-/// Longer lines of a text are errors: their words take many times the memory.
-inline constexpr std::size_t max_line_bytes = 1UL << 20U;
+/// Lines of more words are errors: a word takes many times its memory in the file. A face of all triangles has less.
+inline constexpr std::size_t max_words = max_pieces + 1000;
 /// Largest size of a coordinate, in the file's unit; farther out, positions lose their tenths of a millimetre.
 inline constexpr double max_coordinate = 1e6;
 
@@ -34,7 +34,7 @@ class Lines {
     Lines(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {}
 
     /// Moves to the next line that has words; false at the end of the text.
-    /// @throws InputError when it is longer than max_line_bytes
+    /// @throws InputError when it has more than max_words
     bool next();
     /// Those of the current line.
     [[nodiscard]] const std::vector<std::string_view>& words() const noexcept { return words_; }

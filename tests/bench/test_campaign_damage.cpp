@@ -79,7 +79,7 @@ TEST_CASE("a damaged byte in a file of results is noticed or changes nothing") {
     for (int i = 0; i < tries; ++i) {
         std::string damaged = bytes;
         const std::size_t place = random() % bytes.size();
-        damaged[place] = static_cast<char>(damaged[place] ^ (1 + random() % 255));
+        damaged[place] = static_cast<char>(static_cast<unsigned char>(damaged[place]) ^ (1 + random() % 255));
         std::ofstream(file, std::ios::binary) << damaged;
         CAPTURE(place, i);
         try {
@@ -90,7 +90,7 @@ TEST_CASE("a damaged byte in a file of results is noticed or changes nothing") {
             CHECK_THAT(error.what(), Catch::Contains(file.string()));
         }
     }
-    CHECK(noticed > 10);        // most bytes of a small file are unused
+    CHECK(noticed > 10);  // most bytes of a small file are unused
 }
 
 TEST_CASE("a schema that is not ours is an error before anything is asked of it") {

@@ -90,6 +90,7 @@ TEST_CASE("A grid or a table of the vehicle that cannot be written is rejected b
     for (const auto& [options, reason] : {std::pair{"-o v.vti --pitch-deg 0", "expected a name that ends in .csv"},
                                           {"-o v.csv --pitch-deg 0 90", "--pitch-deg 90: expected degrees, at most 80"},
                                           {"-o v.csv --pitch-deg 0 --step 0.0001", "choose a larger step"},
+                                          {"-o v.vti --step 0.001", "more than the 16777216 that are possible: choose"},
                                           {"-o no/such/v.csv --pitch-deg 0", "no/such/v.csv"},
                                           {"-o v.csv --pitch-deg 0 --rotor 1", "--rotor"}}) {
         check_rejected(work.run("aeromap build", problem_file("open_air"), options), reason);

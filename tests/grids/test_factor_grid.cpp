@@ -126,9 +126,10 @@ TEST_CASE("what is no grid is an error of its part") {
          "fields: 'speed' is no field: expected factor, ground, ceiling or flyable"},
         {[](FactorGridParts& p) { p.lateral_offsets_m = {not_a_number}; },
          "lateral_offsets_m: expected finite distances, at most 1e6 m"},
-        {[](FactorGridParts& p) { p.x.count = std::size_t{1} << 40U; }, "the grid has more than 2^24 nodes"},
+        {[](FactorGridParts& p) { p.x.count = std::size_t{1} << 40U; },
+         "the grid has more than 2^24 nodes: expected a larger step or a smaller extent"},
         {[](FactorGridParts& p) { p.x.count = p.z.count = std::size_t{1} << 14U; },
-         "the grid has more than 2^24 nodes"},
+         "the grid has more than 2^24 nodes: expected a larger step or a smaller extent"},
         {[](FactorGridParts& p) {
              p.provenance = {{"a", "two\nlines"}};
          },

@@ -253,7 +253,7 @@ TEST_CASE("planners over controls start in motion, and reject flights of absurd 
         problem.start.vx_m_s = 0.5;
         problem.start.x_m = problem.bounds.x_high_m - 0.1;  // it cannot but overshoot the bound
         Problem slow = with(Variant::mp_arm_da, algorithm);
-        slow.motion.max_speed_m_s = 1e-9;
+        slow.motion.max_speed_m_s = 1e-6;
         for (Problem* impossible : {&problem, &slow}) {
             impossible->planner.max_iterations = 50;
             CHECK(solve(*impossible).status != Status::solved);

@@ -243,7 +243,7 @@ TEST_CASE("flights of absurd length are rejected, not flown") {
     for (const Variant variant : variants) {
         CAPTURE(name_of(variant));
         Problem problem = with(variant, 50, 50);
-        problem.motion.max_speed_m_s = 1e-9;
+        problem.motion.max_speed_m_s = 1e-6;
         const Solution solution = solve(problem);
         CHECK(solution.status == Status::none);
         CHECK_FALSE(solution.plan);

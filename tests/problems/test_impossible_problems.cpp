@@ -95,10 +95,22 @@ TEST_CASE("a problem built in code is judged by the same ranges as a file") {
     const std::vector<KeyError> errors = problem_errors(problem);
     REQUIRE(errors.size() == 3);
     CHECK(errors[0].key == "robot.arm.length_m");
-    CHECK(errors[0].message == "is -1: expected a number in m above 0 and at most 100");
+    CHECK(errors[0].message == "is -1: expected a number in m from 0.0001 to 100");
     CHECK(errors[1].key == "start.x_m");
     CHECK(errors[1].message == "is not finite: expected a number in m from -100000 to 100000");
     CHECK(errors[2].key == "planner.algorithm");
     // A robot is judged alone too.
     CHECK(robot_errors(Robot{}).size() >= 10);
+}
+
+TEST_CASE("a hover of more control ticks than a plan may have is an error") {
+    Problem problem = TestFolder().read();
+    problem.robot.controller.rate_hz = 1000;
+    problem.goal.hold_s = 360;
+    CHECK(problem_errors(problem).empty());
+    problem.goal.hold_s = 361;
+    const std::vector<KeyError> errors = problem_errors(problem);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].key == "goal.hold_s");
+    CHECK(errors[0].message == "is 361: expected at most 360 s, 360000 control ticks");
 }

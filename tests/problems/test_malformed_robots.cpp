@@ -10,16 +10,15 @@ const Edit edits[] = {
     {"  mass_kg: 4.5", "  mass_g: 4500",
      "4:3: unknown key 'mass_g' in multirotor: its unit is wrong; expected mass_kg"},
     {"  mass_kg: 4.5", "  mass_kg: 4.5 kg",
-     "4:12: multirotor.mass_kg is '4.5 kg': expected a number in kg above 0 and at most 10000"},
-    {"  mass_kg: 4.5", "  mass_kg: 0",
-     "4:12: multirotor.mass_kg is 0: expected a number in kg above 0 and at most 10000"},
+     "4:12: multirotor.mass_kg is '4.5 kg': expected a number in kg from 0.0001 to 10000"},
+    {"  mass_kg: 4.5", "  mass_kg: 0", "4:12: multirotor.mass_kg is 0: expected a number in kg from 0.0001 to 10000"},
     {"arm: {length_m", "arm: {lenght_m", "13:7: unknown key 'lenght_m' in arm: did you mean 'length_m'?"},
     {"multirotor:", "multi_rotor:", "3:1: unknown key 'multi_rotor' at the top: did you mean 'multirotor'?"},
     {"schema: downwash/robot/v1\n", "", "1:1: schema is missing: expected 'schema: downwash/robot/v1' at the top"},
     {"schema: downwash/robot/v1", "schema: downwash/problem/v1",
      "1:9: schema is 'downwash/problem/v1': expected downwash/robot/v1, no other is read"},
     {"radius_m: 0.19\n", "radius_m: -0.19\n",
-     "9:13: rotors.radius_m is -0.19: expected a number in m above 0 and at most 10"},
+     "9:13: rotors.radius_m is -0.19: expected a number in m from 0.0001 to 10"},
     {"[0.3, 0.3, 0], ", "[0.3, 0.3], ",
      "10:17: rotors.positions_m has 2 elements: expected a list of [x, y, z] in m from -100 to 100"},
     {"[[0.3, 0.3, 0], [0.3, -0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0]]", "0.3",
@@ -64,7 +63,7 @@ const Edit edits[] = {
     {"center_m: [0, 0, 0]", "center_m: [0, 0, 0], rpy_deg: [0, 0, 9]",
      "7:55: unknown key 'rpy_deg' in multirotor.body[0].box: expected size_m or center_m"},
     {"max_tilt_deg: 35", "max_tilt_deg: 90",
-     "18:17: controller.max_tilt_deg is 90: expected a number in deg above 0 and below 90"},
+     "18:17: controller.max_tilt_deg is 90: expected a number in deg at least 0.01 and below 90"},
     {"max_tilt_deg: 35", "rate_hz: 5", "18:12: controller.rate_hz is 5: expected a number in Hz from 10 to 1000"},
     {"max_tilt_deg: 35", "rate_khz: 0.1",
      "18:3: unknown key 'rate_khz' in controller: its unit is wrong; expected rate_hz"},
@@ -109,7 +108,7 @@ TEST_CASE("a malformed robot is an error in its own file") {
         indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
     }
     CHECK(errors_after(folder, "robot: robot.yaml", indented) ==
-          "problem.yaml:7:14: robot.multirotor.mass_kg is -4.5: expected a number in kg above 0 and at most 10000");
+          "problem.yaml:7:14: robot.multirotor.mass_kg is -4.5: expected a number in kg from 0.0001 to 10000");
 }
 
 TEST_CASE("a robot file that is read alone names its errors without the problem's prefix") {

@@ -233,6 +233,13 @@ TEST_CASE("Megabytes of brackets do not overflow the stack") {
     }
 }
 
+TEST_CASE("A plan file that is larger than any of ours is an error that says how large it may be") {
+    const std::string text = sample_text();
+    const std::string blanks((16U << 20U) - text.size(), ' ');
+    CHECK(error_of(text + blanks).empty());
+    CHECK_THAT(error_of(text + blanks + " "), Contains("is larger than 16 MiB, more than any plan of `solve` takes"));
+}
+
 TEST_CASE("Random bytes in a plan file never do worse than an error") {
     const std::string text = sample_text();
     std::uint32_t random = 12345;

@@ -185,6 +185,17 @@ TEST_CASE("Meshes of more than two million triangles are errors") {
     CHECK(said_of(text + " 3", "a.obj") == "'a.obj' line 4: more triangles than expected, which is at most 2000000");
 }
 
+TEST_CASE("A line of more words than any face has corners is an error, whatever it says") {
+    std::string words = "#";
+    for (int i = 1; i < 2'001'000; ++i) {
+        words += " x";
+    }
+    const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    CHECK(said_of(three + words + "\n", "a.obj") == "none");
+    CHECK(said_of(three + words + " x\n", "a.obj") ==
+          "'a.obj' line 5: has more than 2001000 words: expected one statement in a line");
+}
+
 TEST_CASE("No beginning of an STL file passes for the whole") {
     const auto box = box_triangles({0, 0, 0}, {1, 1, 1});
     std::string ascii = ascii_stl(box);
