@@ -69,8 +69,9 @@ ExitCode run(const ReportArguments& given) {
         require_pages();
         const RunRecord shown = read_run(run_folder(given.folder));
         const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / run_page_name;
-        write_made_from(source_of(run_folder(given.folder), shown), page.parent_path(),
-                        {{page.filename().string(), run_page(shown, *make_flight_model(shown.problem), given.threads)}});
+        write_made_from(
+            source_of(run_folder(given.folder), shown), page.parent_path(),
+            {{page.filename().string(), run_page(shown, *make_flight_model(shown.problem), given.threads)}});
         fmt::print("{}\n", page.string());
     }
     return ExitCode::done;

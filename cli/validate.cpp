@@ -12,7 +12,7 @@
 #include "downwash/cli/validation_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/claims.hpp"
-#include "downwash/results/result_limits.hpp"
+#include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::cli {

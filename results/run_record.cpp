@@ -197,7 +197,8 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
     const FileDigests digests{{files[1].first, sha256_hex(files[1].second)},
                               {files[2].first, sha256_hex(files[2].second)}};
     files.emplace_back(
-        solution_name, solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
+        solution_name,
+        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
     return files;
 }
 
