@@ -40,9 +40,9 @@ CostFunction weighted_objective(const std::string& text) {
     const auto reject = [&text](const std::string& hint = "") {
         throw InputError(
             {{"planner.objective",
-              "is '" + excerpt(text) + "': expected weights from 0 to 1e6 as in energy=1,time=50" + hint}});
+              "is '" + excerpt(text) + "': expected weights from 0 to 1e9 as in energy=1,time=50" + hint}});
     };
-    constexpr double max_weight = 1e6;
+    constexpr double max_weight = 1e9;
     std::vector<std::string_view> names;
     names.reserve(all_objectives.size());
     for (const Objective objective : all_objectives) {

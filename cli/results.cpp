@@ -133,11 +133,10 @@ std::string verdict_on_search(const Solution& solution) {
     }
     if (solution.certificate && !solution.certificate->is_given) {
         if (solution.certificate->failures <= CertificateTest::most_failures) {
-            return stopped + "A way to the goal was found, but the search ended before it was certified.";
+            return stopped + "A plan was found, but the search ended before it was certified.";
         }
-        return stopped +
-               fmt::format("A way to the goal was found, but in {} of {} worlds the flight fails: it is not certified.",
-                           solution.certificate->failures, solution.certificate->worlds);
+        return stopped + fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
+                                     solution.certificate->failures, solution.certificate->worlds);
     }
     if (solution.planning.obstruction && solution.planning.obstruction->cause == "unfinished_flight") {
         return stopped + "A way to the goal was found, but the time was over before its flight was.";
@@ -183,7 +182,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         text += row("stopped by",
                     fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
                                 o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
-        if (o.cause == "certificate") {
+        const bool has_failed = solution.certificate && solution.certificate->failures > CertificateTest::most_failures;
+        if (o.cause == "certificate" && !has_failed) {
+            text += row("", "The time was over before the last plan was flown in enough worlds: give the search more.");
+        } else if (o.cause == "certificate") {
             text += row("", "The planner discarded every plan: in worlds that the search had not seen");
             text += row("", "each failed too often. `downwash solve --remedies` tries what would help.");
         } else if (o.cause == "unfinished_flight") {

@@ -235,6 +235,7 @@ bool GoalSequence::search_part(Round& round) {
     if (found.certificate) {
         attempts_ = round.course.attempts = found.certificate->attempts;
         way.certificate = found.certificate;
+        way.certificate->is_given = is_last && found.status == Status::solved;  // a part says nothing of the whole
     }
     const double begun_at_s = solution_.planning.wall_s;
     const std::uint64_t iterations_before = solution_.planning.iterations;

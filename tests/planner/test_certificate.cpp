@@ -168,6 +168,19 @@ TEST_CASE("Goals in turn are certified as a whole, from start to end") {
     CHECK(solution.execution->goals.size() == 2);
 }
 
+TEST_CASE("The certificate of a way to the first of two goals is not given to a plan that ends there") {
+    Problem problem = uncertain_problem();
+    problem.stops = {tip_goal(-1, 4.2)};
+    problem.stops[0].hold_s = 1;
+    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {1.5, 0, 2.5}));  // the second goal is behind it
+    problem.planner.max_iterations = 60;
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::approximate);
+    REQUIRE(solution.certificate);
+    CHECK(solution.certificate->failures == 0);
+    CHECK_FALSE(solution.certificate->is_given);
+}
+
 TEST_CASE("Without uncertainty no plan has a certificate, and knobs of worlds change nothing") {
     Problem problem = ceiling_problem();
     const Solution plain = solve(problem);
