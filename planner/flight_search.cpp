@@ -70,6 +70,7 @@ class FlightSearch {
     double execution_wall_s_ = 0;
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
     std::uint64_t attempts_;                       ///< plans that asked for a certificate
+    std::uint64_t screenings_ = 0;                 ///< plans to a goal before the last that were flown in worlds
     std::optional<Certificate> certificate_;       ///< of the plan that was executed last
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
@@ -108,10 +109,13 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     return worlds_ == nullptr || is_certified(plan, cost);
 }
 
-/// Whether a plan fails rarely enough in worlds that the search has not seen.
+/// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
+/// no certificate.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
-    certificate_ =
-        worlds_->certify(before_.continued_by(plan), goals_.size(), ++attempts_, [this] { return clock_.is_over(); });
+    const Plan flown = before_.continued_by(plan);
+    const auto is_over = [this] { return clock_.is_over(); };
+    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_over)
+                                                     : worlds_->screen(flown, goals_.size(), ++screenings_, is_over);
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;

@@ -171,19 +171,18 @@ class GoalSequence {
     double handed_over_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
 
-/// Until there is a whole way, a round may take a third of all, and one more with other samples the rest: a goal may be
-/// out of reach from where the first way to the goal before it ends. Then each round may take twice as much as all
-/// before the first way or, after that, as the one before; the last one takes the rest.
+/// Until there is a whole way, there are three rounds with other samples, each with a third of all: a goal may be out
+/// of reach from where the first way to the goal before it ends. Then each round may take twice as much as all before
+/// the first way or, after that, as the one before; the last one takes the rest.
 void GoalSequence::run() {
     constexpr std::uint64_t least_iterations = 50;
     constexpr double least_s = 0.1;
-    constexpr double first_try = 1.0 / 3;
+    constexpr std::uint32_t first_rounds = 3;
     std::uint32_t number = 0;
-    take(try_round(number++, left_.part(first_try)));
-    if (!has_way() && !is_over()) {
-        Round second = try_round(number++, left_);
-        if (second.part_costs.size() >= part_costs_.size()) {
-            take(std::move(second));
+    for (; number < first_rounds && !has_way() && !is_over(); ++number) {
+        Round round = try_round(number, left_.part(1.0 / (first_rounds - number)));
+        if (number == 0 || round.part_costs.size() >= part_costs_.size()) {
+            take(std::move(round));
         }
     }
     if (options_.stop_at_first_solution || !has_way()) {
@@ -234,8 +233,7 @@ bool GoalSequence::search_part(Round& round) {
     way.planning.obstruction = found.planning.obstruction;
     if (found.certificate) {
         attempts_ = round.course.attempts = found.certificate->attempts;
-        way.certificate = found.certificate;
-        way.certificate->is_given = is_last && found.status == Status::solved;  // a part says nothing of the whole
+        way.certificate = is_last ? found.certificate : std::nullopt;  // a part says nothing of the whole
     }
     const double begun_at_s = solution_.planning.wall_s;
     const std::uint64_t iterations_before = solution_.planning.iterations;

@@ -75,7 +75,7 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
                                    ? model->make_map(problem.bounds, options.threads, {}, options.map_cache, is_stopped)
                                    : nullptr;
         planning::ProblemWorlds fresh(problem, model, flown_map, options);
-        solution.certificate = fresh.certify(*solution.plan, goals_of(problem).size(), 1, is_stopped);
+        solution.certificate = fresh.certify(*solution.plan, 1, is_stopped);
     }
 }
 

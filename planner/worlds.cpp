@@ -66,6 +66,10 @@ std::vector<double> search_quantiles(std::uint64_t number) {
     return quantiles;
 }
 
+constexpr std::uint64_t worlds_per_attempt = 1'000'000;
+/// The worlds of screenings are none of any certificate.
+constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
+
 }  // namespace
 
 ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,
@@ -161,9 +165,8 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
 
 /// Adds flights in new worlds to a record, until it is known whether the plan passes. @throws WorkStopped
 /// @return whether direct flights agree that it does
-bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
                                         const StopCondition& is_over, CertificateRecord& record) {
-    constexpr std::uint64_t worlds_per_attempt = 1'000'000;
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
     constexpr std::size_t flown_directly = 2;
     for (;;) {
@@ -182,7 +185,7 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
             continue;
         }
         std::vector<FlownWorld> worlds;
-        const std::uint64_t first = attempt * worlds_per_attempt + record.worlds();
+        const std::uint64_t first = first_world + record.worlds();
         for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
             worlds.push_back(world(first + i));
         }
@@ -193,16 +196,27 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
     }
 }
 
-Certificate ProblemWorlds::certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
-                                   const StopCondition& is_over) {
-    const PlannerSettings& settings = problem_.planner;
-    CertificateRecord record(settings.max_failure_probability, settings.confidence, attempt);
+Certificate ProblemWorlds::tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
+                                  const StopCondition& is_over, CertificateRecord record) {
     bool is_checked = false;
     try {
-        is_checked = fly_for_certificate(whole, visits, attempt, is_over, record);
+        is_checked = fly_for_certificate(whole, visits, first_world, is_over, record);
     } catch (const WorkStopped&) {  // it has what was flown so far
     }
     return record.certificate(is_checked);
+}
+
+Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over) {
+    const PlannerSettings& settings = problem_.planner;
+    return tested(whole, goals(), attempt * worlds_per_attempt, is_over,
+                  CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
+}
+
+Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, std::uint64_t number,
+                                  const StopCondition& is_over) {
+    const double share = static_cast<double>(visits) / static_cast<double>(goals());
+    return tested(begin, visits, (first_screening + number) * worlds_per_attempt, is_over,
+                  CertificateRecord(share * problem_.planner.max_failure_probability, 0, 1));
 }
 
 }  // namespace downwash::planning

@@ -28,18 +28,29 @@ class ProblemWorlds {
     /// Worlds in which a plan failed its certificate, with the vehicle there at the end of the course.
     [[nodiscard]] std::vector<Counterexample> counterexamples(const Certificate& certificate, const Course& before);
 
-    /// Flies a plan in worlds that nobody has seen, until it is known whether it passes. One that is_over ends in the
-    /// middle of that has not passed.
-    /// @param whole through the first `visits` goals of the problem   @param attempt from 1
-    [[nodiscard]] Certificate certify(const Plan& whole, std::size_t visits, std::uint64_t attempt,
-                                      const StopCondition& is_over);
+    /// Flies a plan through all goals in worlds that nobody has seen, until it is known whether it passes. One that
+    /// is_over ends in the middle of that has not passed.
+    /// @param attempt from 1
+    [[nodiscard]] Certificate certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over);
+
+    /// Flies the beginning of a plan in the same way, in worlds apart. It passes where it probably fails no more often
+    /// than its share of the goals allows: that proves nothing, and takes nothing from the error that all certificates
+    /// share.
+    /// @param begin through the first `visits` goals of the problem   @param number from 1
+    [[nodiscard]] Certificate screen(const Plan& begin, std::size_t visits, std::uint64_t number,
+                                     const StopCondition& is_over);
+
+    /// How many goals the problem has.
+    [[nodiscard]] std::size_t goals() const noexcept { return flights_.goals().size(); }
 
  private:
     [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
                                                                          std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
-    [[nodiscard]] bool fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t attempt,
+    [[nodiscard]] bool fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
                                            const StopCondition& is_over, CertificateRecord& record);
+    [[nodiscard]] Certificate tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
+                                     const StopCondition& is_over, CertificateRecord record);
     /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
     void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
                       const StopCondition& is_over);

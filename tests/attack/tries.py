@@ -227,9 +227,9 @@ class Interrupts(Attack):
 class Tours(Attack):
     """A search for a way through three goals, interrupted after its first whole way: a whole, certified way."""
 
-    GOALS = ["{end_effector: {x_m: -9, z_m: 9.3, tolerance_m: 0.15}, hold_s: 1}",
-             "{end_effector: {x_m: 1.5, z_m: 6, tolerance_m: 0.15}, hold_s: 1}",
-             "{end_effector: {x_m: 2, z_m: 8.5, tolerance_m: 0.15}, hold_s: 1}"]
+    GOALS = ["{end_effector: {x_m: -9, z_m: 9.3, tolerance_m: 0.15}, hold_s: 4}",
+             "{end_effector: {x_m: 1.5, z_m: 6, tolerance_m: 0.15}, hold_s: 4}",
+             "{end_effector: {x_m: 2, z_m: 8.5, tolerance_m: 0.15}, hold_s: 4}"]
 
     def prepare(self):
         text = self.problem("bridge_inspection").read_text().replace("uncertainty: none", "uncertainty: {}")

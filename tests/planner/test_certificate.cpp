@@ -168,7 +168,7 @@ TEST_CASE("Goals in turn are certified as a whole, from start to end") {
     CHECK(solution.execution->goals.size() == 2);
 }
 
-TEST_CASE("The certificate of a way to the first of two goals is not given to a plan that ends there") {
+TEST_CASE("A plan that ends at the first of two goals has no certificate") {
     Problem problem = uncertain_problem();
     problem.stops = {tip_goal(-1, 4.2)};
     problem.stops[0].hold_s = 1;
@@ -176,9 +176,8 @@ TEST_CASE("The certificate of a way to the first of two goals is not given to a 
     problem.planner.max_iterations = 60;
     const Solution solution = solve(problem);
     CHECK(solution.status == Status::approximate);
-    REQUIRE(solution.certificate);
-    CHECK(solution.certificate->failures == 0);
-    CHECK_FALSE(solution.certificate->is_given);
+    CHECK(solution.execution->goals[0].error_m < 0.1);
+    CHECK_FALSE(solution.certificate);
 }
 
 TEST_CASE("Without uncertainty no plan has a certificate, and knobs of worlds change nothing") {
