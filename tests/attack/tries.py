@@ -40,7 +40,8 @@ class Attack:
             text = re.sub(rf"(robot: |file: ){what}/", rf"\1{self.problems}/{what}/", text)
         text = text.replace("uncertainty: {}", "uncertainty: none")
         for key, value in replacements.items():
-            text = re.sub(rf"^( *){key}:.*$", rf"\g<1>{key}: {value}", text, flags=re.MULTILINE)
+            line = f"{key}: {value}"
+            text = re.sub(rf"^( *){key}:.*$", lambda found, line=line: found[1] + line, text, flags=re.MULTILINE)
         file = self.folder / f"{name}.yaml"
         file.write_text(text)
         return file
@@ -194,7 +195,7 @@ class Kills(Attack):
 
     def attempt(self, draw):
         file = draw.choice([self.folder / "bridge_inspection.yaml", self.other])
-        self.program.interrupted("solve", file, "--max-iterations", "5", "--out", "run",
+        self.program.interrupted("solve", file, "--max-iterations", "5", "--force", "--out", "run",
                                  signal_number=signal.SIGKILL, after_s=draw.uniform(0, 0.6))
         self.program.run("report", "run", "-o", "page.html", codes={0})
         whole = json.loads((self.folder / "run" / "solution.json").read_text())
