@@ -33,12 +33,7 @@ class Program:
     def run(self, *arguments, limit_s: float = 60, codes=GOOD_CODES) -> subprocess.CompletedProcess:
         """Runs to the end. A crash, a hang, another exit code, or an error without a word is a finding."""
         process = self.start(*arguments)
-        try:
-            out, err = process.communicate(timeout=limit_s)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
-            raise Finding(f"{shown(arguments)}: takes more than {limit_s} s") from None
+        out, err = self.end_of(process, arguments, limit_s)
         return self.judged(arguments, process.returncode, out, err, codes)
 
     def interrupted(self, *arguments, signal_number: int, after_s: float, limit_s: float = 5):
@@ -47,17 +42,22 @@ class Program:
         time.sleep(after_s)
         process.send_signal(signal_number)
         begin = time.monotonic()
-        try:
-            out, err = process.communicate(timeout=limit_s)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
-            raise Finding(f"{shown(arguments)}: does not end within {limit_s} s of signal {signal_number}") from None
+        out, err = self.end_of(process, arguments, limit_s)
         took_s = time.monotonic() - begin
         if signal_number == signal.SIGKILL:
             return subprocess.CompletedProcess(arguments, process.returncode, out, err), took_s
         codes = GOOD_CODES | {128 + signal_number, -signal_number}  # before its handler is there the signal's default acts
         return self.judged(arguments, process.returncode, out, err, codes), took_s
+
+    @staticmethod
+    def end_of(process: subprocess.Popen, arguments, limit_s: float) -> tuple[bytes, bytes]:
+        """What a program says until it ends. One that goes on for longer than a limit is a finding."""
+        try:
+            return process.communicate(timeout=limit_s)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            raise Finding(f"{shown(arguments)}: does not end within {limit_s} s") from None
 
     @staticmethod
     def judged(arguments, code: int, out: bytes, err: bytes, codes) -> subprocess.CompletedProcess:

@@ -247,7 +247,7 @@ class Tours(Attack):
                 break
         time.sleep(draw.uniform(0, 5))
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=30)
+        out, err = self.program.end_of(process, ["solve", "tour.yaml"], 30)
         self.program.judged(["solve", "tour.yaml"], process.returncode, out, err, {130})
         solution = finite((self.folder / "run" / "solution.json").read_text(), "solution.json")
         goals = solution["execution"]["goals"]
@@ -275,7 +275,7 @@ class Cache(Attack):
                 map_file.write_bytes(mutations.damaged(map_file.read_bytes(), draw))
         runs = [self.program.start("solve", self.file, *QUICK, "--out", f"run{i}") for i in range(3)]
         for i, run in enumerate(runs):
-            out, err = run.communicate(timeout=60)
+            out, err = self.program.end_of(run, ["solve", i], 60)
             self.program.judged(["solve", i], run.returncode, out, err, GOOD_CODES)
             if (self.folder / f"run{i}" / "trajectory.csv").read_bytes() != self.expected:
                 raise Finding(f"run {i} flies otherwise with a cache")
