@@ -182,8 +182,9 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         text += row("stopped by",
                     fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
                                 o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
-        const bool has_failed = solution.certificate && solution.certificate->failures > CertificateTest::most_failures;
-        if (o.cause == "certificate" && !has_failed) {
+        const bool is_unfinished =
+            solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
+        if (o.cause == "certificate" && is_unfinished) {
             text += row("", "The time was over before the last plan was flown in enough worlds: give the search more.");
         } else if (o.cause == "certificate") {
             text += row("", "The planner discarded every plan: in worlds that the search had not seen");

@@ -214,9 +214,10 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, con
 
 Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, std::uint64_t number,
                                   const StopCondition& is_over) {
+    constexpr double no_confidence = 0;  // nothing is claimed
     const double share = static_cast<double>(visits) / static_cast<double>(goals());
     return tested(begin, visits, (first_screening + number) * worlds_per_attempt, is_over,
-                  CertificateRecord(share * problem_.planner.max_failure_probability, 0, 1));
+                  CertificateRecord(share * problem_.planner.max_failure_probability, no_confidence, 1));
 }
 
 }  // namespace downwash::planning
