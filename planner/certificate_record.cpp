@@ -27,8 +27,14 @@ std::uint64_t CertificateRecord::worlds_wanted() const noexcept {
 }
 
 void CertificateRecord::add(const WorldSample& sample) {
-    failures_ += is_failure(sample) ? 1 : 0;
+    count(sample);
     samples_.push_back(sample);
+}
+
+void CertificateRecord::count(const WorldSample& sample) {
+    if (is_failure(sample)) {
+        ++(sample.goal < first_goal_ ? failures_before_ : failures_);
+    }
 }
 
 std::vector<WorldSample> CertificateRecord::nearest_successes(std::size_t count) const {
@@ -46,7 +52,9 @@ bool CertificateRecord::replace(const std::vector<WorldSample>& samples) {
     for (const WorldSample& better : samples) {
         for (WorldSample& known : samples_) {
             if (known.world == better.world) {
-                failures_ += is_failure(better) && !is_failure(known) ? 1 : 0;
+                if (!is_failure(known)) {
+                    count(better);
+                }
                 known = better;
             }
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -11,14 +12,16 @@ namespace downwash::planning {
 class CertificateRecord {
  public:
     /// @param attempt from 1
-    CertificateRecord(double max_failure_probability, double confidence, std::uint64_t attempt)
+    /// @param first_goal failures on the way to goals before it are counted apart, and just may not be too many
+    CertificateRecord(double max_failure_probability, double confidence, std::uint64_t attempt,
+                      std::size_t first_goal = 0)
         : test_(max_failure_probability, confidence, attempt),
           max_failure_probability_(max_failure_probability),
           confidence_(confidence),
-          attempt_(attempt) {}
+          attempt_(attempt),
+          first_goal_(first_goal) {}
 
     [[nodiscard]] std::uint64_t worlds() const noexcept { return samples_.size(); }
-    [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
     /// Few enough failures in enough worlds.
     [[nodiscard]] bool passes() const noexcept { return !has_failed() && worlds_wanted() == 0; }
     /// How many more worlds it takes to pass, if no other flight fails; 0 once nothing can change.
@@ -34,13 +37,18 @@ class CertificateRecord {
     [[nodiscard]] Certificate certificate(bool is_given) const;
 
  private:
-    [[nodiscard]] bool has_failed() const noexcept { return failures_ > CertificateTest::most_failures; }
+    [[nodiscard]] bool has_failed() const noexcept {
+        return std::max(failures_, failures_before_) > CertificateTest::most_failures;
+    }
+    void count(const WorldSample& sample);
 
     CertificateTest test_;
     double max_failure_probability_;
     double confidence_;
     std::uint64_t attempt_;
+    std::size_t first_goal_;
     std::uint64_t failures_ = 0;
+    std::uint64_t failures_before_ = 0;  ///< on the way to goals before the first
     std::vector<WorldSample> samples_;
 };
 

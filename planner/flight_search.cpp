@@ -1,3 +1,5 @@
+#include <cstdio>
+#include <cstdlib>
 #include "downwash/planner/flight_search.hpp"
 
 #include <algorithm>
@@ -48,10 +50,14 @@ class FlightSearch {
     void run_tree();
     /// OMPL's planners over controls.
     void run_controls();
+    /// See PartSearch.
+    [[nodiscard]] std::optional<std::size_t> weak_goal() const { return weak_goal_; }
 
  private:
+    [[nodiscard]] bool is_over() { return weak_goal_ || clock_.is_over(); }
     [[nodiscard]] bool survives_execution(const Plan& plan, double cost);
     [[nodiscard]] bool is_certified(const Plan& plan, double cost);
+    [[nodiscard]] std::vector<Counterexample> lessons();
     void accept(const Plan& plan, double cost, std::uint64_t iteration);
     void account(std::uint64_t iterations, const FlightStatistics& statistics);
     void report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan, double cost,
@@ -70,9 +76,10 @@ class FlightSearch {
     double execution_wall_s_ = 0;
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
     std::uint64_t attempts_;                       ///< plans that asked for a certificate
-    std::uint64_t screenings_ = 0;                 ///< plans to a goal before the last that were flown in worlds
     std::optional<Certificate> certificate_;       ///< of the plan that was executed last
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
+    std::optional<std::size_t> weakest_;           ///< part of that plan
+    std::optional<std::size_t> weak_goal_;         ///< see PartSearch
     /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
     /// interrupted after a few worlds says little.
     struct Uncertified {
@@ -88,14 +95,14 @@ class FlightSearch {
 bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     counterexamples_.clear();
     clock_.found_first(clock_.seconds());
-    if (uncertified_ && clock_.is_over()) {
+    if (uncertified_ && is_over()) {
         return false;  // too late for a certificate
     }
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
         try {
             execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_,
-                                          [this] { return clock_.is_over(); });
+                                          [this] { return is_over(); });
         } catch (const WorkStopped&) {
             discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
             return false;
@@ -113,10 +120,11 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 /// no certificate.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
     const Plan flown = before_.continued_by(plan);
-    const auto is_over = [this] { return clock_.is_over(); };
-    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_over)
-                                                     : worlds_->screen(flown, goals_.size(), ++screenings_, is_over);
+    const StopCondition is_too_late = [this] { return is_over(); };
+    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_too_late)
+                                                     : worlds_->screen(flown, goals_.size(), is_too_late);
     known_at_s_ = clock_.seconds();
+    if (getenv("DBG")) { int by[9]={}; for (auto& w : certificate_->worst) if (w.outcome != Outcome::ok) ++by[w.goal]; fprintf(stderr, "DBG visits %zu t %.2f worlds %llu failures %llu given %d cost %.4f att %llu by %d %d %d\n", goals_.size(), known_at_s_, (unsigned long long)certificate_->worlds, (unsigned long long)certificate_->failures, (int)certificate_->is_given, cost, (unsigned long long)attempts_, by[0],by[1],by[2]); }
     if (certificate_->is_given) {
         return true;
     }
@@ -125,7 +133,18 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
     }
     discarded_ = Obstruction{"certificate", plan.last(), 0};
     counterexamples_ = worlds_->counterexamples(*certificate_, before_);
+    weakest_ = weakest_part(*certificate_);
     return false;
+}
+
+/// What the search may learn from a plan that did not survive, between two of its rounds. That it was the fault of an
+/// earlier part ends the search, unless it has shown that these parts can be good enough.
+std::vector<Counterexample> FlightSearch::lessons() {
+    const std::optional<std::size_t> weakest = std::exchange(weakest_, std::nullopt);
+    if (weakest && *weakest < before_.goals.size() && solution_.status != Status::solved) {
+        weak_goal_ = weakest;
+    }
+    return std::exchange(counterexamples_, {});
 }
 
 /// Takes on the plan that survived last; it has counted since that was known. One that is cheaper in the planner's
@@ -189,13 +208,13 @@ void FlightSearch::run_controls() {
     const PlannerSettings& settings = task_.problem.planner;
     Random random(settings.seed);
     PlannedFlights planned(
-        task_, [this] { return clock_.is_over(); }, options_.threads);
+        task_, [this] { return is_over(); }, options_.threads);
     const SteeredFlights flights(planned);
     ControlHooks hooks;
     hooks.keep_tree = options_.keep_tree;
     hooks.is_over = [&](std::uint64_t iteration) {
         clock_.note(iteration, planned.statistics().edges, planned.statistics().rejections);
-        return clock_.is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
+        return is_over() || (settings.max_iterations && iteration >= *settings.max_iterations);
     };
     hooks.accept = [&](const Plan& plan, double cost, std::uint64_t iteration) {
         if (!survives_execution(plan, cost)) {
@@ -224,16 +243,19 @@ void FlightSearch::run_tree() {
     planner.set_hooks({[&](const Candidate& candidate) {
                            return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
                        },
-                       [&] { return std::exchange(counterexamples_, {}); },
+                       [&] { return lessons(); },
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});
+    if (worlds_ != nullptr) {
+        planner.set_known_counterexamples(worlds_->known_counterexamples(before_));
+    }
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_observer(
         [&] { clock_.note(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections); });
     planner.setup();
-    planner.solve(ompl::base::PlannerTerminationCondition([this] { return clock_.is_over(); }));
+    planner.solve(ompl::base::PlannerTerminationCondition([this] { return is_over(); }));
 
     const FlightStatistics statistics = planner.statistics();
     account(planner.iterations(), statistics);
@@ -264,10 +286,12 @@ bool is_good(const Execution& flight, double safety_margin_m) {
     return flight.outcome == Outcome::ok && flight.min_clearance_m >= safety_margin_m;
 }
 
-void search_flights(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                    const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution) {
+std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
+                                          const AeroMap* map, const Course& before, ProblemWorlds* worlds,
+                                          const SolveOptions& options, Solution& solution) {
     FlightSearch search(part, whole, model, map, before, worlds, options, solution);
     part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
+    return search.weak_goal();
 }
 
 }  // namespace downwash::planning

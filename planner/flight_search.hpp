@@ -21,7 +21,8 @@ namespace downwash::planning {
 /// @param part the problem up to that goal   @param whole the problem that it is a part of, or itself
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
 /// @param worlds that edges and plans have to survive; nullptr: everything is as believed
-DOWNWASH_EXPORT void search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
+/// @return as PartSearch
+DOWNWASH_EXPORT std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
                                     const AeroMap* map, const Course& before, ProblemWorlds* worlds,
                                     const SolveOptions& options, Solution& solution);
 

@@ -35,6 +35,16 @@ class Budget {
         return some;
     }
 
+    /// This budget, but no more than another one.
+    [[nodiscard]] Budget at_most(const Budget& other) const {
+        Budget less = *this;
+        if (iterations_) {
+            less.iterations_ = std::min(*iterations_, *other.iterations_);
+        }
+        less.time_s_ = std::min(time_s_, other.time_s_);
+        return less;
+    }
+
     /// What part of this budget some work took; at most 1.
     [[nodiscard]] double share_of(const SearchRecord& work) const {
         const double share = iterations_ ? static_cast<double>(work.iterations) / static_cast<double>(*iterations_)
@@ -64,8 +74,8 @@ class Budget {
 
 /// Adds a part's plan and the hold at its end, and flies them in the planner's model. What was planned by flights flies
 /// as it did; of MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it.
-void advance(Course& course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
-             const AeroMap* map, bool plans_flights) {
+Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
+                const AeroMap* map, bool plans_flights) {
     const double tick_s = model.tick().tick_s;
     Plan plan = course.continued_by(part);
     ReferenceKnot held = plan.reference.back();
@@ -84,6 +94,7 @@ void advance(Course& course, const Goal& goal, const Plan& part, double cost, co
     course.plan = std::move(plan);
     course.goals.push_back(goal);
     course.cost += cost;
+    return course;
 }
 
 /// The search for the way to a goal from the end of a course.
@@ -132,6 +143,9 @@ class GoalSequence {
           search_(search),
           solution_(solution),
           goals_(goals_of(problem)),
+          searches_(goals_.size()),
+          given_up_(goals_.size()),
+          whole_(problem.planner),
           left_(problem.planner) {}
 
     void run();
@@ -139,17 +153,20 @@ class GoalSequence {
  private:
     /// One try to find a whole way.
     struct Round {
-        std::uint32_t number;  ///< from 0; each draws other samples
         Budget left;
-        Course course;
+        std::vector<Course> courses;     ///< before each part, the one that is searched for included
         Solution way;                    ///< as far as it has come
         std::vector<double> part_costs;  ///< of the parts that were found
     };
 
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
     [[nodiscard]] bool has_way() const { return solution_.status == Status::solved; }
-    [[nodiscard]] Round try_round(std::uint32_t number, const Budget& budget);
+    [[nodiscard]] Round try_round(const Budget& budget);
     [[nodiscard]] bool search_part(Round& round);
+    [[nodiscard]] bool go_back(Round& round, std::size_t part);
+    [[nodiscard]] bool give_up(Round& round);
+    [[nodiscard]] Budget slice(std::size_t part) const;
+    void take_farther(const Round& round);
     [[nodiscard]] SolveOptions options_of_part(const Round& round);
     [[nodiscard]] double share(std::size_t part) const;
     [[nodiscard]] double cost_of_way(const Solution& way) const;
@@ -164,6 +181,9 @@ class GoalSequence {
     const PartSearch& search_;
     Solution& solution_;
     std::vector<Goal> goals_;
+    std::vector<std::uint32_t> searches_;  ///< for the way to each goal so far; each draws other samples
+    std::vector<std::uint32_t> given_up_;  ///< of these, because they took too long
+    Budget whole_;
     Budget left_;
     std::uint64_t attempts_ = 0;      ///< plans that asked for a certificate
     std::vector<double> part_costs_;  ///< of the best way
@@ -171,20 +191,12 @@ class GoalSequence {
     double handed_over_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
 
-/// Until there is a whole way, there are three rounds with other samples, each with a third of all: a goal may be out
-/// of reach from where the first way to the goal before it ends. Then each round may take twice as much as all before
-/// the first way or, after that, as the one before; the last one takes the rest.
+/// After the first whole way, a round may take twice as much as all that before it or, later, as the round before; the
+/// last one takes the rest.
 void GoalSequence::run() {
     constexpr std::uint64_t least_iterations = 50;
     constexpr double least_s = 0.1;
-    constexpr std::uint32_t first_rounds = 3;
-    std::uint32_t number = 0;
-    for (; number < first_rounds && !has_way() && !is_over(); ++number) {
-        Round round = try_round(number, left_.part(1.0 / (first_rounds - number)));
-        if (number == 0 || round.part_costs.size() >= part_costs_.size()) {
-            take(std::move(round));
-        }
-    }
+    take_farther(try_round(left_));
     if (options_.stop_at_first_solution || !has_way()) {
         return;
     }
@@ -192,12 +204,12 @@ void GoalSequence::run() {
     work.iterations = std::max(work.iterations, least_iterations);
     work.wall_s = std::max(work.wall_s, least_s);
     bool is_last = false;
-    for (; !is_last && !is_over(); ++number) {
+    while (!is_last && !is_over()) {
         work.iterations *= 2;
         work.wall_s *= 2;
         const double share = left_.share_of(work);
         is_last = share > 0.5;
-        Round round = try_round(number, left_.part(is_last ? 1 : share));
+        Round round = try_round(left_.part(is_last ? 1 : share));
         if (round.way.status == Status::solved && cost_of_way(round.way) < cost_of_way(solution_)) {
             take(std::move(round));
         }
@@ -207,23 +219,53 @@ void GoalSequence::run() {
     }
 }
 
-GoalSequence::Round GoalSequence::try_round(std::uint32_t number, const Budget& budget) {
-    Round round{number, budget, Course::from_start(problem_, model_), {}, {}};
-    round.course.attempts = attempts_;
+GoalSequence::Round GoalSequence::try_round(const Budget& budget) {
+    Round round{budget, {Course::from_start(problem_, model_)}, {}, {}};
     while (round.part_costs.size() < goals_.size() && search_part(round)) {
     }
     return round;
 }
 
-/// Searches the way to the next goal. False if none is found in time.
+/// A part was not found in time. Until there is a whole way, it is searched anew, every second time from another end of
+/// the part before: the goal may be out of reach from the first one.
+bool GoalSequence::give_up(Round& round) {
+    if (has_way()) {
+        return false;
+    }
+    const std::size_t part = round.part_costs.size();
+    const bool is_second = ++given_up_[part] % 2 == 0;
+    return go_back(round, is_second && part > 0 ? part - 1 : part);
+}
+
+/// Before there is a whole way: what a search for a part may take. Luck differs between searches, so that several short
+/// ones find more than one long one; each that is given up allows the next one twice as much.
+Budget GoalSequence::slice(std::size_t part) const {
+    const double first = 0.25 / static_cast<double>(goals_.size());
+    return whole_.part(std::min(1.0, std::ldexp(first, static_cast<int>(given_up_[part]))));
+}
+
+/// Goes back to search the way to some goal anew. False if there is no time for it.
+bool GoalSequence::go_back(Round& round, std::size_t part) {
+    take_farther(round);
+    round.courses.resize(part + 1);
+    round.part_costs.resize(part);
+    round.way.plan = part > 0 ? std::optional(round.courses.back().plan) : std::nullopt;
+    round.way.cost = round.courses.back().cost;
+    round.way.certificate.reset();
+    return !round.left.is_used_up() && !options_.stop.stop_requested();
+}
+
+/// Searches the way to the next goal, or goes back to an earlier one. False if no way is found in time.
 bool GoalSequence::search_part(Round& round) {
     const std::size_t number = round.part_costs.size();
     const bool is_last = number + 1 == goals_.size();
-    Problem part = part_of(problem_, goals_[number], round.course);
-    part.planner.seed += round.number;
-    round.left.part(has_way() ? share(number) : 1).limit(part.planner);
+    Course& course = round.courses.back();
+    course.attempts = attempts_;
+    Problem part = part_of(problem_, goals_[number], course);
+    part.planner.seed += searches_[number]++;
+    (has_way() ? round.left.part(share(number)) : slice(number).at_most(round.left)).limit(part.planner);
     Solution found;
-    search_(part, options_of_part(round), round.course, found);
+    const std::optional<std::size_t> weak_goal = search_(part, options_of_part(round), course, found);
     round.left.spend(found.planning);
     left_.spend(found.planning);
 
@@ -232,7 +274,7 @@ bool GoalSequence::search_part(Round& round) {
     way.planning.nearest_approach_m = found.planning.nearest_approach_m;
     way.planning.obstruction = found.planning.obstruction;
     if (found.certificate) {
-        attempts_ = round.course.attempts = found.certificate->attempts;
+        attempts_ = found.certificate->attempts;
         way.certificate = is_last ? found.certificate : std::nullopt;  // a part says nothing of the whole
     }
     const double begun_at_s = solution_.planning.wall_s;
@@ -240,29 +282,32 @@ bool GoalSequence::search_part(Round& round) {
     add(solution_.planning, found.planning);
     add(way.tree, found.tree);
     if (found.plan) {
-        way.plan = round.course.continued_by(*found.plan);
-        way.cost = round.course.cost + found.cost;
+        way.plan = course.continued_by(*found.plan);
+        way.cost = course.cost + found.cost;
     }
     way.status = way.plan ? Status::approximate : Status::none;
+    if (weak_goal) {
+        return go_back(round, *weak_goal);
+    }
     if (found.status != Status::solved) {
-        return false;
+        return give_up(round);
     }
     if (way.plan->reference.back().tick > max_plan_ticks) {
         ++solution_.planning.rejected["too_long"];
-        way.plan = round.course.plan;
-        way.cost = round.course.cost;
-        return false;
+        way.plan = course.plan;
+        way.cost = course.cost;
+        return give_up(round);
     }
     round.part_costs.push_back(found.cost);
     if (is_last) {
         way.status = Status::solved;
         way.execution = std::move(found.execution);
-        note_improvements(round.course, found.planning, begun_at_s, iterations_before);
+        note_improvements(course, found.planning, begun_at_s, iterations_before);
         return true;
     }
-    advance(round.course, goals_[number], *found.plan, found.cost, model_, map_,
-            problem_.planner.variant != Variant::mp_arm);
-    way.plan = round.course.plan;
+    round.courses.push_back(advanced(course, goals_[number], *found.plan, found.cost, model_, map_,
+                                     problem_.planner.variant != Variant::mp_arm));
+    way.plan = round.courses.back().plan;
     return true;
 }
 
@@ -283,7 +328,7 @@ SolveOptions GoalSequence::options_of_part(const Round& round) {
                 progress.best_cost = solution_.cost;
             }
             if (is_last && best_of_part) {
-                const double whole = round.course.cost + *best_of_part;
+                const double whole = round.courses.back().cost + *best_of_part;
                 progress.best_cost = std::min(progress.best_cost.value_or(whole), whole);
             }
             options_.on_progress(progress);
@@ -292,10 +337,10 @@ SolveOptions GoalSequence::options_of_part(const Round& round) {
     inner.on_plan = nullptr;
     if (options_.on_plan && is_last) {
         inner.on_plan = [this, &round](const FoundPlan& found) {
-            const double cost = round.course.cost + found.cost;
+            const double cost = round.courses.back().cost + found.cost;
             if (found.flown_cost.value_or(cost) < handed_over_) {
                 handed_over_ = found.flown_cost.value_or(cost);
-                options_.on_plan({round.course.continued_by(found.plan), cost, found.flown_cost});
+                options_.on_plan({round.courses.back().continued_by(found.plan), cost, found.flown_cost});
             }
         };
     }
@@ -339,6 +384,16 @@ void GoalSequence::note_improvements(const Course& before, const SearchRecord& l
             whole.improvements.push_back(
                 {begun_at_s + found.wall_s, iterations_before + found.iteration, cost, found.flown_cost});
         }
+    }
+}
+
+/// Until there is a whole way: takes one that goes through more goals, or as many.
+void GoalSequence::take_farther(const Round& round) {
+    const bool is_farther = round.part_costs.size() > part_costs_.size() ||
+                            (round.part_costs.size() == part_costs_.size() &&
+                             (!solution_.plan || (round.way.certificate && !solution_.certificate)));
+    if (!has_way() && is_farther) {
+        take(round);
     }
 }
 

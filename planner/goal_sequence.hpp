@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/export.hpp"
@@ -28,10 +29,13 @@ struct Course {
 /// Searches for the way to the goal of a problem without stops, whose start is at the end of the course before. Fills
 /// what it finds, and how that went, into the solution: cost and plan from there on, and, where it was flown with
 /// direct aerodynamics, the execution of course and plan together.
-using PartSearch = std::function<void(const Problem& part, const SolveOptions&, const Course& before, Solution&)>;
+/// @return the goal before, from 0, the way to which has to be searched anew: its flights fail most often in the worlds
+/// of certificates, so that no way from there helps. Empty otherwise
+using PartSearch = std::function<std::optional<std::size_t>(const Problem& part, const SolveOptions&, const Course& before, Solution&)>;
 
 /// Searches goal by goal, each from the whole vehicle that holds at the one before: in a first round until there is a
-/// whole way, then in rounds that take twice as long each, for cheaper ways. More of a round's time goes to the parts
+/// whole way, then in rounds that take twice as long each, for cheaper ways. Where the flights of a plan fail on the way
+/// to an earlier goal, the search goes back to that goal. More of a round's time goes to the parts
 /// that became cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the
 /// best of all ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none

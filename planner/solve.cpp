@@ -54,13 +54,14 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
                             Solution& into) {
         if (problem.planner.variant == Variant::mp_arm) {
             planning::search_lines(part, *model, how, into);
-        } else {
-            planning::search_flights(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how, into);
+            return std::optional<std::size_t>();
         }
+        return planning::search_flights(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how,
+                                        into);
     };
     solution.planning.setup_wall_s = since_call.seconds();
     if (problem.stops.empty()) {
-        search(problem, options, planning::Course::from_start(problem, *model), solution);
+        static_cast<void>(search(problem, options, planning::Course::from_start(problem, *model), solution));
     } else {
         planning::solve_in_turn(problem, *model, map.get(), options, search, solution);
     }

@@ -1,5 +1,6 @@
 #include "downwash/planner/world_flights.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -29,6 +30,17 @@ double min_clearance_m(const FlightJob& job) {
         least_m = std::min(least_m, leg.flight.min_clearance_m);
     }
     return least_m;
+}
+
+/// The goal to which a flight was on the way when it failed.
+/// @param hovers knots at which those at the goals before the last end; a leg ends at each knot but the first
+std::size_t failed_goal(const FlightJob& job, const std::vector<std::size_t>& hovers) {
+    const FlightLeg* const rejected = job.rejected_leg();
+    if (rejected == nullptr) {
+        return 0;
+    }
+    const std::size_t knot = static_cast<std::size_t>(rejected - job.legs.data()) + 1;
+    return static_cast<std::size_t>(std::lower_bound(hovers.begin(), hovers.end(), knot) - hovers.begin());
 }
 
 /// Sets what long work asks, for a scope.
@@ -156,7 +168,8 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Rejection rejection = jobs[i].rejection();
         flights[world_of[i]] = {rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
-                                min_clearance_m(jobs[i])};
+                                min_clearance_m(jobs[i]),
+                                misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers)};
     }
     return flights;
 }

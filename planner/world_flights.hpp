@@ -18,6 +18,7 @@ namespace downwash {
 struct WorldFlight {
     Rejection rejection = Rejection::none;  ///< `unstable` also for a vehicle that does not stay at its start
     double min_clearance_m = 0;             ///< up to where the flight ended, to min_clearance_error_m
+    std::size_t goal = 0;                   ///< of a failed flight: to which it was on the way, or which it missed
 };
 
 /// Flies whole plans of a problem in its worlds, from the start through all goals, through the aero map and side by

@@ -7,6 +7,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/certificate_record.hpp"
+#include "downwash/search/planned_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/noise.hpp"
 
@@ -77,7 +78,8 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
     : problem_(problem),
       flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache,
                [stop = options.stop] { return stop.stop_requested(); }),
-      threads_(options.threads) {}
+      threads_(options.threads),
+      failed_in_(goals_of(problem).size()) {}
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
@@ -125,10 +127,31 @@ std::vector<Counterexample> ProblemWorlds::counterexamples(const Certificate& ce
     constexpr std::size_t most = 4;
     std::vector<FlownWorld> worlds;
     for (const WorldSample& sample : certificate.worst) {
-        if (sample.outcome != Outcome::ok && worlds.size() < most) {
+        if (sample.outcome == Outcome::ok) {
+            continue;
+        }
+        std::deque<std::uint64_t>& known = failed_in_[sample.goal];
+        known.push_back(sample.world);
+        if (known.size() > 8) {
+            known.pop_front();
+        }
+        if (sample.goal == before.goals.size() && worlds.size() < most) {
             worlds.push_back(world(sample.world));
         }
     }
+    return counterexamples_in(std::move(worlds), before);
+}
+
+std::vector<Counterexample> ProblemWorlds::known_counterexamples(const Course& before) {
+    std::vector<FlownWorld> worlds;
+    for (const std::uint64_t index : failed_in_[before.goals.size()]) {
+        worlds.push_back(world(index));
+    }
+    return counterexamples_in(std::move(worlds), before);
+}
+
+/// Those of the worlds in which the vehicle gets through the course.
+std::vector<Counterexample> ProblemWorlds::counterexamples_in(std::vector<FlownWorld> worlds, const Course& before) {
     const std::vector<std::optional<FlightState>> vehicles = vehicles_after(before, worlds);
     std::vector<Counterexample> counterexamples;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
@@ -160,6 +183,9 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
                                          {&worlds[i], &flights_.ceiling()}, is_over);
         samples[i].outcome = flight.outcome;
         samples[i].min_clearance_m = flight.min_clearance_m;
+        const auto missed = std::find_if(flight.goals.begin(), flight.goals.end(),
+                                         [](const GoalVisit& visit) { return !visit.is_met; });
+        samples[i].goal = missed != flight.goals.end() ? static_cast<std::size_t>(missed - flight.goals.begin()) : 0;
     });
 }
 
@@ -191,7 +217,7 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
         }
         const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds, is_over);
         for (std::size_t i = 0; i < flights.size(); ++i) {
-            record.add({first + i, outcome_of(flights[i].rejection), flights[i].min_clearance_m});
+            record.add({first + i, outcome_of(flights[i].rejection), flights[i].min_clearance_m, flights[i].goal});
         }
     }
 }
@@ -212,12 +238,26 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, con
                   CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
 }
 
-Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, std::uint64_t number,
-                                  const StopCondition& is_over) {
-    constexpr double no_confidence = 0;  // nothing is claimed
-    const double share = static_cast<double>(visits) / static_cast<double>(goals());
-    return tested(begin, visits, (first_screening + number) * worlds_per_attempt, is_over,
-                  CertificateRecord(share * problem_.planner.max_failure_probability, no_confidence, 1));
+Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, const StopCondition& is_over) {
+    constexpr double no_confidence = 0.8;  // nothing is claimed
+    const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
+    return tested(begin, visits, (first_screening + screenings_++) * worlds_per_attempt, is_over,
+                  CertificateRecord(share, no_confidence, 1, visits - 1));
+}
+
+std::optional<std::size_t> weakest_part(const Certificate& certificate) {
+    std::vector<int> failures;
+    for (const WorldSample& sample : certificate.worst) {
+        if (sample.outcome != Outcome::ok) {
+            failures.resize(std::max(failures.size(), sample.goal + 1));
+            ++failures[sample.goal];
+        }
+    }
+    if (failures.empty()) {
+        return std::nullopt;
+    }
+    const auto most = std::max_element(failures.rbegin(), failures.rend());
+    return static_cast<std::size_t>(failures.rend() - most) - 1;
 }
 
 }  // namespace downwash::planning
