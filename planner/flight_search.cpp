@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <cstdlib>
 #include "downwash/planner/flight_search.hpp"
 
 #include <algorithm>
@@ -124,7 +122,6 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
     certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_too_late)
                                                      : worlds_->screen(flown, goals_.size(), is_too_late);
     known_at_s_ = clock_.seconds();
-    if (getenv("DBG")) { int by[9]={}; for (auto& w : certificate_->worst) if (w.outcome != Outcome::ok) ++by[w.goal]; fprintf(stderr, "DBG visits %zu t %.2f worlds %llu failures %llu given %d cost %.4f att %llu by %d %d %d\n", goals_.size(), known_at_s_, (unsigned long long)certificate_->worlds, (unsigned long long)certificate_->failures, (int)certificate_->is_given, cost, (unsigned long long)attempts_, by[0],by[1],by[2]); }
     if (certificate_->is_given) {
         return true;
     }
@@ -247,9 +244,6 @@ void FlightSearch::run_tree() {
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});
-    if (worlds_ != nullptr) {
-        planner.set_known_counterexamples(worlds_->known_counterexamples(before_));
-    }
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_observer(

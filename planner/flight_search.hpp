@@ -22,8 +22,9 @@ namespace downwash::planning {
 /// @param map of the planner's own model; nullptr for none   @param before what was flown up to the part's start
 /// @param worlds that edges and plans have to survive; nullptr: everything is as believed
 /// @return as PartSearch
-DOWNWASH_EXPORT std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
-                                    const AeroMap* map, const Course& before, ProblemWorlds* worlds,
-                                    const SolveOptions& options, Solution& solution);
+DOWNWASH_EXPORT std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole,
+                                                          const FlightModel& model, const AeroMap* map,
+                                                          const Course& before, ProblemWorlds* worlds,
+                                                          const SolveOptions& options, Solution& solution);
 
 }  // namespace downwash::planning

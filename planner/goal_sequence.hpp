@@ -31,13 +31,14 @@ struct Course {
 /// direct aerodynamics, the execution of course and plan together.
 /// @return the goal before, from 0, the way to which has to be searched anew: its flights fail most often in the worlds
 /// of certificates, so that no way from there helps. Empty otherwise
-using PartSearch = std::function<std::optional<std::size_t>(const Problem& part, const SolveOptions&, const Course& before, Solution&)>;
+using PartSearch = std::function<std::optional<std::size_t>(const Problem& part, const SolveOptions&,
+                                                            const Course& before, Solution&)>;
 
 /// Searches goal by goal, each from the whole vehicle that holds at the one before: in a first round until there is a
-/// whole way, then in rounds that take twice as long each, for cheaper ways. Where the flights of a plan fail on the way
-/// to an earlier goal, the search goes back to that goal. More of a round's time goes to the parts
-/// that became cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the
-/// best of all ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
+/// whole way, then in rounds that take twice as long each, for cheaper ways. Where the flights of a plan fail on the
+/// way to an earlier goal, the search goes back to that goal. More of a round's time goes to the parts that became
+/// cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the best of all
+/// ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
                    const PartSearch& search, Solution& solution);

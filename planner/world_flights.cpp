@@ -167,9 +167,10 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
     const bool misses_a_goal = hovers.size() + 1 < visits;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Rejection rejection = jobs[i].rejection();
-        flights[world_of[i]] = {rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
-                                min_clearance_m(jobs[i]),
-                                misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers)};
+        flights[world_of[i]] = {
+            rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
+            min_clearance_m(jobs[i]),
+            misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers)};
     }
     return flights;
 }

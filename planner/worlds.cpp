@@ -7,7 +7,6 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/certificate_record.hpp"
-#include "downwash/search/planned_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/noise.hpp"
 
@@ -78,8 +77,7 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
     : problem_(problem),
       flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache,
                [stop = options.stop] { return stop.stop_requested(); }),
-      threads_(options.threads),
-      failed_in_(goals_of(problem).size()) {}
+      threads_(options.threads) {}
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
@@ -127,31 +125,11 @@ std::vector<Counterexample> ProblemWorlds::counterexamples(const Certificate& ce
     constexpr std::size_t most = 4;
     std::vector<FlownWorld> worlds;
     for (const WorldSample& sample : certificate.worst) {
-        if (sample.outcome == Outcome::ok) {
-            continue;
-        }
-        std::deque<std::uint64_t>& known = failed_in_[sample.goal];
-        known.push_back(sample.world);
-        if (known.size() > 8) {
-            known.pop_front();
-        }
-        if (sample.goal == before.goals.size() && worlds.size() < most) {
+        const bool is_failure = sample.outcome != Outcome::ok && sample.goal == before.goals.size();
+        if (is_failure && worlds.size() < most) {
             worlds.push_back(world(sample.world));
         }
     }
-    return counterexamples_in(std::move(worlds), before);
-}
-
-std::vector<Counterexample> ProblemWorlds::known_counterexamples(const Course& before) {
-    std::vector<FlownWorld> worlds;
-    for (const std::uint64_t index : failed_in_[before.goals.size()]) {
-        worlds.push_back(world(index));
-    }
-    return counterexamples_in(std::move(worlds), before);
-}
-
-/// Those of the worlds in which the vehicle gets through the course.
-std::vector<Counterexample> ProblemWorlds::counterexamples_in(std::vector<FlownWorld> worlds, const Course& before) {
     const std::vector<std::optional<FlightState>> vehicles = vehicles_after(before, worlds);
     std::vector<Counterexample> counterexamples;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
@@ -239,10 +217,10 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, con
 }
 
 Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, const StopCondition& is_over) {
-    constexpr double no_confidence = 0.8;  // nothing is claimed
+    constexpr double confidence = 0.8;  // with less, parts pass that no later part can make up for
     const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
     return tested(begin, visits, (first_screening + screenings_++) * worlds_per_attempt, is_over,
-                  CertificateRecord(share, no_confidence, 1, visits - 1));
+                  CertificateRecord(share, confidence, 1, visits - 1));
 }
 
 std::optional<std::size_t> weakest_part(const Certificate& certificate) {

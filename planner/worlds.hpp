@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <memory>
 
@@ -26,12 +25,8 @@ class ProblemWorlds {
     /// @throws InputError when the vehicle cannot hover at its start in some of them
     [[nodiscard]] SearchWorlds for_search(const Course& before);
 
-    /// Worlds in which a plan failed after the course, with the vehicle there at the end of the course. All worlds in
-    /// which it failed are remembered.
+    /// Worlds in which a plan failed after the course, with the vehicle there at the end of the course.
     [[nodiscard]] std::vector<Counterexample> counterexamples(const Certificate& certificate, const Course& before);
-
-    /// Worlds in which plans so far failed on the way to the goal that comes after the course.
-    [[nodiscard]] std::vector<Counterexample> known_counterexamples(const Course& before);
 
     /// Flies a plan through all goals in worlds that nobody has seen, until it is known whether it passes. One that
     /// is_over ends in the middle of that has not passed.
@@ -39,8 +34,8 @@ class ProblemWorlds {
     [[nodiscard]] Certificate certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over);
 
     /// Flies the beginning of a plan in the same way, in worlds apart. It passes where its last part, the way to one
-    /// goal, probably fails no more often than an equal share for each goal allows: that proves nothing, and takes
-    /// nothing from the error that all certificates share.
+    /// goal, probably fails no more often than an equal share for each goal allows. Nothing is claimed of such a plan,
+    /// so this takes nothing from the error that all certificates share.
     /// @param begin through the first `visits` goals of the problem
     [[nodiscard]] Certificate screen(const Plan& begin, std::size_t visits, const StopCondition& is_over);
 
@@ -59,13 +54,10 @@ class ProblemWorlds {
     void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
                       const StopCondition& is_over);
 
-    [[nodiscard]] std::vector<Counterexample> counterexamples_in(std::vector<FlownWorld> worlds, const Course& before);
-
     const Problem& problem_;
     WorldFlights flights_;
     int threads_;
-    std::uint64_t screenings_ = 0;
-    std::vector<std::deque<std::uint64_t>> failed_in_;  ///< for each goal, worlds in which the way to it failed
+    std::uint64_t screenings_ = 0;  ///< so far
 };
 
 /// The goal on whose way the flights of a plan failed most often, from 0; of several the last. Empty if none failed.

@@ -91,7 +91,6 @@ void FlightTreePlanner::clear() {
 void FlightTreePlanner::begin(const FlightPoint& start) {
     Random random(task_.problem.planner.seed);
     refiner_random_ = random.branch();
-    refined_flights_.join(known_counterexamples_);
     growth_.emplace(start, space_, parameters_, flights_, random);
     refiner_.emplace(start, refined_flights_, refiner_random_);
 }

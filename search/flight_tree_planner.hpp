@@ -56,8 +56,6 @@ class FlightTreePlanner : public ompl::base::Planner {
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
     void set_hooks(CandidateHooks hooks) { hooks_ = std::move(hooks); }
-    /// Worlds in which earlier plans failed, for the refiner from the start on.
-    void set_known_counterexamples(std::vector<Counterexample> known) { known_counterexamples_ = std::move(known); }
     /// The search ends after so many iterations since the last clear(), whatever the termination condition says.
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
     /// The search ends with the first plan that counts.
@@ -108,7 +106,6 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::function<void()> observer_;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
-    std::vector<Counterexample> known_counterexamples_;
     const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< of the solve() under way
 
     PlannedFlights flights_;          ///< of the tree
