@@ -40,7 +40,7 @@ using PartSearch = std::function<std::optional<std::size_t>(const Problem& part,
 /// cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the best of all
 /// ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none
-void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                   const PartSearch& search, Solution& solution);
+DOWNWASH_EXPORT void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map,
+                                   const SolveOptions& options, const PartSearch& search, Solution& solution);
 
 }  // namespace downwash::planning

