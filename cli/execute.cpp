@@ -17,6 +17,8 @@
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash::cli {
@@ -52,13 +54,31 @@ bool holds_plan(const fs::path& folder, const std::string& plan) {
 
 fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
     if (!given.out) {
-        const fs::path folder = default_folder(problem);
-        return holds_plan(folder, plan_file(given.plan)) ? fs::path(folder.string() + "-executed") : folder;
+        fs::path folder = default_folder(problem);
+        do {
+            folder += "-executed";
+        } while (holds_plan(folder, plan_file(given.plan)));
+        return folder;
     }
     if (holds_plan(*given.out, plan_file(given.plan))) {
         throw UsageError("--out " + *given.out + " holds the plan itself, which would be replaced; choose another");
     }
     return *given.out;
+}
+
+/// Whether a plan was made for another problem than that in which it is flown; planner settings do not count. A file
+/// without its run may be of the same problem with other settings, which nobody can tell.
+bool is_of_another_problem(const fs::path& plan, const std::string& made_for_sha256, Problem problem) {
+    if (made_for_sha256.empty() || made_for_sha256 == problem_sha256(problem)) {
+        return false;  // the former: written by hand
+    }
+    try {
+        const Problem made_for = read_problem((plan.parent_path() / "effective.yaml").string());
+        problem.planner = made_for.planner;
+        return problem_sha256(made_for) != made_for_sha256 || problem_sha256(problem) != made_for_sha256;
+    } catch (const std::runtime_error&) {  // there is none, or it cannot be read
+        return true;
+    }
 }
 
 std::uint64_t seed_of(const ExecuteArguments& given, const Problem& problem) {
@@ -109,7 +129,20 @@ ExitCode run(const ExecuteArguments& given) {
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
     RunFolder folder(folder_for(given, read), read, given.problem, given.force);
+    const bool is_other =
+        is_of_another_problem(plan_file(given.plan), problem_of_solution(plan_file(given.plan)).sha256, read);
+    if (is_other) {
+        solution.certificate.reset();
+        noting(warnings, given.is_quiet)(
+            {plan_file(given.plan), 1, 1,
+             "this plan was made for another problem, or for another version of it: its certificate says nothing "
+             "here and is left out, and the status is that of this flight"});
+    }
     fly(read, given.aero == "on", world, solution);
+    if (is_other) {
+        const bool is_solved = solution.execution->outcome == Outcome::ok && !read.uncertainty;
+        solution.status = is_solved ? Status::solved : Status::approximate;
+    }
     if (world) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
@@ -141,8 +174,7 @@ void add_execute(CLI::App& program, Action& action) {
               "world I of the problem's uncertainty to fly in; 0 is the nominal one (default)");
     add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
     add_out(command, "DIR", given.out,
-            "folder for the results; default downwash-out/NAME-VARIANT-SEED/, with -executed appended if the plan "
-            "itself is in that folder");
+            "folder for the results; default downwash-out/NAME-VARIANT-SEED-executed/");
     add_force(command, given.force);
     add_threads(command, given.threads);
     add_quiet(command, given.is_quiet);

@@ -56,7 +56,7 @@ void require_replaceable(const fs::path& folder, const Problem& problem, const s
     }
     ProblemReference there;
     try {
-        there = problem_of_run(folder);
+        there = problem_of_solution(folder / names_of_files().front());
     } catch (const InputError& error) {
         throw UsageError("{}; {}", error.what(), remedies);
     }

@@ -233,10 +233,10 @@ RunRecord read_run(const fs::path& folder) {
     return run;
 }
 
-ProblemReference problem_of_run(const fs::path& folder) {
+ProblemReference problem_of_solution(const fs::path& file) {
     RunRecord run;
-    run.solution_text = text_of(folder / solution_name);
-    return take_solution(folder / solution_name, run).problem;
+    run.solution_text = text_of(file);
+    return take_solution(file, run).problem;
 }
 
 void require_whole_run(const fs::path& folder) {

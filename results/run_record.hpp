@@ -46,9 +46,9 @@ struct RunRecord {
 /// write
 [[nodiscard]] DOWNWASH_EXPORT RunRecord read_run(const std::filesystem::path& folder);
 
-/// Which problem the run in a folder solves, as its solution.json says. What it does not say is empty.
+/// Which problem a solution.json is of, as it says. What it does not say is empty.
 /// @throws InputError if there is no such file or it is not what they write
-[[nodiscard]] DOWNWASH_EXPORT ProblemReference problem_of_run(const std::filesystem::path& folder);
+[[nodiscard]] DOWNWASH_EXPORT ProblemReference problem_of_solution(const std::filesystem::path& file);
 
 /// Checks that the files in a folder are of the same run, as far as they are there: for those who read its
 /// solution.json only. A plan that was written by hand holds no digests, and nothing is compared.

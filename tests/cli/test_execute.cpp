@@ -54,6 +54,45 @@ TEST_CASE("A plan flown again flies as before") {
         CHECK(in_world("--world 0", "nominal") != third);
         CHECK(in_world("--world 3 --seed 9", "other") != third);
     }
+    SECTION("and replaces no run of a search by default") {
+        const std::string again = home + "-executed";
+        work.succeed("execute", problem, "--plan", home);
+        work.succeed("execute", problem, "--plan", again);
+        CHECK(work.files(home) == before);
+        CHECK(work.files(again + "-executed").size() == files_of_a_run);
+    }
+    SECTION("and takes no certificate along into another problem, whatever planner settings are") {
+        auto certified = solved;
+        certified.at("certificate") = {{"given", true}, {"worlds", 500}, {"failures", 0},
+            {"failure_probability", {{"estimate", 0}, {"low", 0}, {"high", 0.01}}},
+            {"max_failure_probability", 0.01}, {"confidence", 0.95}, {"attempts", 1},
+            {"clearance_m", {{"p01", 0.1}, {"p10", 0.1}, {"p50", 0.1}}}, {"causes", nlohmann::json::object()},
+            {"worst", nlohmann::json::array()}};
+        write_file(work.in_run(plan), certified.dump(2));
+        const auto executed = [&](const std::string& in, const std::string& from, const std::string& out) {
+            const Result flown = work.run("execute", in, "--plan", from, "--json --out", out);
+            INFO(flown.err);
+            REQUIRE(!flown.out.empty());
+            CHECK((flown.err.find("another problem") != std::string::npos) == flown.json().at("certificate").is_null());
+            return flown.json();
+        };
+        const auto same = executed(problem, plan, "same");
+        CHECK(same.at("certificate").at("given") == true);
+        CHECK(same.at("status") == "solved");
+
+        std::string text = work.text(home + "/effective.yaml");
+        const std::string deck = "center_m: [0, 0, 10.5]";
+        REQUIRE(text.find(deck) != std::string::npos);
+        text.replace(text.find(deck), deck.size(), "center_m: [0, 0, 10.45]");
+        write_file(work.in_run("lower.yaml"), text);
+        const auto lower = executed("lower.yaml", plan, "lower");
+        CHECK(lower.at("certificate").is_null());
+        CHECK((lower.at("status") == "solved") == (lower.at("execution").at("outcome") == "ok"));
+        CHECK(lower.at("warnings").size() > same.at("warnings").size());
+
+        write_file(work.in_run("loose.json"), certified.dump(2));
+        CHECK(executed(problem, "loose.json", "loose").at("certificate").is_null());  // nobody knows
+    }
     SECTION("but not in a problem that starts elsewhere") {
         const Result rejected = work.run("execute", problem_file("open_air"), "--plan", plan);
         check_rejected(rejected, plan + ":");

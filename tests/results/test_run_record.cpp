@@ -101,14 +101,14 @@ TEST_CASE("files of two runs in one folder are no run, whichever of them is the 
 
 TEST_CASE("a folder tells which problem its run solves") {
     const SolvedRun run;
-    const ProblemReference problem = problem_of_run(run.folder());
+    const ProblemReference problem = problem_of_solution(run.folder() / "solution.json");
     CHECK(problem.name == run.problem.name);
     CHECK(problem.file == "problem.yaml");
     CHECK(problem.sha256 == problem_sha256(run.problem));
     write_file(run.file("solution.json"), R"({"schema": "downwash/solution/v1", "plan": null})");
-    CHECK(problem_of_run(run.folder()).sha256.empty());
+    CHECK(problem_of_solution(run.folder() / "solution.json").sha256.empty());
     write_file(run.file("solution.json"), "{}");
-    CHECK_THROWS_AS(problem_of_run(run.folder()), InputError);
+    CHECK_THROWS_AS(problem_of_solution(run.folder() / "solution.json"), InputError);
 }
 
 TEST_CASE("files that no run left behind are errors with their place") {
