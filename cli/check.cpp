@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -72,11 +73,14 @@ ExitCode run(const CheckArguments& given) {
     }
     auto faults = Json::array();
     auto warnings = Json::array();
+    std::set<std::string> told;
     for (const std::string& path : given.problems) {
         const Findings found = findings_in(path);
         for (const LocatedError& error : found.errors) {
-            print_error(fmt::format("{}\n", to_text(error)));
-            faults.push_back(json_of(error));
+            if (told.insert(to_text(error)).second) {  // two problems may have the same robot
+                print_error(fmt::format("{}\n", to_text(error)));
+                faults.push_back(json_of(error));
+            }
         }
         for (const LocatedError& warning : found.warnings) {
             print_warning(warning);

@@ -150,7 +150,7 @@ ExitCode run(const ExecuteArguments& given) {
     const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
     write_page(folder.path(), record, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
-                                   : summary_of(verdict_on_flight(*solution.execution), solution, folder.path()));
+                                   : summary_of(verdict_on_flight(*solution.execution), read, solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
         return interruption.code();
     }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/text.hpp"
@@ -45,9 +46,10 @@ std::string without_indices(const std::string& key) {
     return text;
 }
 
+/// What there is to say of a key below its path.
 std::string explanation_of(const KeyReference& key, const std::vector<KeyReference>& all) {
     const ParameterInfo& info = key.info;
-    std::string text = info.path + "\n";
+    std::string text;
     if (!info.description.empty()) {
         text += "  " + info.description + "\n";
     }
@@ -92,15 +94,25 @@ std::string keys_about(std::string_view word, const std::vector<KeyReference>& a
 ExitCode run(const ExplainArguments& given) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
     const std::string wanted = without_indices(given.key);
-    std::string text;
     for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
+        std::vector<std::pair<std::string, std::string>> found;  // paths, and what there is to say of all of them
         for (const KeyReference& known : all) {
-            if (is_meant(known.info.path, wanted)) {
-                text += (text.empty() ? "" : "\n") + explanation_of(known, all);
+            if (!is_meant(known.info.path, wanted)) {
+                continue;
+            }
+            const std::string explanation = explanation_of(known, all);
+            const auto same = std::find_if(found.begin(), found.end(),
+                                           [&](const auto& other) { return other.second == explanation; });
+            if (same != found.end()) {
+                same->first += known.info.path + "\n";
+            } else {
+                found.emplace_back(known.info.path + "\n", explanation);
             }
         }
-        if (!text.empty()) {
-            fmt::print("{}", text);
+        for (const auto& [paths, explanation] : found) {
+            fmt::print("{}{}{}", &paths == &found.front().first ? "" : "\n", paths, explanation);
+        }
+        if (!found.empty()) {
             return ExitCode::done;
         }
     }
@@ -113,7 +125,9 @@ ExitCode run(const ExplainArguments& given) {
         names.push_back(known.info.path);
         names.push_back(last_name(known.info.path));
     }
-    throw UsageError("a {} file has no key '{}'{}", given.kind, excerpt(given.key), did_you_mean(wanted, names));
+    throw UsageError("a {0} file has no key '{1}', and no description has the word{2}; `downwash check --schema {0}` "
+                     "prints all keys",
+                     given.kind, excerpt(given.key), did_you_mean(wanted, names));
 }
 
 }  // namespace

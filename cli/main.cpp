@@ -69,6 +69,9 @@ std::string explained(const CLI::App& command, const CLI::Error& error) {
         if (error.get_name() == "RequiredError") {
             return fmt::format("{} is required: expected {}", spelled, expected);
         }
+        if (error.get_name() == "ArgumentMismatch" && option->get_items_expected_min() > 1) {
+            return fmt::format("{} takes {} values: expected {}", spelled, option->get_items_expected_min(), expected);
+        }
         if (error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch") {
             return fmt::format("{}; expected {}", message, expected);
         }

@@ -74,7 +74,7 @@ std::string synopsis(const CLI::App& command) {
 std::string in_cell(const std::string& text) {
     std::string cell;
     for (const char letter : text) {
-        cell += letter == '|' ? "\\|" : letter == '\n' ? " " : std::string(1, letter);
+        cell += letter == '|' ? "\\|" : letter == '\n' ? "<br>" : std::string(1, letter);
     }
     return cell;
 }

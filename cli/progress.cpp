@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <string_view>
@@ -23,9 +24,18 @@ bool is_live_terminal() {
 
 std::string text_of(const Progress& progress) {
     const std::string best = progress.best_cost ? fmt::format("best cost {:.6g}", *progress.best_cost) : "no plan yet";
-    const std::string goal = progress.goals > 1 ? fmt::format("goal {} of {}, ", progress.goal, progress.goals) : "";
-    return goal + fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s,
-                              progress.iterations, progress.nodes, progress.rejected, best);
+    std::string text = fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s,
+                                   progress.iterations, progress.nodes, progress.rejected, best);
+    if (progress.goals > 1) {
+        text = fmt::format("goal {} of {}, {}", progress.goal, progress.goals, text);
+    }
+    if (progress.round > 1) {
+        text = fmt::format("round {}, {}", progress.round, text);
+    }
+    if (progress.worlds) {
+        text += fmt::format("; certifying a plan: {} worlds, {} failed", *progress.worlds, progress.failures);
+    }
+    return text;
 }
 
 /// A line with the time of day before it.
@@ -40,14 +50,14 @@ void log(const std::string& text) {
 ProgressDisplay::ProgressDisplay(bool is_quiet) : is_quiet_(is_quiet), is_live_(is_live_terminal()) {}
 
 ProgressDisplay::~ProgressDisplay() {
-    clear_line();
+    clear();
 }
 
 void ProgressDisplay::say(const std::string& text) {
     if (is_quiet_) {
         return;
     }
-    clear_line();
+    clear();
     log(text);
 }
 
@@ -69,18 +79,28 @@ void ProgressDisplay::show(const std::string& task, double share) {
     if (is_quiet_) {
         return;
     }
-    if (task != task_) {
+    if (task != task_ || share < logged_share_) {
         task_ = task;
         logged_share_ = 0;
+        task_began_ = Clock::now();
     }
     if (is_live_) {
         const int done = static_cast<int>(share * width);
-        show_live(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %", task, "", done, "", width - done, 100 * share));
+        show_live(fmt::format("{} [{:=<{}}{: <{}}] {:3.0f} %{}", task, "", done, "", width - done, 100 * share,
+                              time_left(share)));
     } else if (share >= logged_share_ + min_step && Clock::now() >= next_task_log_) {
-        log(fmt::format("{}: {:.0f} %", task, 100 * share));
+        log(fmt::format("{}: {:.0f} %{}", task, 100 * share, time_left(share)));
         logged_share_ = share;
         next_task_log_ = Clock::now() + task_period;
     }
+}
+
+/// Of the task, if its work is spread evenly; nothing before that can be told.
+std::string ProgressDisplay::time_left(double share) const {
+    constexpr double min_s = 2;
+    const double spent_s = std::chrono::duration<double>(Clock::now() - task_began_).count();
+    const double left_s = spent_s * (1 - share) / share;
+    return spent_s > min_s && share > 0 && share < 1 ? fmt::format(", about {:.0f} s left", std::ceil(left_s)) : "";
 }
 
 void ProgressDisplay::show_live(const std::string& text) {
@@ -88,7 +108,7 @@ void ProgressDisplay::show_live(const std::string& text) {
     has_line_ = true;
 }
 
-void ProgressDisplay::clear_line() {
+void ProgressDisplay::clear() {
     if (has_line_) {
         print_error(erase_line);
         has_line_ = false;

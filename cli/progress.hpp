@@ -24,10 +24,12 @@ class ProgressDisplay {
     void show(const Progress& progress);
     /// Shows the share of a task that is done, 0 to 1.
     void show(const std::string& task, double share);
+    /// Takes away the line that is rewritten, before something else is printed.
+    void clear();
 
  private:
     void show_live(const std::string& text);
-    void clear_line();
+    [[nodiscard]] std::string time_left(double share) const;
 
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds search_period{1}, task_period{5};
@@ -38,6 +40,7 @@ class ProgressDisplay {
     Clock::time_point next_log_ = Clock::now();
     Clock::time_point next_task_log_ = Clock::now() + task_period;
     std::string task_;
+    Clock::time_point task_began_ = Clock::now();
     double logged_share_ = 0;  ///< of the task
 };
 

@@ -39,7 +39,41 @@ std::string millimetres(double length_m) {
     return !std::isfinite(length_m) ? "without limit" : to_fixed_text(length_m, 3) + " m";
 }
 
-std::string flight_rows(const Solution& solution, const Execution& flight) {
+/// The error of a visit beside what the goal allows, where that is one number.
+std::string error_text(const Goal& goal, const GoalVisit& visit) {
+    const std::string error = "error " + millimetres(visit.error_m);
+    if (!goal.any_of.empty()) {
+        return error;
+    }
+    const GoalTolerance tolerance = tolerance_of(goal);
+    return error + (tolerance.is_disc ? fmt::format(", allowed {:g} m", tolerance.x_m)
+                                      : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
+}
+
+/// The goal that the search did not get to.
+std::string missed_goal(const Solution& solution) {
+    return solution.planning.goal ? fmt::format("goal {}", *solution.planning.goal) : "the goal";
+}
+
+/// As it is pasted into a shell.
+std::string shell_word(const std::string& text) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
+        return text;
+    }
+    std::string quoted = "'";
+    for (const char c : text) {
+        quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    }
+    return quoted + "'";
+}
+
+std::string missed_region(const Solution& solution) {
+    return solution.planning.goal ? "the region of " + missed_goal(solution) : "the goal region";
+}
+
+std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution, const Execution& flight) {
     std::string text;
     const std::string_view symbol = unit_of(solution.objective);
     const std::string unit = symbol.empty() ? "" : " " + std::string(symbol);
@@ -54,6 +88,11 @@ std::string flight_rows(const Solution& solution, const Execution& flight) {
         const auto met =
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
         text += row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+        for (std::size_t i = 0; i < flight.goals.size(); ++i) {
+            if (!flight.goals[i].is_met) {
+                text += row("", fmt::format("goal {} missed: {}", i + 1, error_text(goals[i], flight.goals[i])));
+            }
+        }
     }
     text += row("min. clearance",
                 std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
@@ -85,7 +124,7 @@ RunRecord write_results(RunFolder& folder, const Problem& problem, const std::st
 
 namespace {
 
-std::string certificate_rows(const Certificate& certificate) {
+std::string certificate_rows(const Certificate& certificate, const std::filesystem::path& folder) {
     const auto& probability = certificate.failure_probability;
     std::string text =
         row("certificate",
@@ -99,8 +138,9 @@ std::string certificate_rows(const Certificate& certificate) {
         causes += (causes.empty() ? "" : ", ") + cause + " " + std::to_string(count);
     }
     if (!causes.empty()) {
-        text += row("", causes + "; see one: `downwash execute PROBLEM --plan solution.json --world " +
-                            std::to_string(certificate.worst.front().world) + "`");
+        text += row("", causes + "; to see one of them:");
+        text += row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
+                                    shell_word(folder), certificate.worst.front().world));
     }
     return text;
 }
@@ -138,21 +178,27 @@ std::string verdict_on_search(const Solution& solution) {
         return stopped + fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
                                      solution.certificate->failures, solution.certificate->worlds);
     }
+    if (solution.planning.obstruction && solution.planning.obstruction->cause == "certificate") {
+        return stopped + fmt::format("No solution within the limits: every way to {} failed in too many worlds.",
+                                     missed_goal(solution));
+    }
     if (solution.planning.obstruction && solution.planning.obstruction->cause == "unfinished_flight") {
-        return stopped + "A way to the goal was found, but the time was over before its flight was.";
+        return stopped + fmt::format("A way to {} was found, but the time was over before its flight was.",
+                                     missed_goal(solution));
     }
     if (solution.plan && !solution.execution) {
         return stopped + "There is a plan, but its flight was not finished.";
     }
     if (solution.status == Status::approximate) {
         const auto& off_m = solution.planning.nearest_approach_m;
-        return stopped + "No solution within the limits; the nearest approach to the goal" +
+        return stopped + "No solution within the limits; the nearest approach to " + missed_goal(solution) +
                (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
     }
     return stopped + "No solution within the limits.";
 }
 
-std::string summary_of(const std::string& verdict, const Solution& solution, const std::filesystem::path& folder) {
+std::string summary_of(const std::string& verdict, const Problem& problem, const Solution& solution,
+                       const std::filesystem::path& folder) {
     std::string text = verdict + "\n\n";
     text += row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
                                       solution.algorithm, text_of(solution.objective), solution.seed));
@@ -161,10 +207,10 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
                                          solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.execution) {
-        text += flight_rows(solution, *solution.execution);
+        text += flight_rows(goals_of(problem), solution, *solution.execution);
     }
     if (solution.certificate) {
-        text += certificate_rows(*solution.certificate);
+        text += certificate_rows(*solution.certificate, folder);
     }
     const SearchRecord& record = solution.planning;
     text += row("first solution",
@@ -175,13 +221,14 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
         text += row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
     }
     if (record.nearest_approach_m) {
-        text += row("nearest approach", fmt::format("{:.3f} m from the goal region", *record.nearest_approach_m));
+        text += row("nearest approach", fmt::format("{:.3f} m from {}", *record.nearest_approach_m, missed_region(solution)));
     }
     if (record.obstruction) {
         const Obstruction& o = *record.obstruction;
         text += row("stopped by",
-                    fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from the goal region", o.cause,
-                                o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m));
+                    fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
+                                o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m,
+                                missed_region(solution)));
         const bool is_unfinished =
             solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
         if (o.cause == "certificate" && is_unfinished) {
@@ -195,7 +242,7 @@ std::string summary_of(const std::string& verdict, const Solution& solution, con
             text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += row("", "the last one failed or came nearer to an obstacle than the margin.");
         } else if (o.goal_distance_m <= 0) {
-            text += row("", "The vehicle reached the goal region but could not hover there.");
+            text += row("", "The vehicle reached " + missed_region(solution) + " but could not hover there.");
             text += row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }
     }

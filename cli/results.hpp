@@ -30,7 +30,7 @@ RunRecord write_results(RunFolder& folder, const Problem& problem, const std::st
 [[nodiscard]] std::string verdict_on_flight(const Execution& flight);
 
 /// A solution for people: the verdict, then a table.
-[[nodiscard]] std::string summary_of(const std::string& verdict, const Solution& solution,
+[[nodiscard]] std::string summary_of(const std::string& verdict, const Problem& problem, const Solution& solution,
                                      const std::filesystem::path& folder);
 
 /// The exit code that a solution deserves if no signal ended the search.

@@ -52,12 +52,16 @@ std::string outcome_of(const Remedy& remedy) {
     return "not certified in time";
 }
 
-void print_remedies(const Problem& problem, SolveOptions options) {
+void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet) {
     constexpr double limit_s = 5;
-    fmt::print("What would help, each tried by itself for up to {} s:\n\n", limit_s);
-    options.on_progress = nullptr;
-    options.on_map_progress = nullptr;
-    static_cast<void>(try_remedies(problem, options, limit_s, [](const Remedy& remedy) {
+    fmt::print("\nWhat would help, each tried by itself for up to {} s:\n\n",
+               limit_s * static_cast<double>(1 + problem.stops.size()));
+    std::fflush(stdout);
+    ProgressDisplay display(is_quiet);
+    options.on_progress = [&](const Progress& progress) { display.show(progress); };
+    options.on_map_progress = [&](double share) { display.show("aero map", share); };
+    static_cast<void>(try_remedies(problem, options, limit_s, [&](const Remedy& remedy) {
+        display.clear();
         fmt::print("  {:<41} {}\n", remedy.change, outcome_of(remedy));
         std::fflush(stdout);
     }));
@@ -94,9 +98,9 @@ ExitCode run(const SolveArguments& given) {
         write_page(folder.path(), record, given.threads);
     }
     fmt::print("{}",
-               given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), solution, folder.path()));
+               given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), read, solution, folder.path()));
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
-        print_remedies(read, options);
+        print_remedies(read, options, given.is_quiet);
     }
     return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
 }
@@ -128,7 +132,7 @@ void add_solve(CLI::App& program, Action& action) {
     CLI::Option* remedies =
         command.add_flag("--remedies", given.tries_remedies,
                          "where no plan gets its certificate, try what would help: another place or tolerance of the "
-                         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each");
+                         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of several goals");
     add_json(command, given.as_json, "solution.json");
     command.get_option("--json")->excludes(remedies);
 }

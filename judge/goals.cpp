@@ -69,11 +69,6 @@ GoalDistance goal_distance(const Goal& goal, const ArmParameters& arm, const Pla
     return *nearest;
 }
 
-std::int64_t last_tick(const Plan& plan, const Goal& goal, const ArmParameters& arm) {
-    const ReferenceKnot& last = plan.reference.back();
-    return last.tick + ticks_of(goal_distance(goal, arm, level(last.point)).hold_s, plan.tick_s);
-}
-
 std::vector<std::int64_t> hover_ends(const Plan& plan, std::span<const Goal> goals, const ArmParameters& arm) {
     std::vector<std::int64_t> ends;
     const auto stands = [](const ReferencePoint& point) {
@@ -89,9 +84,9 @@ std::vector<std::int64_t> hover_ends(const Plan& plan, std::span<const Goal> goa
             ends.push_back(to.tick);
         }
     }
-    if (ends.size() + 1 == goals.size()) {
-        ends.push_back(last_tick(plan, goals.back(), arm));
-    }
+    const ReferenceKnot& last = plan.reference.back();
+    const double hold_s = goal_distance(goals[ends.size()], arm, level(last.point)).hold_s;
+    ends.push_back(last.tick + ticks_of(hold_s, plan.tick_s));
     return ends;
 }
 

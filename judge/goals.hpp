@@ -25,12 +25,9 @@ struct GoalDistance {
                                                          const PlanarPose& pose);
 
 /// The ticks at which the hovers of the goals of a plan end, in their order; fewer if the plan does not come to all of
-/// them. The vehicle hovers at the last goal behind the last knot, at each other one between two knots that are the
+/// them. The vehicle hovers at the last of these behind the last knot, at each other one between two knots that are the
 /// same point at rest, meet the goal and are at least its hold apart.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::int64_t> hover_ends(const Plan& plan, std::span<const Goal> goals,
                                                                    const ArmParameters& arm);
-
-/// The last tick of a flight of a plan: the end of the hover behind its last knot.
-[[nodiscard]] DOWNWASH_EXPORT std::int64_t last_tick(const Plan& plan, const Goal& goal, const ArmParameters& arm);
 
 }  // namespace downwash::judge

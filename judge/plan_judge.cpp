@@ -85,7 +85,8 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
     Umpire umpire(problem, effects, setting.obstacles, world, flight);
     Reference reference(plan);
     const std::vector<Goal> goals = goals_of(problem);
-    const std::int64_t end = last_tick(plan, goals.back(), problem.robot.arm);
+    const std::vector<std::int64_t> hovers = hover_ends(plan, goals, problem.robot.arm);
+    const std::int64_t end = hovers.back();
     ReferencePoint now = reference.at(0);
     bool goes_on = flight.outcome == Outcome::ok;
     goes_on = umpire.sees(loop, now) && goes_on;
@@ -94,7 +95,7 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         now = reference.at(tick + 1);
         goes_on = umpire.sees(loop, now);
     }
-    umpire.sees_goals(goals, hover_ends(plan, goals, problem.robot.arm));
+    umpire.sees_goals(goals, hovers);
     return flight;
 }
 

@@ -22,6 +22,7 @@ class CertificateRecord {
           first_goal_(first_goal) {}
 
     [[nodiscard]] std::uint64_t worlds() const noexcept { return samples_.size(); }
+    [[nodiscard]] std::uint64_t failures() const noexcept { return failures_ + failures_before_; }
     /// Few enough failures in enough worlds.
     [[nodiscard]] bool passes() const noexcept { return !has_failed() && worlds_wanted() == 0; }
     /// How many more worlds it takes to pass, if no other flight fails; 0 once nothing can change.

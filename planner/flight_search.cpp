@@ -119,8 +119,12 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
     const Plan flown = before_.continued_by(plan);
     const StopCondition is_too_late = [this] { return is_over(); };
-    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_too_late)
-                                                     : worlds_->screen(flown, goals_.size(), is_too_late);
+    const WorldCounter counter = [this](std::uint64_t worlds, std::uint64_t failures) {
+        clock_.certifies(worlds, failures);
+    };
+    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_too_late, counter)
+                                                     : worlds_->screen(flown, goals_.size(), is_too_late, counter);
+    clock_.has_certified();
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;

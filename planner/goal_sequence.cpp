@@ -185,6 +185,7 @@ class GoalSequence {
     std::vector<std::uint32_t> given_up_;  ///< of these, because they took too long
     Budget whole_;
     Budget left_;
+    std::size_t round_ = 1;           ///< that is going on
     std::uint64_t attempts_ = 0;      ///< plans that asked for a certificate
     std::vector<double> part_costs_;  ///< of the best way
     std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
@@ -205,6 +206,7 @@ void GoalSequence::run() {
     work.wall_s = std::max(work.wall_s, least_s);
     bool is_last = false;
     while (!is_last && !is_over()) {
+        ++round_;
         work.iterations *= 2;
         work.wall_s *= 2;
         const double share = left_.share_of(work);
@@ -273,6 +275,7 @@ bool GoalSequence::search_part(Round& round) {
     way.planning.flight_wall_s = found.planning.flight_wall_s;
     way.planning.nearest_approach_m = found.planning.nearest_approach_m;
     way.planning.obstruction = found.planning.obstruction;
+    way.planning.goal = number + 1;
     if (found.certificate) {
         attempts_ = found.certificate->attempts;
         way.certificate = is_last ? found.certificate : std::nullopt;  // a part says nothing of the whole
@@ -323,6 +326,7 @@ SolveOptions GoalSequence::options_of_part(const Round& round) {
             progress.iterations += solution_.planning.iterations;
             progress.goal = number + 1;
             progress.goals = goals_.size();
+            progress.round = round_;
             const std::optional<double> best_of_part = std::exchange(progress.best_cost, std::nullopt);
             if (has_way()) {
                 progress.best_cost = solution_.cost;
@@ -414,6 +418,7 @@ void GoalSequence::take(Round round) {
     solution_.planning.flight_wall_s = way.planning.flight_wall_s;
     solution_.planning.nearest_approach_m = way.planning.nearest_approach_m;
     solution_.planning.obstruction = way.planning.obstruction;
+    solution_.planning.goal = has_way() ? std::nullopt : way.planning.goal;
 }
 
 }  // namespace

@@ -123,13 +123,14 @@ void know_better(Problem& problem) {
 struct Change {
     std::string_view name;
     void (*make)(Problem&);
+    std::string_view name_of_several = name;  ///< of goals in turn
 };
 
 constexpr Change changes[] = {
-    {"the goal 0.1 m lower", [](Problem& problem) { raise_goals(problem, -0.1); }},
-    {"the goal 0.2 m lower", [](Problem& problem) { raise_goals(problem, -0.2); }},
-    {"the goal 0.2 m higher", [](Problem& problem) { raise_goals(problem, 0.2); }},
-    {"1.5 times the goal's tolerance", widen_tolerances},
+    {"the goal 0.1 m lower", [](Problem& problem) { raise_goals(problem, -0.1); }, "all goals 0.1 m lower"},
+    {"the goal 0.2 m lower", [](Problem& problem) { raise_goals(problem, -0.2); }, "all goals 0.2 m lower"},
+    {"the goal 0.2 m higher", [](Problem& problem) { raise_goals(problem, 0.2); }, "all goals 0.2 m higher"},
+    {"1.5 times the goal's tolerance", widen_tolerances, "1.5 times the tolerance of all goals"},
     {"0.1 m more margin", [](Problem& problem) { problem.planner.safety_margin_m += 0.1; }},
     {"half the speed", slow_down},
     {"a position loop that is 15 % faster", stiffen_if_known},
@@ -138,7 +139,7 @@ constexpr Change changes[] = {
 
 Remedy tried(const Change& change, Problem problem, SolveOptions options) {
     Remedy remedy;
-    remedy.change = change.name;
+    remedy.change = problem.stops.empty() ? change.name : change.name_of_several;
     change.make(problem);
     try {
         const Solution solution = solve(problem, options);
@@ -158,7 +159,7 @@ Remedy tried(const Change& change, Problem problem, SolveOptions options) {
 std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& options, double limit_s,
                                  const std::function<void(const Remedy&)>& on_tried) {
     Problem limited = problem;
-    limited.planner.time_limit_s = limit_s;
+    limited.planner.time_limit_s = limit_s * static_cast<double>(1 + problem.stops.size());
     SolveOptions until_first = options;
     until_first.stop_at_first_solution = true;
     until_first.keep_tree = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -56,6 +57,15 @@ class SearchClock {
         solution_.planning.improvements.push_back({at_s, iteration, cost, flown_cost});
     }
 
+    /// A plan is flown in worlds: how many so far, and in how many it failed. From any thread.
+    void certifies(std::uint64_t worlds, std::uint64_t failures) {
+        certified_in_ = worlds;
+        failed_in_ = failures;
+        is_certifying_ = true;
+    }
+    /// That is over.
+    void has_certified() { is_certifying_ = false; }
+
     /// How far the search has come.
     void note(std::uint64_t iterations, std::uint64_t nodes, std::uint64_t rejected) {
         progress_.iterations = iterations;
@@ -75,6 +85,8 @@ class SearchClock {
         progress_.wall_s = now_s;
         const auto& improvements = solution_.planning.improvements;
         progress_.best_cost = improvements.empty() ? std::nullopt : std::optional(improvements.back().cost);
+        progress_.worlds = is_certifying_ ? std::optional(certified_in_.load()) : std::nullopt;
+        progress_.failures = failed_in_;
         options_.on_progress(progress_);
     }
 
@@ -84,6 +96,8 @@ class SearchClock {
     Stopwatch clock_;
     std::optional<double> limit_s_;
     Progress progress_;  ///< as reported last
+    std::atomic<bool> is_certifying_ = false;
+    std::atomic<std::uint64_t> certified_in_ = 0, failed_in_ = 0;
     std::thread::id thread_ = std::this_thread::get_id();
 };
 

@@ -22,6 +22,10 @@ struct Progress {
     std::optional<double> best_cost;  ///< of the whole way; empty before the first solution
     std::size_t goal = 1;             ///< the goal to which a way is searched, from 1
     std::size_t goals = 1;            ///< how many there are
+    std::size_t round = 1;            ///< of several goals: of searches for a whole way through them, from 1
+    /// Of the plan that is being flown in worlds: how many so far, and in how many it failed. Empty at other times.
+    std::optional<std::uint64_t> worlds;
+    std::uint64_t failures = 0;
 };
 
 /// A plan that a search has just found, better than all before.

@@ -170,11 +170,15 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
 /// Adds flights in new worlds to a record, until it is known whether the plan passes. @throws WorkStopped
 /// @return whether direct flights agree that it does
 bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                        const StopCondition& is_over, CertificateRecord& record) {
+                                        const StopCondition& is_over, const WorldCounter& counter,
+                                        CertificateRecord& record) {
     constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
     constexpr std::size_t flown_directly = 2;
     for (;;) {
         throw_if_over(is_over);
+        if (counter) {
+            counter(record.worlds(), record.failures());
+        }
         const std::uint64_t wanted = record.worlds_wanted();
         if (wanted == 0) {
             if (!record.passes()) {
@@ -201,25 +205,28 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
 }
 
 Certificate ProblemWorlds::tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                  const StopCondition& is_over, CertificateRecord record) {
+                                  const StopCondition& is_over, const WorldCounter& counter,
+                                  CertificateRecord record) {
     bool is_checked = false;
     try {
-        is_checked = fly_for_certificate(whole, visits, first_world, is_over, record);
+        is_checked = fly_for_certificate(whole, visits, first_world, is_over, counter, record);
     } catch (const WorkStopped&) {  // it has what was flown so far
     }
     return record.certificate(is_checked);
 }
 
-Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over) {
+Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over,
+                                   const WorldCounter& counter) {
     const PlannerSettings& settings = problem_.planner;
-    return tested(whole, goals(), attempt * worlds_per_attempt, is_over,
+    return tested(whole, goals(), attempt * worlds_per_attempt, is_over, counter,
                   CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
 }
 
-Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, const StopCondition& is_over) {
+Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, const StopCondition& is_over,
+                                  const WorldCounter& counter) {
     constexpr double confidence = 0.8;  // with less, parts pass that no later part can make up for
     const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
-    return tested(begin, visits, (first_screening + screenings_++) * worlds_per_attempt, is_over,
+    return tested(begin, visits, (first_screening + screenings_++) * worlds_per_attempt, is_over, counter,
                   CertificateRecord(share, confidence, 1, visits - 1));
 }
 

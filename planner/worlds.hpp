@@ -12,6 +12,9 @@ namespace downwash::planning {
 
 class CertificateRecord;
 
+/// Told now and then in how many worlds a plan was flown, and in how many it failed.
+using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t failures)>;
+
 /// The worlds of a search and the certificates of its plans.
 class ProblemWorlds {
  public:
@@ -31,13 +34,15 @@ class ProblemWorlds {
     /// Flies a plan through all goals in worlds that nobody has seen, until it is known whether it passes. One that
     /// is_over ends in the middle of that has not passed.
     /// @param attempt from 1
-    [[nodiscard]] Certificate certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over);
+    [[nodiscard]] Certificate certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over,
+                                      const WorldCounter& counter = {});
 
     /// Flies the beginning of a plan in the same way, in worlds apart. It passes where its last part, the way to one
     /// goal, probably fails no more often than an equal share for each goal allows. Nothing is claimed of such a plan,
     /// so this takes nothing from the error that all certificates share.
     /// @param begin through the first `visits` goals of the problem
-    [[nodiscard]] Certificate screen(const Plan& begin, std::size_t visits, const StopCondition& is_over);
+    [[nodiscard]] Certificate screen(const Plan& begin, std::size_t visits, const StopCondition& is_over,
+                                     const WorldCounter& counter = {});
 
     /// How many goals the problem has.
     [[nodiscard]] std::size_t goals() const noexcept { return flights_.goals().size(); }
@@ -47,9 +52,11 @@ class ProblemWorlds {
                                                                          std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
     [[nodiscard]] bool fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                           const StopCondition& is_over, CertificateRecord& record);
+                                           const StopCondition& is_over, const WorldCounter& counter,
+                                           CertificateRecord& record);
     [[nodiscard]] Certificate tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                     const StopCondition& is_over, CertificateRecord record);
+                                     const StopCondition& is_over, const WorldCounter& counter,
+                                     CertificateRecord record);
     /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
     void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
                       const StopCondition& is_over);

@@ -144,6 +144,22 @@ std::vector<KeyError> configurations_in_collision(const ProblemCheck& check) {
     });
 }
 
+/// The name of a box, cylinder or sphere around a point of the plane of motion; empty if there is none.
+std::string obstacle_around(const ProblemCheck& check, double x_m, double z_m) {
+    const Vector3 at_m = check.problem().plane.to_world(x_m, 0, z_m);
+    std::size_t part = 0;  // those of primitives come first, in the order of the obstacles
+    for (const Obstacle& obstacle : check.problem().obstacles) {
+        if (std::holds_alternative<Mesh>(obstacle.shape) || std::holds_alternative<Octomap>(obstacle.shape)) {
+            continue;
+        }
+        const Interval inside = check.scene()->vertical_extent(part++, at_m[0], at_m[1]);
+        if (inside.low <= at_m[2] && at_m[2] <= inside.high) {
+            return obstacle.name;
+        }
+    }
+    return "";
+}
+
 std::vector<KeyError> end_effector_out_of_reach(const ProblemCheck& check, const Goal& goal, const std::string& key) {
     const Problem& p = check.problem();
     if (!goal.end_effector) {
@@ -164,9 +180,12 @@ std::vector<KeyError> end_effector_out_of_reach(const ProblemCheck& check, const
         case Reach::blocked:
             break;
     }
+    const std::string around = obstacle_around(check, goal.end_effector->x_m, goal.end_effector->z_m);
+    const std::string where = around.empty() ? "" : "; it is inside the obstacle '" + excerpt(around) + "'";
     return {{key,
              "is out of reach: in every pose that gets there the robot touches an obstacle or is "
-             "nearer to it than planner.safety_margin_m"}};
+             "nearer to it than planner.safety_margin_m" +
+                 where}};
 }
 
 std::vector<KeyError> end_effectors_out_of_reach(const ProblemCheck& check) {

@@ -78,6 +78,23 @@ std::vector<KeyError> overlapping_discs(const Robot& robot) {
     return {};
 }
 
+/// All rotors at the same place along x have the same thrust, which is linear in x.
+std::vector<KeyError> unbalanced_roll(const Robot& robot) {
+    constexpr double rounding_m = 1e-3;
+    double sum_m = 0;
+    double moment_m2 = 0;
+    for (const auto& hub : robot.rotors.positions_m) {
+        sum_m += hub[1];
+        moment_m2 += hub[0] * hub[1];
+    }
+    if (std::abs(sum_m) < rounding_m && std::abs(moment_m2) < rounding_m) {
+        return {};
+    }
+    return {{"rotors.positions_m",
+             "is not the same to the left and to the right: the rotors would roll the vehicle out of its plane of "
+             "motion; expected y that cancel at the front and at the back"}};
+}
+
 std::vector<KeyError> gains_of_zero(const Robot& robot) {
     std::vector<KeyError> warnings;
     std::visit(
@@ -120,7 +137,7 @@ std::vector<KeyError> unusual_power(const Robot& robot) {
 
 std::vector<KeyError> robot_remarks(const Robot& robot) {
     std::vector<KeyError> all;
-    for (const auto& find : {thin_margins, overlapping_discs, gains_of_zero, unusual_power}) {
+    for (const auto& find : {thin_margins, overlapping_discs, unbalanced_roll, gains_of_zero, unusual_power}) {
         const std::vector<KeyError> found = find(robot);
         all.insert(all.end(), found.begin(), found.end());
     }

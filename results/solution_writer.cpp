@@ -75,7 +75,8 @@ Json planning_json(const SearchRecord& record) {
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
             {"nearest_approach_m", number(record.nearest_approach_m)},
-            {"obstruction", obstruction_json(record.obstruction)}};
+            {"obstruction", obstruction_json(record.obstruction)},
+            {"goal", record.goal ? Json(*record.goal) : Json()}};
 }
 
 Json knot_json(const ReferenceKnot& knot, double tick_s) {

@@ -126,11 +126,11 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
             tree_left_ = 0;  // the rounds begin with the first plan
         }
         hand_to_refiner();
-        if (stops_at_first_plan_) {
-            settle_best(terminated);  // at once, and whatever else may have been found beside it
-        }
         if (observer_) {
             observer_();
+        }
+        if (stops_at_first_plan_) {
+            settle_best(terminated);  // at once, and whatever else may have been found beside it
         }
     }
     if (!is_done()) {

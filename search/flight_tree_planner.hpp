@@ -60,7 +60,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
     /// The search ends with the first plan that counts.
     void set_stops_at_first_plan(bool stops) { stops_at_first_plan_ = stops; }
-    /// Called after every batch, or round.
+    /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
     [[nodiscard]] std::uint64_t iterations() const noexcept { return iterations_; }

@@ -54,6 +54,7 @@ struct SearchRecord {
     /// flights, what stopped it there.
     std::optional<double> nearest_approach_m;
     std::optional<Obstruction> obstruction;
+    std::optional<std::size_t> goal;  ///< of several goals in turn the one that they are about, from 1
 };
 
 /// A node of the tree that a search has grown.

@@ -146,16 +146,14 @@ std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot
 }
 
 /// The ticks at which the hovers at the goals end, in their order; fewer when the reference does not come to all of
-/// them. The last one is that of the last goal, at which the vehicle hovers after the last knot.
+/// them. The last one is that of the hover after the last knot.
 std::vector<std::int64_t> end_ticks(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
                                     std::span<const Goal> goals) {
     std::vector<std::int64_t> ends;
     for (const std::size_t knot : hover_ends(model, knots, goals)) {
         ends.push_back(knots[knot].tick);
     }
-    if (ends.size() + 1 == goals.size()) {
-        ends.push_back(knots.back().tick + hold_ticks(goals.back(), model, knots.back().point));
-    }
+    ends.push_back(knots.back().tick + hold_ticks(goals[ends.size()], model, knots.back().point));
     return ends;
 }
 
@@ -176,6 +174,7 @@ GoalVisit visit_of(const Goal& goal, std::optional<std::int64_t> end, const Flig
     return visit;
 }
 
+/// @param ends see end_ticks()
 void judge_goals(const FlightModel& model, std::span<const Goal> goals, const std::vector<std::int64_t>& ends,
                  Execution& execution) {
     for (std::size_t i = 0; i < goals.size(); ++i) {
@@ -204,7 +203,8 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
     Rejection rejection = recorder.judge(state, reference);
-    const std::int64_t hold = hold_ticks(goals.back(), model, knots.back().point);
+    const std::vector<std::int64_t> ends = end_ticks(model, knots, goals);
+    const std::int64_t hold = ends.back() - knots.back().tick;
     for (const ReferenceSegment& segment : segments_with_hold(knots, hold, model.tick().tick_s)) {
         if (rejection != Rejection::none) {
             break;
@@ -232,7 +232,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
-    judge_goals(model, goals, end_ticks(model, knots, goals), execution);
+    judge_goals(model, goals, ends, execution);
     return execution;
 }
 

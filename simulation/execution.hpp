@@ -86,7 +86,7 @@ struct Execution : FlightSums {
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
 /// @param goals at least one, in the order of the visits. The vehicle hovers at the last one after the last knot. It
 /// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold
-/// apart
+/// apart. Where it does not hover at all of those, it hovers after the last knot for the first that is left
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 /// @param in the world of the flight; of its ceiling part only the model is asked
 /// @throws WorkStopped when it is over before the flight ends

@@ -164,6 +164,7 @@ TEST_CASE("Check warns of what is likely not meant and the exit code stays 0") {
     for (const auto& [part, by, key] :
          {std::tuple{"time_constant_s: 0.05", "time_constant_s: 0.4", "controller"},
           {"radius_m: 0.1905", "radius_m: 0.33", "rotors.positions_m"},
+          {"[-0.32, -0.32, 0.06]]", "[-0.32, -0.30, 0.06]]", "rotors.positions_m"},  // rolls
           {"power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154", "rotors.power_coefficient_w_n1p5"},
           {"rate_kp: 14", "rate_kp: 0", "controller.attitude.rate_kp"}}) {
         CAPTURE(by);

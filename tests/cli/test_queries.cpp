@@ -49,7 +49,7 @@ TEST_CASE("Many points are read from a file or from standard input, after those 
     write_file(work.in_run("points.txt"), "0 0 1\n0 zero 1\n");
     check_rejected(work.run(query, "--points points.txt"), "points.txt:2:");
     CHECK(work.run(query, "--at 1 2 3 4").code == 2);
-    CHECK(work.run(query, "--at 1 2").code == 2);
+    check_rejected(work.run(query, "--at 1 2"), "--at takes 3 values: expected --at X Y Z: ");
     const auto asked = [&](const char* options, const std::string& input) {
         return work.run_in({}, input, words("aeromap query", problem_file("bridge_inspection"), options));
     };

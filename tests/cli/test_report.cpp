@@ -81,6 +81,8 @@ TEST_CASE("Keys are explained from the table that reads them") {
     CHECK_THAT(work.run("explain environment.obstacles[3].name").out, Contains("environment.obstacles[].name"));
     CHECK_THAT(work.run("explain goal").out, Contains("hold_s"));
     CHECK(work.run("explain goal.hold").out == work.run("explain goal.hold_s").out);
+    CHECK_THAT(work.run("explain tolerance_m").out,
+               StartsWith("goal.end_effector.tolerance_m\ngoal.configuration.tolerance_m\n"));  // said once
     CHECK_THAT(work.run("explain uncertainty.vehicle.mass_scale").out,
                StartsWith("robot.uncertainty.vehicle.mass_scale\n") && Contains("default:  {sd: 0.02}\n") &&
                    Contains("\nuncertainty.vehicle.mass_scale\n") &&
@@ -91,6 +93,7 @@ TEST_CASE("Keys are explained from the table that reads them") {
                    Contains("No key is called") && Contains("planner.safety_margin_m") && Contains("least clearance"));
     }
     check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
+    check_rejected(work.run("explain boiler"), "`downwash check --schema problem` prints all keys");
 }
 
 TEST_CASE("Schemas, manual pages and completions come from the same tables") {

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <sstream>
 
 #include "program.hpp"
 
@@ -119,6 +121,19 @@ TEST_CASE("Check tells of every error with file and line and column") {
         CHECK(error.at("line").get<int>() >= 1);
         CHECK(error.at("column").get<int>() >= 1);
         CHECK_FALSE(error.at("message").get<std::string>().empty());
+    }
+    const std::string other = work / "other.yaml";  // with the same robot
+    write_file(work / "robot.yaml", "schema: downwash/robot/v1\nname: r\n");
+    for (const std::string& file : {bad, other}) {
+        write_file(file, "schema: downwash/problem/v1\nname: p\nrobot: robot.yaml\n");
+    }
+    const std::string once = work.run("check", bad, other).err;
+    const std::string fault = "robot.yaml:1:1: ";
+    REQUIRE(once.find(fault) != std::string::npos);
+    std::set<std::string> lines;
+    std::istringstream text(once);
+    for (std::string line; std::getline(text, line);) {
+        CHECK(lines.insert(line).second);
     }
     CHECK(work.run("check", good, "--json").json() ==
           nlohmann::json{{"faults", nlohmann::json::array()}, {"warnings", nlohmann::json::array()}});

@@ -286,4 +286,12 @@ TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets 
     REQUIRE(remedies.size() == 2);
     CHECK_THAT(remedies[1].error, Catch::Contains("goal"));
     CHECK_FALSE(remedies[1].helps);
+
+    problem.stops = {problem.goal};
+    problem.goal = configuration_goal(3, 2);
+    std::stop_source after_one;
+    options.stop = after_one.get_token();
+    const auto of_several = try_remedies(problem, options, 10, [&](const Remedy&) { after_one.request_stop(); });
+    REQUIRE(of_several.size() == 1);
+    CHECK(of_several[0].change == "all goals 0.1 m lower");
 }

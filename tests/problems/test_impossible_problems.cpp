@@ -39,7 +39,7 @@ const Edit edits[] = {
      "widen environment.bounds or move the goal"},
     {"x_m: 3, z_m: 2.5", "x_m: 3, z_m: -0.4",
      "14:3: goal.end_effector is out of reach: in every pose that gets there the robot touches an obstacle or is "
-     "nearer to it than planner.safety_margin_m"},
+     "nearer to it than planner.safety_margin_m; it is inside the obstacle 'ground'"},
     {"x_m: 3, z_m: 2.5, tolerance_m: 0.1", "x_m: 3, z_m: 6, tolerance_m: 0.1, direction_deg: 90",
      "14:3: goal.end_effector is out of reach: the limits of the arm, the wanted direction and the bounds leave no "
      "pose that gets there"},

@@ -167,12 +167,21 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
 
     const Execution reversed = flown_by(held, {problem.goal, stop});
     CHECK(reversed.outcome == Outcome::goal_missed);
-    CHECK_FALSE(reversed.goals[0].is_met);
+    CHECK(reversed.goals[0].is_met);  // after the last knot
+    CHECK_FALSE(reversed.goals[1].is_met);
 
     // Two goals at one place need two holds.
     CHECK(flown_by(held, {stop, stop, problem.goal}).outcome == Outcome::goal_missed);
     const std::vector<ReferenceKnot> twice{{0, start}, {400, middle}, {600, middle}, {800, middle}, {1200, end}};
     CHECK(flown_by(twice, {stop, stop, problem.goal}).outcome == Outcome::ok);
+
+    // A plan that ends at the first goal holds it, for as long as that one asks.
+    const Execution first_only = flown_by({{0, start}, {400, middle}}, {stop, problem.goal});
+    CHECK(first_only.outcome == Outcome::goal_missed);
+    CHECK(first_only.goals[0].is_met);
+    CHECK_FALSE(first_only.goals[1].is_met);
+    CHECK(first_only.goals[1].error_m == Approx(1).margin(0.02));
+    CHECK(first_only.duration_s == Approx(6));
 }
 
 TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for the last second") {

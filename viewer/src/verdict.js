@@ -37,6 +37,8 @@ function world_text({world}) { return world ? `, in world ${world.index} of seed
 function blocked_lines({solution, outcome}) {
     const {certificate, execution, planning, status, interrupted} = solution;
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
+    const goal = planning?.goal ? `goal ${planning.goal}` : "the goal";
+    const region = planning?.goal ? `the region of ${goal}` : "the goal region";
     const lines = [];
     if (interrupted) {
         lines.push("The search was interrupted.");
@@ -46,10 +48,10 @@ function blocked_lines({solution, outcome}) {
         lines.push(
             certificate ?
                 `The page shows a plan that reaches the goal without a certificate, which counts as no solution.${flight}` :
-                `The page shows an approximate plan: it ends near the goal, which counts as no solution.${flight}`);
+                `The page shows an approximate plan: it ends near ${goal}, which counts as no solution.${flight}`);
     }
     if (Number.isFinite(nearest)) {
-        lines.push(`The vehicle came within ${meters(nearest)} of the goal region.`);
+        lines.push(`The vehicle came within ${meters(nearest)} of ${region}.`);
     }
     if (stop?.cause === "direct_flight") {
         lines.push(
@@ -58,15 +60,15 @@ function blocked_lines({solution, outcome}) {
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
     } else if (stop?.cause === "unfinished_flight") {
         lines.push(
-            "The planner found a way to the goal, but the time was over before its flight with direct aerodynamics was.");
+            `The planner found a way to ${goal}, but the time was over before its flight with direct aerodynamics was.`);
     } else if (stop?.cause === "certificate") {
         lines.push(
-            "The planner discarded every plan: in worlds that the search had not seen, each failed too often.");
+            `The planner discarded every way to ${goal}: in worlds that the search had not seen, each failed too often.`);
     } else if (stop) {
         lines.push(
-            `The planner rejected the nearest path into the goal region because it ${cause_text(stop.cause)}, ` +
+            `The planner rejected the nearest path into ${region} because it ${cause_text(stop.cause)}, ` +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ` +
-            `${place(stop.goal_distance_m)} from the goal region.`);
+            `${place(stop.goal_distance_m)} from ${region}.`);
     }
     if (lines.length === 0) {
         const [cause, count] = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0] ?? ["", 0];
@@ -141,7 +143,8 @@ function figures_of(model) {
             execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");
     }
     if (Number.isFinite(planning?.nearest_approach_m)) {
-        add("Nearest approach", meters(planning.nearest_approach_m), "to the goal region");
+        add("Nearest approach", meters(planning.nearest_approach_m),
+            planning.goal ? `to the region of goal ${planning.goal}` : "to the goal region");
     }
     const first = planning?.first_solution_wall_s;
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
