@@ -173,8 +173,7 @@ void add_execute(CLI::App& program, Action& action) {
     add_value(command, "--world I", given.world,
               "world I of the problem's uncertainty to fly in; 0 is the nominal one (default)");
     add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
-    add_out(command, "DIR", given.out,
-            "folder for the results; default downwash-out/NAME-VARIANT-SEED-executed/");
+    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED-executed/");
     add_force(command, given.force);
     add_threads(command, given.threads);
     add_quiet(command, given.is_quiet);

@@ -125,9 +125,10 @@ ExitCode run(const ExplainArguments& given) {
         names.push_back(known.info.path);
         names.push_back(last_name(known.info.path));
     }
-    throw UsageError("a {0} file has no key '{1}', and no description has the word{2}; `downwash check --schema {0}` "
-                     "prints all keys",
-                     given.kind, excerpt(given.key), did_you_mean(wanted, names));
+    throw UsageError(
+        "a {0} file has no key '{1}', and no description has the word{2}; `downwash check --schema {0}` "
+        "prints all keys",
+        given.kind, excerpt(given.key), did_you_mean(wanted, names));
 }
 
 }  // namespace

@@ -46,8 +46,9 @@ std::string error_text(const Goal& goal, const GoalVisit& visit) {
         return error;
     }
     const GoalTolerance tolerance = tolerance_of(goal);
-    return error + (tolerance.is_disc ? fmt::format(", allowed {:g} m", tolerance.x_m)
-                                      : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
+    return error + (tolerance.is_disc
+                        ? fmt::format(", allowed {:g} m", tolerance.x_m)
+                        : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
 }
 
 /// The goal that the search did not get to.
@@ -57,8 +58,7 @@ std::string missed_goal(const Solution& solution) {
 
 /// As it is pasted into a shell.
 std::string shell_word(const std::string& text) {
-    constexpr std::string_view plain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
     if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
         return text;
     }
@@ -221,14 +221,14 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
     }
     if (record.nearest_approach_m) {
-        text += row("nearest approach", fmt::format("{:.3f} m from {}", *record.nearest_approach_m, missed_region(solution)));
+        text += row("nearest approach",
+                    fmt::format("{:.3f} m from {}", *record.nearest_approach_m, missed_region(solution)));
     }
     if (record.obstruction) {
         const Obstruction& o = *record.obstruction;
-        text += row("stopped by",
-                    fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
-                                o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m,
-                                missed_region(solution)));
+        text += row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
+                                              o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m,
+                                              missed_region(solution)));
         const bool is_unfinished =
             solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
         if (o.cause == "certificate" && is_unfinished) {

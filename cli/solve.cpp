@@ -97,8 +97,8 @@ ExitCode run(const SolveArguments& given) {
     if (solution.map != nullptr || !solution.interrupted) {  // without a map there was no search to be shown yet
         write_page(folder.path(), record, given.threads);
     }
-    fmt::print("{}",
-               given.as_json ? record.solution_text : summary_of(verdict_on_search(solution), read, solution, folder.path()));
+    fmt::print("{}", given.as_json ? record.solution_text
+                                   : summary_of(verdict_on_search(solution), read, solution, folder.path()));
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
         print_remedies(read, options, given.is_quiet);
     }
@@ -129,10 +129,10 @@ void add_solve(CLI::App& program, Action& action) {
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
-    CLI::Option* remedies =
-        command.add_flag("--remedies", given.tries_remedies,
-                         "where no plan gets its certificate, try what would help: another place or tolerance of the "
-                         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of several goals");
+    CLI::Option* remedies = command.add_flag(
+        "--remedies", given.tries_remedies,
+        "where no plan gets its certificate, try what would help: another place or tolerance of the "
+        "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of several goals");
     add_json(command, given.as_json, "solution.json");
     command.get_option("--json")->excludes(remedies);
 }

@@ -98,8 +98,8 @@ void check_goals(const Plan& plan, const Problem& problem, List& list) {
     }
     const std::size_t visits = hover_ends(plan, goals, problem.robot.arm).size();
     if (visits < goals.size()) {  // the last of them may be anywhere
-        list.found.push_back({"plan.reference: hovers at goals", static_cast<double>(visits - 1),
-                              static_cast<double>(goals.size())});
+        list.found.push_back(
+            {"plan.reference: hovers at goals", static_cast<double>(visits - 1), static_cast<double>(goals.size())});
     }
 }
 

@@ -45,6 +45,15 @@ class Budget {
         return less;
     }
 
+    /// This budget, but no more than so many seconds; one of iterations stays.
+    [[nodiscard]] Budget within_s(double most_s) const {
+        Budget less = *this;
+        if (!iterations_) {
+            less.time_s_ = std::min(time_s_, most_s);
+        }
+        return less;
+    }
+
     /// What part of this budget some work took; at most 1.
     [[nodiscard]] double share_of(const SearchRecord& work) const {
         const double share = iterations_ ? static_cast<double>(work.iterations) / static_cast<double>(*iterations_)
@@ -242,8 +251,10 @@ bool GoalSequence::give_up(Round& round) {
 /// Before there is a whole way: what a search for a part may take. Luck differs between searches, so that several short
 /// ones find more than one long one; each that is given up allows the next one twice as much.
 Budget GoalSequence::slice(std::size_t part) const {
-    const double first = 0.25 / static_cast<double>(goals_.size());
-    return whole_.part(std::min(1.0, std::ldexp(first, static_cast<int>(given_up_[part]))));
+    constexpr double longest_first_s = 2.5;
+    const double first_share = 0.25 / static_cast<double>(goals_.size());
+    const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
+    return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
 }
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.

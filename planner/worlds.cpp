@@ -205,8 +205,7 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
 }
 
 Certificate ProblemWorlds::tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                  const StopCondition& is_over, const WorldCounter& counter,
-                                  CertificateRecord record) {
+                                  const StopCondition& is_over, const WorldCounter& counter, CertificateRecord record) {
     bool is_checked = false;
     try {
         is_checked = fly_for_certificate(whole, visits, first_world, is_over, counter, record);

@@ -30,6 +30,7 @@ struct FigurePoints {
     std::string name;  ///< empty: not in the legend
     std::vector<PlanePoint> points;
     Color color{};
+    std::vector<std::string> labels = {};  ///< one for each point, where there is room beside it; or none at all
 };
 
 /// A scalar field over the plane of motion: filled contours, obstacles to scale, and further lines and points.
@@ -46,7 +47,7 @@ struct FieldFigure {
     std::string undefined_name = "not flyable";  ///< legend of the area where the field is not defined
     bool has_contour_lines = true;
     std::vector<ObstacleOutline> obstacles;
-    bool has_names = true;  ///< of obstacles, as far as there is room beside field, lines and points
+    bool has_names = true;  ///< of obstacles and points, as far as there is room beside field, lines and points
     std::vector<FigureLines> lines;
     std::vector<FigurePoints> points;
 };

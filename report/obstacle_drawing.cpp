@@ -154,6 +154,32 @@ void add_obstacle_data(GnuplotScript& script, const std::vector<VisibleOutline>&
     }
 }
 
+namespace {
+
+/// What is left free around a point of a figure: more where it has a label, which may have a leader to there.
+Ring square_around(const PlanePoint& at, bool has_label, double px_per_m) {
+    const double half_m = (has_label ? 14 : 8) / px_per_m;
+    return {{at.x_m - half_m, at.z_m - half_m},
+            {at.x_m + half_m, at.z_m - half_m},
+            {at.x_m + half_m, at.z_m + half_m},
+            {at.x_m - half_m, at.z_m + half_m},
+            {at.x_m - half_m, at.z_m - half_m}};
+}
+
+/// The names of obstacles, then the labels of points: as placed_names() numbers them.
+std::vector<std::string> names_of(const FieldFigure& figure, const std::vector<VisibleOutline>& outlines) {
+    std::vector<std::string> names;
+    for (const VisibleOutline& visible : outlines) {
+        names.push_back(shown_name(visible.outline.name));
+    }
+    for (const FigurePoints& points : figure.points) {
+        names.insert(names.end(), points.labels.begin(), points.labels.end());
+    }
+    return names;
+}
+
+}  // namespace
+
 std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
                                       const FieldLayout& layout) {
     const Bounds& extent = figure.extent;
@@ -162,6 +188,13 @@ std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vect
     for (const VisibleOutline& visible : outlines) {
         const double name_width_px = text_width_px(shown_name(visible.outline.name), font_px) + 6;
         shapes.push_back({name_width_px / px_per_m, visible.fill, visible.edges});
+    }
+    for (const FigurePoints& points : figure.points) {
+        for (std::size_t i = 0; i < points.labels.size(); ++i) {
+            shapes.push_back({(text_width_px(points.labels[i], font_px) + 6) / px_per_m,
+                              {},
+                              {square_around(points.points[i], true, px_per_m)}});
+        }
     }
     LabelGround ground;
     const double rim_m = 2 / px_per_m;
@@ -172,13 +205,10 @@ std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vect
         ground.taken.insert(ground.taken.end(), lines.pieces.begin(), lines.pieces.end());
     }
     for (const FigurePoints& points : figure.points) {
-        for (const auto& [x_m, z_m] : points.points) {
-            const double size_m = 8 / px_per_m;
-            ground.taken.push_back({{x_m - size_m, z_m - size_m},
-                                    {x_m + size_m, z_m - size_m},
-                                    {x_m + size_m, z_m + size_m},
-                                    {x_m - size_m, z_m + size_m},
-                                    {x_m - size_m, z_m - size_m}});
+        for (const PlanePoint& point : points.points) {
+            if (points.labels.empty()) {
+                ground.taken.push_back(square_around(point, false, px_per_m));
+            }
         }
     }
     const auto class_at = [&scale = figure.scale](double value) {
@@ -194,14 +224,14 @@ std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vect
 
 void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
                         const FieldLayout& layout) {
+    const std::vector<std::string> names = names_of(figure, outlines);
     for (const PlacedLabel& label : placed_names(figure, outlines, layout)) {
         if (label.leader) {
             const auto& [from, to] = *label.leader;
             script.add("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} nohead front linecolor rgb {} linewidth 0.8",
                        from.x_m, from.z_m, to.x_m, to.z_m, outline_color);
         }
-        script.add("set label {} at {:.9g},{:.9g} center front textcolor rgb {}",
-                   in_quotes(shown_name(outlines[label.shape].outline.name)),
+        script.add("set label {} at {:.9g},{:.9g} center front textcolor rgb {}", in_quotes(names[label.shape]),
                    (label.box.x_low_m + label.box.x_high_m) / 2, (label.box.z_low_m + label.box.z_high_m) / 2,
                    label.is_inside ? "'#ffffff'" : outline_color);
     }

@@ -35,13 +35,13 @@ void add_obstacles(Plot& plot, const std::vector<VisibleOutline>& outlines);
 /// Adds the data for add_obstacles().
 void add_obstacle_data(GnuplotScript& script, const std::vector<VisibleOutline>& outlines);
 
-/// The places of the obstacles' names: over no line or point of the figure, and where the scale has a neutral value,
-/// over no other. A name's shape is its place among the outlines.
+/// The places of the names of obstacles and points: over no line or point of the figure, and where the scale has a
+/// neutral value, over no other. A name's shape is its place among the outlines, then among the labels of points.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<PlacedLabel> placed_names(const FieldFigure& figure,
                                                                     const std::vector<VisibleOutline>& outlines,
                                                                     const FieldLayout& layout);
 
-/// Adds the names of obstacles where there is room.
+/// Adds the names of obstacles and points where there is room.
 void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const std::vector<VisibleOutline>& outlines,
                         const FieldLayout& layout);
 

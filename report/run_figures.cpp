@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -154,13 +155,19 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     return extent;
 }
 
-/// The goals that are a point of the plane.
+/// The goals that are a point of the plane; several in turn with their numbers.
 std::vector<FigurePoints> goal_points(const Problem& problem) {
     FigurePoints goals{"goal of the end effector", {}, goal_color};
+    int number = 0;
     for (const Goal& visited : goals_of(problem)) {
+        ++number;
         for (const Goal& goal : alternatives(visited)) {
-            if (goal.end_effector) {
-                goals.points.push_back({goal.end_effector->x_m, goal.end_effector->z_m});
+            if (!goal.end_effector) {
+                continue;
+            }
+            goals.points.push_back({goal.end_effector->x_m, goal.end_effector->z_m});
+            if (!problem.stops.empty()) {
+                goals.labels.push_back("goal " + std::to_string(number));
             }
         }
     }
@@ -168,6 +175,34 @@ std::vector<FigurePoints> goal_points(const Problem& problem) {
         return {};
     }
     return {std::move(goals)};
+}
+
+/// Where the end effector may be at such goals.
+Pieces goal_regions(const Problem& problem) {
+    constexpr int corners = 36;
+    Pieces regions;
+    for (const Goal& visited : goals_of(problem)) {
+        for (const Goal& goal : alternatives(visited)) {
+            if (!goal.end_effector) {
+                continue;
+            }
+            const double x_m = goal.end_effector->x_m, z_m = goal.end_effector->z_m;
+            const GoalTolerance tolerance = tolerance_of(goal);
+            Ring region;
+            for (int i = 0; i <= corners && tolerance.is_disc; ++i) {
+                const double angle_rad = 2 * std::numbers::pi * (i % corners) / corners;
+                region.push_back(
+                    {x_m + tolerance.x_m * std::cos(angle_rad), z_m + tolerance.z_m * std::sin(angle_rad)});
+            }
+            for (int i = 0; i <= 4 && !tolerance.is_disc; ++i) {
+                const double side_x = i % 4 == 0 || i % 4 == 3 ? -1 : 1;
+                const double side_z = i % 4 < 2 ? -1 : 1;
+                region.push_back({x_m + side_x * tolerance.x_m, z_m + side_z * tolerance.z_m});
+            }
+            regions.push_back(std::move(region));
+        }
+    }
+    return regions;
 }
 
 std::vector<DiagramPoint> over_time(const Flight& flight, const std::vector<double>& values, double factor = 1) {
@@ -240,6 +275,9 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
                      LineDash::dash_dotted},
                     {"flown", flown, flown_color, 1.6},
                     {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
+    if (Pieces regions = goal_regions(run.problem); !regions.empty()) {
+        figure.lines.push_back({"tolerance of the goal", std::move(regions), goal_color, 1});
+    }
     figure.points = goal_points(run.problem);
     return figure;
 }

@@ -63,11 +63,16 @@ TEST_CASE("A plan flown again flies as before") {
     }
     SECTION("and takes no certificate along into another problem, whatever planner settings are") {
         auto certified = solved;
-        certified.at("certificate") = {{"given", true}, {"worlds", 500}, {"failures", 0},
-            {"failure_probability", {{"estimate", 0}, {"low", 0}, {"high", 0.01}}},
-            {"max_failure_probability", 0.01}, {"confidence", 0.95}, {"attempts", 1},
-            {"clearance_m", {{"p01", 0.1}, {"p10", 0.1}, {"p50", 0.1}}}, {"causes", nlohmann::json::object()},
-            {"worst", nlohmann::json::array()}};
+        certified.at("certificate") = {{"given", true},
+                                       {"worlds", 500},
+                                       {"failures", 0},
+                                       {"failure_probability", {{"estimate", 0}, {"low", 0}, {"high", 0.01}}},
+                                       {"max_failure_probability", 0.01},
+                                       {"confidence", 0.95},
+                                       {"attempts", 1},
+                                       {"clearance_m", {{"p01", 0.1}, {"p10", 0.1}, {"p50", 0.1}}},
+                                       {"causes", nlohmann::json::object()},
+                                       {"worst", nlohmann::json::array()}};
         write_file(work.in_run(plan), certified.dump(2));
         const auto executed = [&](const std::string& in, const std::string& from, const std::string& out) {
             const Result flown = work.run("execute", in, "--plan", from, "--json --out", out);

@@ -39,18 +39,19 @@ function blocked_lines({solution, outcome}) {
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
     const goal = planning?.goal ? `goal ${planning.goal}` : "the goal";
     const region = planning?.goal ? `the region of ${goal}` : "the goal region";
+    const is_screened = stop?.cause === "certificate" && !certificate;  // a part of a way through several goals
     const lines = [];
     if (interrupted) {
         lines.push("The search was interrupted.");
     }
     if (status === "approximate") {
         const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
-        lines.push(
-            certificate ?
-                `The page shows a plan that reaches the goal without a certificate, which counts as no solution.${flight}` :
-                `The page shows an approximate plan: it ends near ${goal}, which counts as no solution.${flight}`);
+        const shown = certificate ? "a plan that reaches the goal without a certificate" :
+            is_screened           ? `a way to ${goal} that fails too often in other worlds` :
+                                    `an approximate plan: it ends near ${goal}`;
+        lines.push(`The page shows ${shown}, which counts as no solution.${is_screened ? "" : flight}`);
     }
-    if (Number.isFinite(nearest)) {
+    if (Number.isFinite(nearest) && !is_screened) {
         lines.push(`The vehicle came within ${meters(nearest)} of ${region}.`);
     }
     if (stop?.cause === "direct_flight") {
@@ -63,7 +64,7 @@ function blocked_lines({solution, outcome}) {
             `The planner found a way to ${goal}, but the time was over before its flight with direct aerodynamics was.`);
     } else if (stop?.cause === "certificate") {
         lines.push(
-            `The planner discarded every way to ${goal}: in worlds that the search had not seen, each failed too often.`);
+            `The planner discarded every plan to ${goal}: in worlds that the search had not seen, each failed too often.`);
     } else if (stop) {
         lines.push(
             `The planner rejected the nearest path into ${region} because it ${cause_text(stop.cause)}, ` +
