@@ -39,6 +39,39 @@ TEST_CASE("the arm of every snapshot ends where the end effector was flown") {
     CHECK(figure.points.size() == 1);
 }
 
+TEST_CASE("goals in turn have their numbers and tolerances in the picture, a single goal has no number") {
+    const Goal& single = record().problem.goal;
+    const auto region_of = [](const FieldFigure& figure) {
+        const auto found = std::find_if(figure.lines.begin(), figure.lines.end(), [](const FigureLines& lines) {
+            return lines.name == "tolerance of the goal";
+        });
+        REQUIRE(found != figure.lines.end());
+        return found->pieces;
+    };
+    const auto disc = region_of(snapshots());
+    for (const PlanePoint& corner : disc.at(0)) {
+        CHECK(std::hypot(corner.x_m - single.end_effector->x_m, corner.z_m - single.end_effector->z_m) ==
+              Approx(single.end_effector->tolerance_m));
+    }
+    CHECK(snapshots().points.at(0).labels.empty());
+
+    RunRecord tour = record();
+    Goal first = single;
+    first.end_effector->x_m = -1;
+    first.end_effector->z_m = 3.5;
+    first.end_effector->tolerance_x_m = 0.3;
+    first.end_effector->tolerance_z_m = 0.1;
+    tour.problem.stops = {first};
+    const FieldFigure figure = snapshot_figure(tour, *make_flight_model(record().problem));
+    CHECK(figure.points.at(0).labels == std::vector<std::string>{"goal 1", "goal 2"});
+    const auto rectangle = region_of(figure);
+    for (const PlanePoint& corner : rectangle.at(0)) {
+        CHECK(std::abs(corner.x_m + 1) == Approx(0.3));
+        CHECK(std::abs(corner.z_m - 3.5) == Approx(0.1));
+    }
+    CHECK_THAT(test::texts_of(figure, 900), Contains("goal 1"));
+}
+
 TEST_CASE("pictures of a run are the same bytes each time, in every format, and say what they show, with units") {
     const auto plots = time_figures(record());
     for (const PictureFormat format : {PictureFormat::svg, PictureFormat::png, PictureFormat::pdf}) {

@@ -248,6 +248,7 @@ class Verdicts(page_test.BrowserTest):
         text = self.verdict().replace("\u00a0", " ")
         self.assertIn("No plan within the limits", text)
         self.assertIn("touches an obstacle, at x 1.20 m, z 9.40 m", text)
+        self.assertIn("from the region of goal 2", text)
         self.assertEqual(self.js("return document.querySelectorAll('.trouble-mark').length"), 1)
         self.assertEqual(self.js("return document.querySelectorAll('input.time, .plots').length"), 0)
         self.assertIsNone(self.js("return downwash.time"))

@@ -201,7 +201,7 @@ def unsolved_report():
     report["solution"].update(status="none", plan=None, execution=None, cost=None)
     report["solution"]["planning"] = {
         **planning_json([], {"collision": 8123, "unstable": 17}), "nearest_approach_m": 0.431,
-        "obstruction": {"cause": "collision", "x_m": 1.2, "z_m": 9.4, "arm_rad": -0.4, "goal_distance_m": 0.62}}
+        "obstruction": {"cause": "collision", "x_m": 1.2, "z_m": 9.4, "arm_rad": -0.4, "goal_distance_m": 0.62}, "goal": 2}
     report.update(flight=None, _columns=None)
     return report
 
