@@ -41,7 +41,7 @@ std::string millimetres(double length_m) {
 
 /// The error of a visit beside what the goal allows, where that is one number.
 std::string error_text(const Goal& goal, const GoalVisit& visit) {
-    const std::string error = "error " + millimetres(visit.error_m);
+    std::string error = "error " + millimetres(visit.error_m);
     if (!goal.any_of.empty()) {
         return error;
     }

@@ -169,6 +169,7 @@ Ring square_around(const PlanePoint& at, bool has_label, double px_per_m) {
 /// The names of obstacles, then the labels of points: as placed_names() numbers them.
 std::vector<std::string> names_of(const FieldFigure& figure, const std::vector<VisibleOutline>& outlines) {
     std::vector<std::string> names;
+    names.reserve(outlines.size());
     for (const VisibleOutline& visible : outlines) {
         names.push_back(shown_name(visible.outline.name));
     }
