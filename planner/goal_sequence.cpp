@@ -67,6 +67,15 @@ class Budget {
         settings.time_limit_s = std::isfinite(time_s_) ? std::optional(std::max(min_s, time_s_)) : std::nullopt;
     }
 
+    /// Of a search that found nothing in this budget: it may have ended before, and more of it would help no more.
+    void charge(SearchRecord& work) const {
+        if (iterations_) {
+            work.iterations = std::max(work.iterations, *iterations_);
+        } else {
+            work.wall_s = std::max(work.wall_s, time_s_);
+        }
+    }
+
     void spend(const SearchRecord& work) {
         if (iterations_) {
             *iterations_ -= std::min(*iterations_, work.iterations);
@@ -276,11 +285,16 @@ bool GoalSequence::search_part(Round& round) {
     course.attempts = attempts_;
     Problem part = part_of(problem_, goals_[number], course);
     part.planner.seed += searches_[number]++;
-    (has_way() ? round.left.part(share(number)) : slice(number).at_most(round.left)).limit(part.planner);
+    const Budget budget = has_way() ? round.left.part(share(number)) : slice(number).at_most(round.left);
+    budget.limit(part.planner);
     Solution found;
     const std::optional<std::size_t> weak_goal = search_(part, options_of_part(round), course, found);
-    round.left.spend(found.planning);
-    left_.spend(found.planning);
+    SearchRecord spent = found.planning;
+    if (found.status != Status::solved && !weak_goal) {
+        budget.charge(spent);
+    }
+    round.left.spend(spent);
+    left_.spend(spent);
 
     Solution& way = round.way;
     way.planning.flight_wall_s = found.planning.flight_wall_s;

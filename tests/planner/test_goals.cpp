@@ -57,7 +57,7 @@ std::int64_t standing_tick(const Plan& plan, const ConfigurationGoal& at, double
 }
 
 /// What a search for a part comes to.
-enum class PartOutcome { found, too_late, first_part_is_weak };
+enum class PartOutcome { found, too_late, hopeless, first_part_is_weak };
 
 /// Solves a tour of three goals with searches that come to what they are told, and found from then on. Gives the
 /// numbers of the goals that were searched for, and the seeds.
@@ -76,7 +76,9 @@ struct ScriptedTour {
             const PartOutcome outcome = goals.size() < script.size() ? script[goals.size()] : PartOutcome::found;
             goals.push_back(before.goals.size());
             seeds.push_back(part.planner.seed);
-            found.planning.iterations = outcome == PartOutcome::too_late ? *part.planner.max_iterations : 10;
+            found.planning.iterations = outcome == PartOutcome::too_late   ? *part.planner.max_iterations
+                                        : outcome == PartOutcome::hopeless ? 0
+                                                                           : 10;
             const Configuration start = part.start.configuration();
             found.plan = Plan{{{0, at_rest(start)}, {500, at_rest({start.x_m + 1, 2, 0})}}, model->tick().tick_s};
             found.cost = 1;
@@ -109,6 +111,12 @@ TEST_CASE("a part of a tour that takes too long is searched anew, the second tim
     CHECK(tour.goals == std::vector<std::size_t>{0, 1, 1, 0, 1, 2});
     CHECK(tour.solution.status == Status::solved);
     CHECK(tour.solution.planning.iterations == 10 + 100 + 200 + 30);
+}
+
+TEST_CASE("a tour with a part that gives up at once comes to an end") {
+    const ScriptedTour tour(std::vector<PartOutcome>(1000, PartOutcome::hopeless));
+    CHECK(tour.solution.status == Status::approximate);
+    CHECK(tour.goals.size() < 10);
 }
 
 TEST_CASE("goals in a row are visited in their order, each held for its own time, in one flight") {

@@ -42,9 +42,8 @@ TEST_CASE("the arm of every snapshot ends where the end effector was flown") {
 TEST_CASE("goals in turn have their numbers and tolerances in the picture, a single goal has no number") {
     const Goal& single = record().problem.goal;
     const auto region_of = [](const FieldFigure& figure) {
-        const auto found = std::find_if(figure.lines.begin(), figure.lines.end(), [](const FigureLines& lines) {
-            return lines.name == "tolerance of the goal";
-        });
+        const auto found = std::find_if(figure.lines.begin(), figure.lines.end(),
+                                        [](const FigureLines& lines) { return lines.name == "tolerance of the goal"; });
         REQUIRE(found != figure.lines.end());
         return found->pieces;
     };
