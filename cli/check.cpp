@@ -73,18 +73,20 @@ ExitCode run(const CheckArguments& given) {
     }
     auto faults = Json::array();
     auto warnings = Json::array();
-    std::set<std::string> told;
+    std::set<std::string> told;  // two problems may have the same robot
     for (const std::string& path : given.problems) {
         const Findings found = findings_in(path);
         for (const LocatedError& error : found.errors) {
-            if (told.insert(to_text(error)).second) {  // two problems may have the same robot
+            if (told.insert(to_text(error)).second) {
                 print_error(fmt::format("{}\n", to_text(error)));
                 faults.push_back(json_of(error));
             }
         }
         for (const LocatedError& warning : found.warnings) {
-            print_warning(warning);
-            warnings.push_back(json_of(warning));
+            if (told.insert(to_text(warning)).second) {
+                print_warning(warning);
+                warnings.push_back(json_of(warning));
+            }
         }
         if (found.errors.empty() && !given.as_json) {
             const std::size_t count = found.warnings.size();

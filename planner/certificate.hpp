@@ -20,7 +20,7 @@ struct WorldSample {
     std::uint64_t world = 0;  ///< index, as of draw_world() with the problem's seed
     Outcome outcome = Outcome::ok;
     double min_clearance_m = 0;  ///< up to where the flight ended; infinity without obstacles
-    std::size_t goal = 0;        ///< of a failed flight: to which it was on the way, or which it missed; from 0
+    std::size_t goal = 0;  ///< of a failed flight: to which it was on the way, or which it missed; from 0. Not in files
 };
 
 /// What flights of a plan in worlds that no search has seen say about it.

@@ -111,12 +111,12 @@ export function make_playback(model, clock, signal) {
 
     const part = (time_s) => (time_s / (model.end_s || 1)).toFixed(5);
     const share = (time_s) => `left: calc(var(--thumb) / 2 + (100% - var(--thumb)) * ${part(time_s)})`;
-    const shortest_named = 0.15;  // of the bar: room for the word on a small screen
+    const shortest_named_s = 0.15 * model.end_s;  // so much of the bar has room for the word on a small screen
     const marks = model.hovers.map(
         ({from_s, to_s, goal}) =>
             h("span",
               {class: "mark hover", style: `${share(from_s)}; width: calc((100% - var(--thumb)) * ${part(to_s - from_s)})`},
-              h("span", null, goal !== null ? String(goal) : part(to_s - from_s) > shortest_named ? "hover" : "")));
+              h("span", null, goal !== null ? String(goal) : to_s - from_s > shortest_named_s ? "hover" : "")));
     if (model.is_cut_short) {
         marks.push(h("span", {class: "mark failure", style: share(model.end_s)}, "✕"));
     }
