@@ -67,10 +67,15 @@ fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
 }
 
 /// Whether a plan was made for another problem than that in which it is flown; planner settings do not count. A file
-/// without its run may be of the same problem with other settings, which nobody can tell.
-bool is_of_another_problem(const fs::path& plan, const std::string& made_for_sha256, Problem problem) {
-    if (made_for_sha256.empty() || made_for_sha256 == problem_sha256(problem)) {
-        return false;  // the former: written by hand
+/// without its run may be of the same problem with other settings, which nobody can tell. A plan written by hand is of
+/// no problem, so a certificate in its file is of another one.
+bool is_of_another_problem(const fs::path& plan, const Solution& solution, Problem problem) {
+    const std::string made_for_sha256 = problem_of_solution(plan).sha256;
+    if (made_for_sha256.empty()) {
+        return solution.certificate.has_value();
+    }
+    if (made_for_sha256 == problem_sha256(problem)) {
+        return false;
     }
     try {
         const Problem made_for = read_problem((plan.parent_path() / "effective.yaml").string());
@@ -129,8 +134,7 @@ ExitCode run(const ExecuteArguments& given) {
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
     RunFolder folder(folder_for(given, read), read, given.problem, given.force);
-    const bool is_other =
-        is_of_another_problem(plan_file(given.plan), problem_of_solution(plan_file(given.plan)).sha256, read);
+    const bool is_other = is_of_another_problem(plan_file(given.plan), solution, read);
     if (is_other) {
         solution.certificate.reset();
         noting(warnings, given.is_quiet)(

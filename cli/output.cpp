@@ -42,6 +42,18 @@ void print_warning(const LocatedError& warning) noexcept {
     print_error(to_text(shown) + "\n");
 }
 
+std::string shell_word(const std::string& text) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
+        return text;
+    }
+    std::string quoted = "'";
+    for (const char c : text) {
+        quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    }
+    return quoted + "'";
+}
+
 std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warnings, bool is_quiet) {
     return [&warnings, is_quiet](const LocatedError& warning) {
         warnings.push_back(warning);

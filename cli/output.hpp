@@ -26,6 +26,9 @@ void print_outdated(const LocatedError& key) noexcept;
 /// Reports on standard error what is likely not meant.
 void print_warning(const LocatedError& warning) noexcept;
 
+/// A word of a command line, quoted as a shell needs it.
+[[nodiscard]] std::string shell_word(const std::string& text);
+
 /// Adds every warning to `warnings`, and prints it unless it is to be quiet.
 [[nodiscard]] std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warnings, bool is_quiet);
 

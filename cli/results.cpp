@@ -56,19 +56,6 @@ std::string missed_goal(const Solution& solution) {
     return solution.planning.goal ? fmt::format("goal {}", *solution.planning.goal) : "the goal";
 }
 
-/// As it is pasted into a shell.
-std::string shell_word(const std::string& text) {
-    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
-    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
-        return text;
-    }
-    std::string quoted = "'";
-    for (const char c : text) {
-        quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    }
-    return quoted + "'";
-}
-
 std::string missed_region(const Solution& solution) {
     return solution.planning.goal ? "the region of " + missed_goal(solution) : "the goal region";
 }

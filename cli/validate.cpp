@@ -71,6 +71,12 @@ std::vector<judge::Disagreement> compare_flight(const judge::PlanJudge& judge, c
     return judge::disagreements_about_flight(said, claims.objective, judge.fly(claims.plan, conditions), tick_s);
 }
 
+/// Flies one of the same worlds; its number follows.
+std::string command_for_one(const ValidateArguments& given) {
+    return fmt::format("downwash validate {} --plan {}{} --world", shell_word(given.problem), shell_word(given.plan),
+                       given.seed ? fmt::format(" --seed {}", *given.seed) : "");
+}
+
 ExitCode run(const ValidateArguments& given) {
     Interruption interruption;
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
@@ -113,7 +119,7 @@ ExitCode run(const ValidateArguments& given) {
     if (given.as_json) {
         print_json(json_of(validation));
     } else {
-        fmt::print("{}", text_of(validation, given.problem, given.plan));
+        fmt::print("{}", text_of(validation, command_for_one(given)));
     }
     if (interruption.code() != ExitCode::done) {
         return interruption.code();

@@ -102,7 +102,7 @@ std::string interval(const char* what, std::size_t count, std::size_t runs, cons
                        p.low, p.high);
 }
 
-std::string text_of(const judge::WorldRuns& worlds, const std::string& problem, const std::string& plan) {
+std::string text_of(const judge::WorldRuns& worlds, const std::string& fly_one) {
     const std::size_t runs = worlds.runs.size();
     std::string text;
     text += row("failures", interval("worlds", worlds.failures, runs, worlds.failure_probability));
@@ -128,8 +128,7 @@ std::string text_of(const judge::WorldRuns& worlds, const std::string& problem, 
         text += row(i == 0 ? "worst worlds" : "", fmt::format("{:<8} {}, clearance {}", run.world, name_of(run.outcome),
                                                               metres(run.min_clearance_m)));
     }
-    text += row("see one",
-                fmt::format("downwash validate {} --plan {} --world {}", problem, plan, worlds.worst.front().world));
+    text += row("see one", fmt::format("{} {}", fly_one, worlds.worst.front().world));
     return text;
 }
 
@@ -156,7 +155,7 @@ Json json_of(const Validation& validation) {
     return document;
 }
 
-std::string text_of(const Validation& validation, const std::string& problem, const std::string& plan) {
+std::string text_of(const Validation& validation, const std::string& fly_one) {
     const judge::JudgedFlight& flight = validation.flight;
     std::string text = verdict_of(validation) + "\n\n";
     if (validation.world) {
@@ -176,7 +175,7 @@ std::string text_of(const Validation& validation, const std::string& problem, co
                                                                text_of(each.file), text_of(each.judge)));
     }
     if (validation.worlds) {
-        text += text_of(*validation.worlds, problem, plan);
+        text += text_of(*validation.worlds, fly_one);
     }
     return text;
 }

@@ -27,7 +27,7 @@ struct Validation {
 /// For programs.
 [[nodiscard]] Json json_of(const Validation& validation);
 
-/// For people: a verdict, then a table. @param problem,plan files, for the commands that it suggests
-[[nodiscard]] std::string text_of(const Validation& validation, const std::string& problem, const std::string& plan);
+/// For people: a verdict, then a table. @param fly_one the command that flies one world, up to its number
+[[nodiscard]] std::string text_of(const Validation& validation, const std::string& fly_one);
 
 }  // namespace downwash::cli

@@ -97,6 +97,11 @@ TEST_CASE("A plan flown again flies as before") {
 
         write_file(work.in_run("loose.json"), certified.dump(2));
         CHECK(executed(problem, "loose.json", "loose").at("certificate").is_null());  // nobody knows
+
+        auto without_problem = certified;
+        without_problem.erase("problem");
+        write_file(work.in_run("by_hand.json"), without_problem.dump(2));
+        CHECK(executed(problem, "by_hand.json", "by_hand").at("certificate").is_null());
     }
     SECTION("but not in a problem that starts elsewhere") {
         const Result rejected = work.run("execute", problem_file("open_air"), "--plan", plan);

@@ -90,6 +90,10 @@ TEST_CASE("A plan is validated by an independent flight") {
         CHECK(alone.json().at("outcome") == worst.at("outcome"));
         CHECK(alone.json().at("min_clearance_m") == worst.at("min_clearance_m"));
         CHECK(alone.code == (worst.at("outcome") == "ok" ? 0 : 3));
+        // The suggested command can be pasted, and flies one of the worlds that were flown.
+        std::filesystem::copy(work.in_run("run"), work.in_run("a run"));
+        const Result told = work.run("validate run/uncertain.yaml --plan", std::string("a run"), "--runs 2 --seed 9");
+        CHECK_THAT(told.out, Contains("downwash validate run/uncertain.yaml --plan 'a run' --seed 9 --world "));
         // What `execute` flew in a world is judged in that world.
         const int code =
             work.run("execute run/uncertain.yaml --plan run/solution.json --out there --world", index).code;
