@@ -40,6 +40,17 @@ quotes README.md "while $(failed mp-arm-da) MP-ARM-DA plans and $(failed mp-arm)
 safe=$(sed -n 's/^\*\*mp-arm rrt-star\*\*: safe on all problems from a margin of \([0-9.]* m\) on.*/\1/p' bench/results/margins.md)
 quotes README.md "safe everywhere with a margin of $safe"
 
+# goals TEXT: how many rows of MP-ARM's table of inflated obstacles match it.
+goals() {
+    awk -v text="$1" '
+        /^\*\*/ { is_wanted = /^\*\*mp-arm rrt-star\*\*/ }
+        /^## / && !/Inflated obstacles/ { exit }
+        is_wanted && /^\| .*, energy / && $0 ~ text { n++ }
+        END { split("one two three four five six seven eight", words, " "); print n ? words[n] : "none" }' bench/results/margins.md
+}
+quotes README.md "then reaches only $(goals '\| [1-9][0-9]*/[0-9]+ [^|]*\|[^|]*\|$') of the $(goals '') goals."
+quotes README.md "$(goals 'before it is safe' | sed 's/./\u&/') of the other goals are already out of reach"
+
 hover=hover_flights.md
 unstable=$(cell $hover all 4)
 stable=$(cell $hover all 5)
