@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "downwash/base/export.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/world_flights.hpp"
@@ -16,7 +17,7 @@ class CertificateRecord;
 using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t failures)>;
 
 /// The worlds of a search and the certificates of its plans.
-class ProblemWorlds {
+class DOWNWASH_EXPORT ProblemWorlds {
  public:
     /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps, stop
     /// @throws WorkStopped when a stop is requested before the maps are built

@@ -198,6 +198,7 @@ TEST_CASE("Warnings stand in the solution, and those of its problems are a campa
                                              "power_coefficient_w_n1p5: 3.154", "power_coefficient_w_n1p5: 3154"));
     const auto expected = work.json("check", work / "one.yaml").at("warnings");
     REQUIRE(expected.size() == 1);
+    CHECK(work.json("check", work / "one.yaml", work / "other.yaml").at("warnings") == expected);
     const Result solved = work.run("solve", work / "one.yaml", "--max-iterations 20 --quiet --json --out out");
     CHECK(solved.json().at("warnings") == expected);
 

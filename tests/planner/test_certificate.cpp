@@ -10,6 +10,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/certificate.hpp"
+#include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/world_flights.hpp"
@@ -202,6 +203,39 @@ TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct f
         }
     }
     CHECK(failed > 0);
+}
+
+TEST_CASE("A search whose certificates fail on the way to an earlier goal names that goal and ends") {
+    Problem problem = uncertain_problem();
+    problem.stops = {tip_goal(-1, 4.2)};
+    problem.stops[0].end_effector->tolerance_m = 0.03;
+    problem.stops[0].hold_s = 1;
+    problem.uncertainty->position_bias_m = Spread::of_sd(0.03);
+    problem.goal.end_effector->tolerance_m = 0.5;
+    problem.planner.max_iterations = 300;
+    SolveOptions options;
+    options.stop_at_first_solution = true;
+    const std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    const std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    planning::ProblemWorlds worlds(problem, model, map, options);
+    std::vector<std::optional<std::size_t>> named;
+    Solution solution;
+    planning::solve_in_turn(
+        problem, *model, map.get(), options,
+        [&](const Problem& part, const SolveOptions& of_part, const planning::Course& before, Solution& found) {
+            // The way to the first goal is good as believed, and it stays so.
+            planning::ProblemWorlds* survived = before.goals.empty() ? nullptr : &worlds;
+            const auto weak =
+                planning::search_flights(part, problem, *model, map.get(), before, survived, of_part, found);
+            if (survived != nullptr) {
+                named.push_back(weak);
+            }
+            return weak;
+        },
+        solution);
+    CHECK(solution.status == Status::approximate);
+    REQUIRE_FALSE(named.empty());
+    CHECK(named.front() == std::optional<std::size_t>(0));
 }
 
 TEST_CASE("A plan that ends at the first of two goals has no certificate") {
