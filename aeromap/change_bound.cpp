@@ -19,7 +19,7 @@ double max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
         return infinity;
     }
     const Scene& scene = effect.scene();
-    const double r = effect.disc_radius_m();
+    const double r = effect.column_radius_m();
     const Scene::Bounds column{{hubs.low_m[0] - r, hubs.low_m[1] - r, -infinity},
                                {hubs.high_m[0] + r, hubs.high_m[1] + r, infinity}};
     double below_m = infinity;
@@ -50,8 +50,7 @@ double max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
         }
     }
     const double unit_m = effect.rotor_radius_m();
-    return effect.ground().largest_change_beyond(below_m / unit_m) +
-           effect.ceiling().largest_change_beyond(above_m / unit_m);
+    return effect.largest_change_beyond(below_m / unit_m, above_m / unit_m);
 }
 
 bool is_quiet(const DirectEffect& effect, const Scene::Bounds& hubs) {

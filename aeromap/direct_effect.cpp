@@ -1,5 +1,6 @@
 #include "downwash/aeromap/direct_effect.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,6 +9,7 @@
 #include "downwash/aeromap/curve_mean.hpp"
 #include "downwash/aeromap/disc_average.hpp"
 #include "downwash/aeromap/footprint.hpp"
+#include "downwash/aeromap/rotor_images.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/grids/factor_grid.hpp"
@@ -58,6 +60,13 @@ SurfaceEffect on_rotor(const SurfaceEffect& effect) {
     return effect.model == EffectModel::multirotor_body ? SurfaceEffect(EffectModel::multirotor_images) : effect;
 }
 
+std::shared_ptr<const RotorImages> images_of(const SurfaceEffect& effect, const AeroSettings& settings,
+                                             double radius_m, const RotorNeighbours& neighbours) {
+    return is_multirotor(effect.model)
+               ? std::make_shared<const RotorImages>(radius_m, settings.max_factor, neighbours)
+               : nullptr;
+}
+
 std::shared_ptr<const CurveMean> mean_of(const EffectCurve& curve) {
     return curve.falls_with_distance() && !curve.is_none() && !curve.depends_on_wall()
                ? std::make_shared<const CurveMean>(curve)
@@ -71,25 +80,63 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
     : scene_(std::move(scene)),
       settings_(checked(settings, rotor_radius_m)),
       rotor_radius_m_(rotor_radius_m),
-      disc_radius_m_(rotor_radius_m),
+      column_radius_m_(rotor_radius_m),
       min_clearance_m_(settings.min_distance_radii * rotor_radius_m),
       ground_(on_rotor(settings.ground), settings.max_factor, neighbours),
       ceiling_(settings.ceiling, settings.max_factor, neighbours),
       ground_mean_(mean_of(ground_)),
       ceiling_mean_(mean_of(ceiling_)),
+      ground_images_(images_of(settings.ground, settings, rotor_radius_m, neighbours)),
+      ceiling_images_(images_of(settings.ceiling, settings, rotor_radius_m, neighbours)),
       footprints_(std::make_shared<const Footprints>(*scene_)) {}
 
 DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                     double rotor_radius_m, const RotorNeighbours& neighbours) {
     DirectEffect effect(std::move(scene), settings, rotor_radius_m, neighbours);
-    const double b_over_radius = settings.ground.parameters[1];
-    effect.disc_radius_m_ = rotor_radius_m * (b_over_radius > 0 ? b_over_radius : neighbours.center_radii);
-    effect.min_clearance_m_ = -std::numeric_limits<double>::infinity();
     effect.ground_ = EffectCurve::fountain(settings.ground, settings.max_factor, neighbours);
     effect.ceiling_ = EffectCurve(EffectModel::none, settings.max_factor);
-    effect.ground_mean_ = mean_of(effect.ground_);
-    effect.ceiling_mean_ = nullptr;
+    effect.ground_mean_ = effect.ceiling_mean_ = nullptr;
+    effect.ground_images_ = effect.ceiling_images_ = nullptr;
+    effect.min_clearance_m_ = -std::numeric_limits<double>::infinity();
+    std::vector<RotorNeighbours::Offset> hubs = neighbours.offsets_radii;
+    hubs.push_back({0, 0});
+    RotorNeighbours::Offset center{0, 0};
+    for (const auto& [x, y] : hubs) {
+        center.x += x / static_cast<double>(hubs.size());
+        center.y += y / static_cast<double>(hubs.size());
+    }
+    for (const auto& [x, y] : hubs) {
+        const Vector3 offset_m{rotor_radius_m * (x - center.x), rotor_radius_m * (y - center.y), 0};
+        effect.fountain_hubs_m_.push_back(offset_m);
+        effect.column_radius_m_ = std::max(
+            effect.column_radius_m_, rotor_radius_m + std::sqrt(offset_m[0] * offset_m[0] + offset_m[1] * offset_m[1]));
+    }
     return effect;
+}
+
+double DirectEffect::one_sided(Side side, const Vector3& hub_m) const {
+    const bool is_below = side == Side::below;
+    const EffectCurve& curve = is_below ? ground_ : ceiling_;
+    if (curve.is_none()) {
+        return 1;
+    }
+    if (const RotorImages* images = (is_below ? ground_images_ : ceiling_images_).get()) {
+        return images->factor({*scene_, *footprints_, side}, hub_m);
+    }
+    const auto averaged = [&](const Vector3& at_m, const EffectCurve& of) {
+        const CurveMean* mean = (is_below ? ground_mean_ : ceiling_mean_).get();
+        return disc_average({*scene_, at_m, rotor_radius_m_, side, of, rotor_radius_m_, mean}, *footprints_);
+    };
+    if (is_below && !fountain_hubs_m_.empty()) {
+        double sum = 0;
+        for (const Vector3& offset_m : fountain_hubs_m_) {
+            sum += averaged({hub_m[0] + offset_m[0], hub_m[1] + offset_m[1], hub_m[2]}, curve);
+        }
+        return sum / static_cast<double>(fountain_hubs_m_.size());
+    }
+    return curve.depends_on_wall()
+               ? averaged(hub_m, curve.at_wall(horizontal_clearance_m(*scene_, hub_m) / rotor_radius_m_))
+               : averaged(hub_m, curve);
 }
 
 DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
@@ -101,23 +148,18 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
         constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
         return {unknown, unknown, settings_.map->contains(hub_m) ? settings_.map->factor(hub_m) : 1.0};
     }
-    const auto averaged = [&](Side side, const EffectCurve& curve) {
-        const CurveMean* mean = (side == Side::below ? ground_mean_ : ceiling_mean_).get();
-        return disc_average({*scene_, hub_m, disc_radius_m_, side, curve, rotor_radius_m_, mean}, *footprints_);
-    };
-    const auto one_sided = [&](Side side, const EffectCurve& curve) {
-        if (curve.is_none()) {
-            return 1.0;
-        }
-        if (curve.depends_on_wall()) {
-            return averaged(side, curve.at_wall(horizontal_clearance_m(*scene_, hub_m) / rotor_radius_m_));
-        }
-        return averaged(side, curve);
-    };
-    factors.ground = one_sided(Side::below, ground_);
-    factors.ceiling = one_sided(Side::above, ceiling_);
+    factors.ground = one_sided(Side::below, hub_m);
+    factors.ceiling = one_sided(Side::above, hub_m);
     factors.total = lane::clamp(1 + (factors.ground - 1) + (factors.ceiling - 1), 0.0, settings_.max_factor);
     return factors;
+}
+
+double DirectEffect::largest_change_beyond(double below_radii, double above_radii) const {
+    const double below = ground_images_ ? ground_images_->largest_change_beyond(below_radii)
+                                        : ground_.largest_change_beyond(below_radii);
+    const double above = ceiling_images_ ? ceiling_images_->largest_change_beyond(above_radii)
+                                         : ceiling_.largest_change_beyond(above_radii);
+    return below + above;
 }
 
 bool DirectEffect::is_flyable(const Vector3& hub_m) const {
@@ -128,7 +170,7 @@ bool DirectEffect::is_flyable(const Vector3& hub_m) const {
         return true;
     }
     return (!settings_.map || settings_.map->is_flyable(hub_m)) &&
-           disc_is_clear(*scene_, hub_m, disc_radius_m_, min_clearance_m_);
+           disc_is_clear(*scene_, hub_m, rotor_radius_m_, min_clearance_m_);
 }
 
 }  // namespace downwash

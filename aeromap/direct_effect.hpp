@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
@@ -11,6 +13,8 @@ namespace downwash {
 
 class CurveMean;
 class Footprints;
+class RotorImages;
+enum class Side : std::uint8_t;
 
 /// The exact surface effect on one rotor at any point of the world. Maps interpolate it, and executed flights evaluate
 /// it. The disc is level and rays are vertical (docs/model.md 4.1). Immutable.
@@ -23,7 +27,7 @@ class DOWNWASH_EXPORT DirectEffect {
                  const RotorNeighbours& neighbours = {});
 
     /// The fountain's push on a vehicle's body at its centre between the rotors: 1 + (K_whole - K_images), averaged
-    /// over the disc through the rotors' axes (docs/model.md 4.3). Defined everywhere, so that everything is flyable.
+    /// over the discs of all rotors (docs/model.md 4.3). Defined everywhere, so that everything is flyable.
     /// @param neighbours of any of its rotors   @pre settings.ground.model is multirotor_body
     [[nodiscard]] static DirectEffect fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                                double rotor_radius_m, const RotorNeighbours& neighbours);
@@ -55,22 +59,30 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
     [[nodiscard]] const AeroSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] double rotor_radius_m() const noexcept { return rotor_radius_m_; }
-    /// Radius of the disc that the effect is averaged over: the rotor's, or that of the circle through all axes.
-    [[nodiscard]] double disc_radius_m() const noexcept { return disc_radius_m_; }
+    /// Radius of the column over and under which surfaces have an effect: the rotor's; with a fountain that of the
+    /// circle around all rotors.
+    [[nodiscard]] double column_radius_m() const noexcept { return column_radius_m_; }
     /// Least distance of the disc from every obstacle in the flyable area; negative: everything is flyable.
     [[nodiscard]] double min_clearance_m() const noexcept { return min_clearance_m_; }
     /// K of wide flat surfaces below and above; not used if the settings contain a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
+    /// Upper bound of |K - 1| where no surface below is nearer than the one distance, and none above than the other,
+    /// both in radii.
+    [[nodiscard]] double largest_change_beyond(double below_radii, double above_radii) const;
 
  private:
+    [[nodiscard]] double one_sided(Side side, const Vector3& hub_m) const;
+
     std::shared_ptr<const Scene> scene_;
     AeroSettings settings_;
     double rotor_radius_m_;
-    double disc_radius_m_;
+    double column_radius_m_;
     double min_clearance_m_;
     EffectCurve ground_, ceiling_;
     std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;  ///< null for curves that have none
+    std::shared_ptr<const RotorImages> ground_images_, ceiling_images_;  ///< of the multirotor models
+    std::vector<Vector3> fountain_hubs_m_;  ///< from the centre, level; empty for a rotor
     std::shared_ptr<const Footprints> footprints_;
 };
 

@@ -2,6 +2,7 @@
 
 // Private to aeromap.
 
+#include <cstdint>
 #include <limits>
 
 #include "downwash/aeromap/curve_mean.hpp"
@@ -11,7 +12,7 @@
 namespace downwash {
 
 /// The side of a rotor on which surfaces are looked for.
-enum class Side { below, above };
+enum class Side : std::uint8_t { below, above };
 
 /// A rotor's level disc and what it asks of one side.
 struct DiscQuery {

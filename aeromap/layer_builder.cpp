@@ -18,7 +18,7 @@ class RowsBuilder {
  public:
     RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
         : grid_(grid),
-          radius_m_(grid.effect.disc_radius_m()),
+          radius_m_(grid.effect.rotor_radius_m()),
           min_clearance_m_(grid.effect.min_clearance_m()),
           first_(first),
           last_(last),

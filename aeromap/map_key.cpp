@@ -82,9 +82,12 @@ void add_effect(Description& description, const SurfaceEffect& effect) {
 }
 
 void add_curve(Description& description, const EffectCurve& curve) {
-    const auto& [distances_radii, center_radii] = curve.neighbours();
+    const auto& [distances_radii, offsets_radii, center_radii] = curve.neighbours();
     add_effect(description, curve.effect());
     description.add(curve.is_fountain() ? "fountain" : "rotor").add_all(distances_radii).add(center_radii);
+    for (const auto& [x, y] : offsets_radii) {
+        description.add(x).add(y);
+    }
 }
 
 void add_axis(Description& description, const GridAxis& axis) {
@@ -122,7 +125,7 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
         const auto& [enabled, ground, ceiling, map_file, map, max_factor, min_distance_radii, grid_m] =
             effect->settings();
         description.add("layer").add(lateral_m).add(enabled ? "on" : "off").add(grid_m);
-        description.add(effect->rotor_radius_m()).add(effect->disc_radius_m()).add(effect->min_clearance_m());
+        description.add(effect->rotor_radius_m()).add(effect->min_clearance_m());
         add_effect(description, ground);
         add_effect(description, ceiling);
         description.add(max_factor).add(min_distance_radii);

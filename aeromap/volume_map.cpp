@@ -106,7 +106,7 @@ class VolumeMap::Builder {
             const Vector3 edges = edges_m(box);
             const double reach_m = 0.5 * std::sqrt(dot(edges, edges)) + clearance_slack_m;
             const double clearance_m =
-                disc_clearance_m(effect_.scene(), hub_m(box.at(1, 1, 1, 2)), effect_.disc_radius_m());
+                disc_clearance_m(effect_.scene(), hub_m(box.at(1, 1, 1, 2)), effect_.rotor_radius_m());
             if (clearance_m + reach_m < effect_.min_clearance_m()) {
                 return;
             }

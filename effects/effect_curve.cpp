@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "downwash/base/lane_math.hpp"
@@ -11,6 +12,8 @@
 
 namespace downwash {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where the largest change is bounded from samples: distances q^i * nearest, up to `farthest`.
 constexpr double nearest = 0.01;
@@ -40,7 +43,15 @@ EffectCurve::EffectCurve(SurfaceEffect effect, double max_factor, RotorNeighbour
 
 EffectCurve EffectCurve::fountain(const SurfaceEffect& effect, double max_factor, const RotorNeighbours& neighbours) {
     EffectCurve curve(effect, max_factor, neighbours);
-    curve.is_fountain_ = true;
+    curve.kind_ = Kind::fountain;
+    curve.prepare();
+    return curve;
+}
+
+EffectCurve EffectCurve::image(double distance_radii, double max_factor) {
+    EffectCurve curve(EffectModel::multirotor_images, max_factor);
+    curve.kind_ = Kind::image;
+    curve.image_distance_radii_ = distance_radii;
     curve.prepare();
     return curve;
 }
@@ -50,8 +61,11 @@ double EffectCurve::clamped(double factor) const noexcept {
 }
 
 double EffectCurve::operator()(double z_over_r) const {
+    if (kind_ == Kind::image) {
+        return z_over_r < infinity ? clamped(1 + image_loss(z_over_r, image_distance_radii_)) : 1;
+    }
     const double factor = clamped(formula_factor(effect_, z_over_r, neighbours_));
-    if (!is_fountain_) {
+    if (kind_ == Kind::rotor) {
         return factor;
     }
     return 1 + factor - clamped(formula_factor(EffectModel::multirotor_images, z_over_r, neighbours_));

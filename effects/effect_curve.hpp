@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,9 @@ class DOWNWASH_EXPORT EffectCurve {
     /// What the fountain adds to a vehicle's thrust: 1 + K(multirotor-body) - K(multirotor-images), each clamped.
     [[nodiscard]] static EffectCurve fountain(const SurfaceEffect& effect, double max_factor,
                                               const RotorNeighbours& neighbours);
+
+    /// What the image of one rotor does to another: 1 + image_loss(z/R, distance_radii), at most max_factor.
+    [[nodiscard]] static EffectCurve image(double distance_radii, double max_factor);
 
     /// @param z_over_r >= 0, infinite for no surface (then 1)
     [[nodiscard]] double operator()(double z_over_r) const;
@@ -49,16 +53,19 @@ class DOWNWASH_EXPORT EffectCurve {
 
     [[nodiscard]] const SurfaceEffect& effect() const noexcept { return effect_; }
     [[nodiscard]] const RotorNeighbours& neighbours() const noexcept { return neighbours_; }
-    [[nodiscard]] bool is_fountain() const noexcept { return is_fountain_; }
+    [[nodiscard]] bool is_fountain() const noexcept { return kind_ == Kind::fountain; }
 
  private:
+    enum class Kind : std::uint8_t { rotor, fountain, image };
+
     [[nodiscard]] double clamped(double factor) const noexcept;
     void prepare();
 
     SurfaceEffect effect_;
     RotorNeighbours neighbours_;
     double max_factor_;
-    bool is_fountain_ = false;
+    Kind kind_ = Kind::rotor;
+    double image_distance_radii_ = 0;
     bool falls_with_distance_ = true;
     double cap_distance_ = -1;
     double flat_distance_ = -1;

@@ -29,16 +29,10 @@ double cheeseman_bennett(const Parameters&, double zeta, const RotorNeighbours&)
     return over_one_less(1 / (16 * zeta * zeta));
 }
 
-/// Velocity that an image at horizontal distance d (in radii) takes from a rotor, over the rotor's own, times two:
-/// z / (d^2 + 4 z^2)^1.5 in radii.
-double image_loss(double zeta, double d) {
-    return zeta / lane::power_three_halves(d * d + 4 * zeta * zeta);
-}
-
 double images_loss(double zeta, const RotorNeighbours& neighbours) {
     double loss = 1 / (16 * zeta * zeta);
     for (const double d : neighbours.distances_radii) {
-        loss += 0.5 * image_loss(zeta, d);
+        loss += image_loss(zeta, d);
     }
     return loss;
 }
@@ -50,7 +44,7 @@ double multirotor_images(const Parameters&, double zeta, const RotorNeighbours& 
 double multirotor_body(const Parameters& p, double zeta, const RotorNeighbours& neighbours) {
     const auto& [k_b, b_over_radius] = p;
     const double b = b_over_radius > 0 ? b_over_radius : neighbours.center_radii;
-    const double fountain = 0.5 * static_cast<double>(neighbours.rotors()) * k_b * image_loss(zeta, b);
+    const double fountain = static_cast<double>(neighbours.rotors()) * k_b * image_loss(zeta, b);
     return over_one_less(images_loss(zeta, neighbours) + fountain);
 }
 
@@ -201,6 +195,13 @@ const EffectModelInfo* find_effect_model(std::string_view name) {
         }
     }
     return nullptr;
+}
+
+double image_loss(double z_over_r, double distance_radii) {
+    if (distance_radii == 0) {
+        return 1 / (16 * z_over_r * z_over_r);
+    }
+    return 0.5 * z_over_r / lane::power_three_halves(distance_radii * distance_radii + 4 * z_over_r * z_over_r);
 }
 
 double formula_factor(const SurfaceEffect& effect, double z_over_r, const RotorNeighbours& neighbours) {

@@ -15,10 +15,7 @@ bool has_fountain(const AeroSettings& aero) {
 }
 
 bool sees_neighbours(const AeroSettings& aero) {
-    const auto is_multirotor = [](const SurfaceEffect& effect) {
-        return effect.model == EffectModel::multirotor_images || effect.model == EffectModel::multirotor_body;
-    };
-    return is_multirotor(aero.ground) || is_multirotor(aero.ceiling);
+    return is_multirotor(aero.ground.model) || is_multirotor(aero.ceiling.model);
 }
 
 }  // namespace
@@ -32,7 +29,7 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
             1 / robot.controller.rate_hz},
       nominal_world_(make_world(robot, {})),
       collisions_(scene, plane, robot.shape()) {
-    EffectLayers effects = effect_layers(robot.rotors, scene, aero);
+    EffectLayers effects = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
     layers_ = std::move(effects.layers);
     std::copy(effects.layer_of.begin(), effects.layer_of.end(), rotor_layer_);
 }
@@ -68,7 +65,7 @@ Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
 }
 
 EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<const Scene>& scene,
-                           const AeroSettings& aero) {
+                           const AeroSettings& aero, double heading_rad) {
     const std::vector<Vector3>& hubs_m = rotors.positions_m;
     std::vector<std::pair<RotorNeighbours, std::shared_ptr<const DirectEffect>>> effects;
     EffectLayers all;
@@ -83,7 +80,7 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
     };
     for (std::size_t i = 0; i < hubs_m.size(); ++i) {
         const RotorNeighbours neighbours =
-            sees_neighbours(aero) ? neighbours_of(hubs_m, i, rotors.radius_m) : RotorNeighbours{};
+            sees_neighbours(aero) ? neighbours_of(hubs_m, i, rotors.radius_m, heading_rad) : RotorNeighbours{};
         auto known = std::find_if(effects.begin(), effects.end(), [&](const auto& e) { return e.first == neighbours; });
         if (known == effects.end()) {
             effects.emplace_back(neighbours,
@@ -98,7 +95,7 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
             center_y_m += hub_m[1] / static_cast<double>(hubs_m.size());
         }
         find_or_add(std::make_shared<const DirectEffect>(DirectEffect::fountain(
-                        scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m))),
+                        scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m, heading_rad))),
                     center_y_m);
     }
     return all;

@@ -116,9 +116,10 @@ struct EffectLayers {
     std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body, if the fountain pushes it
 };
 /// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
+/// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours
 [[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
                                                          const std::shared_ptr<const Scene>& scene,
-                                                         const AeroSettings& aero);
+                                                         const AeroSettings& aero, double heading_rad = 0);
 
 /// The pose whose collisions a state stands for.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {

@@ -129,7 +129,7 @@ bool is_beyond_model(const DirectEffect& effect, const Vector3& hub_m) {
     constexpr double farthest_m = 1e6;
     const double flat_m = effect.rotor_radius_m() * effect.ceiling().flat_distance();
     if (flat_m > 0 &&
-        !column_is_clear(effect.scene(), hub_m, effect.disc_radius_m(), std::min(flat_m + h, farthest_m))) {
+        !column_is_clear(effect.scene(), hub_m, effect.rotor_radius_m(), std::min(flat_m + h, farthest_m))) {
         return true;
     }
     const auto above = effect.factors({hub_m[0], hub_m[1], hub_m[2] + h});

@@ -63,7 +63,7 @@ std::vector<Obstacle> bridge() {
 
 DirectEffect::Factors by_rays(const DirectEffect& effect, const Vector3& hub_m, int side) {
     const AeroSettings& settings = effect.settings();
-    const double radius = effect.disc_radius_m();
+    const double radius = effect.rotor_radius_m();
     const double unit_m = effect.rotor_radius_m();
     double below_sum = 0;
     double above_sum = 0;

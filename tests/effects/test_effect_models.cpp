@@ -69,7 +69,7 @@ TEST_CASE("A rotor's images are summed from where the others stand, of a square 
           Approx(1 / (1 - own - 0.5 * (near + far))).epsilon(1e-9));
     CHECK(free_factor(EffectModel::multirotor_images, 1, neighbours_of(row, 1, 0.15)) ==
           Approx(1 / (1 - own - near)).epsilon(1e-9));
-    CHECK(neighbours_of(row, 0, 0.15) == neighbours_of(row, 2, 0.15));
+    CHECK(neighbours_of(row, 0, 0.15).distances_radii == neighbours_of(row, 2, 0.15).distances_radii);
     CHECK(free_factor(EffectModel::multirotor_images, 1) ==
           Approx(free_factor(EffectModel::cheeseman_bennett, 1)).epsilon(1e-14));
 }

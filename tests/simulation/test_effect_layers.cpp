@@ -23,19 +23,19 @@ TEST_CASE("Rotors share a layer when lateral offset and effect agree") {
     const RotorParameters quadrotor = rotors_at({{0.3, 0.3, 0}, {0.3, -0.3, 0}, {-0.3, 0.3, 0}, {-0.3, -0.3, 0}});
     AeroSettings aero;
     CHECK(effect_layers(quadrotor, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0, 1});
+    // Each rotor has its neighbours elsewhere.
     aero.ground = EffectModel::multirotor_images;
-    CHECK(effect_layers(quadrotor, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0, 1});
+    CHECK(effect_layers(quadrotor, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 2, 3});
     aero.ground = EffectModel::multirotor_body;
     const EffectLayers with_body = effect_layers(quadrotor, no_obstacles, aero);
-    CHECK(with_body.layer_of == std::vector<std::size_t>{0, 1, 0, 1, 2});
-    CHECK(with_body.layers[2].lateral_m == 0);
+    CHECK(with_body.layer_of == std::vector<std::size_t>{0, 1, 2, 3, 4});
+    CHECK(with_body.layers[4].lateral_m == 0);
 
-    // Three rotors in a row: the middle one has nearer neighbours.
     const RotorParameters row = rotors_at({{-0.4, 0, 0}, {0, 0, 0}, {0.4, 0, 0}});
     aero.ground = EffectModel::cheeseman_bennett;
     CHECK(effect_layers(row, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 0, 0});
     aero.ground = EffectModel::multirotor_images;
-    CHECK(effect_layers(row, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 0});
+    CHECK(effect_layers(row, no_obstacles, aero).layer_of == std::vector<std::size_t>{0, 1, 2});
 }
 
 TEST_CASE("The map of the fountain is within 0.01 of the direct effect, inside obstacles too") {
