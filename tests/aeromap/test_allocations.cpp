@@ -22,3 +22,18 @@ TEST_CASE("Neither the direct effect nor a look-up allocates") {
     CHECK(made == 0);
     CHECK(sum > 40000);
 }
+
+TEST_CASE("The effect of a vehicle's images does not allocate") {
+    test::Random random(43);
+    AeroSettings settings;
+    settings.ground = EffectModel::multirotor_images;
+    const DirectEffect effect(test::scene_of(test::bridge()), settings, 0.15, square_quadrotor(2.6));
+    const long before = allocations;
+    double sum = 0;
+    for (int i = 0; i < 10000; ++i) {
+        sum += effect.factor({random.uniform(-12, 12), random.uniform(-1, 1), random.uniform(0, 12)});
+    }
+    const long made = allocations - before;
+    CHECK(made == 0);
+    CHECK(sum > 10000);
+}
