@@ -60,11 +60,10 @@ SurfaceEffect on_rotor(const SurfaceEffect& effect) {
     return effect.model == EffectModel::multirotor_body ? SurfaceEffect(EffectModel::multirotor_images) : effect;
 }
 
-std::shared_ptr<const RotorImages> images_of(const SurfaceEffect& effect, const AeroSettings& settings,
-                                             double radius_m, const RotorNeighbours& neighbours) {
-    return is_multirotor(effect.model)
-               ? std::make_shared<const RotorImages>(radius_m, settings.max_factor, neighbours)
-               : nullptr;
+std::shared_ptr<const RotorImages> images_of(const SurfaceEffect& effect, const AeroSettings& settings, double radius_m,
+                                             const RotorNeighbours& neighbours) {
+    return is_multirotor(effect.model) ? std::make_shared<const RotorImages>(radius_m, settings.max_factor, neighbours)
+                                       : nullptr;
 }
 
 std::shared_ptr<const CurveMean> mean_of(const EffectCurve& curve) {

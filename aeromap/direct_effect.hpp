@@ -80,9 +80,9 @@ class DOWNWASH_EXPORT DirectEffect {
     double column_radius_m_;
     double min_clearance_m_;
     EffectCurve ground_, ceiling_;
-    std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;  ///< null for curves that have none
+    std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;        ///< null for curves that have none
     std::shared_ptr<const RotorImages> ground_images_, ceiling_images_;  ///< of the multirotor models
-    std::vector<Vector3> fountain_hubs_m_;  ///< from the centre, level; empty for a rotor
+    std::vector<Vector3> fountain_hubs_m_;                               ///< from the centre, level; empty for a rotor
     std::shared_ptr<const Footprints> footprints_;
 };
 

@@ -31,8 +31,8 @@ AeroSettings shown_settings(const PlotRequest& request, AeroSettings aero) {
 
 MapLayer shown_layer(const PlotRequest& request, const Problem& problem, const std::shared_ptr<const Scene>& scene) {
     const int rotor = rotor_option(request.rotor, static_cast<int>(problem.robot.rotors.positions_m.size()));
-    const EffectLayers layers = effect_layers(
-        problem.robot.rotors, scene, shown_settings(request, problem.aero), problem.plane.heading_rad());
+    const EffectLayers layers =
+        effect_layers(problem.robot.rotors, scene, shown_settings(request, problem.aero), problem.plane.heading_rad());
     MapLayer layer = layers.layers[layers.layer_of[static_cast<std::size_t>(rotor)]];
     layer.lateral_m = request.lateral_m.value_or(layer.lateral_m);
     return layer;

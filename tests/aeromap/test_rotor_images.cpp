@@ -1,5 +1,5 @@
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
@@ -45,7 +45,9 @@ double distance_m(const Vector3& a, const Vector3& b) {
 Obstacle plate_under(const Vector3& hub_m, bool is_half) {
     const double half_side_m = 1.05 * radius;
     const double length_m = is_half ? half_side_m : 2 * half_side_m;
-    return {"plate", Box{{length_m, 2 * half_side_m, 0.1}}, {hub_m[0] + (is_half ? 0.5 * length_m : 0), hub_m[1], -0.05},
+    return {"plate",
+            Box{{length_m, 2 * half_side_m, 0.1}},
+            {hub_m[0] + (is_half ? 0.5 * length_m : 0), hub_m[1], -0.05},
             {}};
 }
 
@@ -60,7 +62,8 @@ std::vector<double> coverage(int number, std::size_t rotors) {
 }
 
 /// (2.14) and (2.15) with every image weighted by what is covered.
-double factor_by_hand(const std::vector<Vector3>& hubs_m, std::size_t i, const std::vector<double>& share, double zeta) {
+double factor_by_hand(const std::vector<Vector3>& hubs_m, std::size_t i, const std::vector<double>& share,
+                      double zeta) {
     const double alone = 1 / (1 - 1 / (16 * zeta * zeta));
     double loss = 1 - 1 / (1 + share[i] * (alone - 1));
     for (std::size_t j = 0; j < hubs_m.size(); ++j) {
@@ -128,9 +131,9 @@ TEST_CASE("Over a wide floor and under a wide ceiling the images act as their fo
     AeroSettings settings = with_ground(EffectModel::multirotor_images);
     settings.ceiling = EffectModel::multirotor_images;
     const RotorNeighbours neighbours = neighbours_of(hubs_m, 1, radius);
-    const DirectEffect effect(scene_of({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}},
-                                        {"roof", Box{{40, 40, 1}}, {0, 0, 3.5}, {}}}),
-                              settings, radius, neighbours);
+    const DirectEffect effect(
+        scene_of({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}, {"roof", Box{{40, 40, 1}}, {0, 0, 3.5}, {}}}),
+        settings, radius, neighbours);
     for (double z = 0.02; z < 2.99; z += 0.03) {
         const DirectEffect::Factors factors = effect.factors({hubs_m[1][0], hubs_m[1][1], z});
         const auto formula = [&](double gap_m) {
@@ -201,7 +204,7 @@ TEST_CASE("Maps of images and fountains are within 0.01 of the direct effect") {
         settings.ground = EffectModel::multirotor_body;
         const auto fountain =
             std::make_shared<const DirectEffect>(DirectEffect::fountain(obstacles, settings, radius, neighbours));
-        const AeroMap map({{body_m[0][1], rotor}, {0, fountain}}, PlaneOfMotion({0.1, 0.2, 0.3}, heading),
+        const AeroMap map({{rotor, body_m[0][1]}, {fountain, 0}}, PlaneOfMotion({0.1, 0.2, 0.3}, heading),
                           {-2, 2, -1.5, 1.5}, 2);
         test::MapComparison found{map};
         for (int i = 0; i < 80000; ++i) {
