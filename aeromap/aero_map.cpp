@@ -110,6 +110,7 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress,
         }
         raster.cells.shrink_to_fit();
         raster.flyability.shrink_to_fit();
+        raster.sides.shrink_to_fit();
         raster.nodes.shrink_to_fit();
         add_raster(std::move(raster));
     }
@@ -117,16 +118,20 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress,
 
 void AeroMap::Raster::append(const CellRows& rows) {
     auto values = rows.nodes.begin();
-    for (const CellSteps& steps : rows.steps) {
-        const auto end = values + (steps.x + std::ptrdiff_t{1}) * (steps.z + 1);
+    for (std::size_t i = 0; i < rows.steps.size(); ++i) {
+        const CellSteps& steps = rows.steps[i];
+        const std::ptrdiff_t kinds = rows.sides[i] == CellSides::both ? 2 : 1;
+        const auto end = values + kinds * (steps.x + 1) * (steps.z + 1);
         const bool is_as_before =
             !cells.empty() && cells.back().steps_x == steps.x && cells.back().steps_z == steps.z &&
+            (sides.back() == CellSides::both) == (kinds == 2) &&
             std::equal(values, end, nodes.begin() + static_cast<std::ptrdiff_t>(cells.back().first_node));
         const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
         if (first > std::numeric_limits<std::uint32_t>::max()) {
             throw_input_error("gives a map of more than 2^32 values; choose smaller bounds", "aero.grid_m");
         }
         cells.push_back({static_cast<std::uint32_t>(first), steps.x, steps.z});
+        sides.push_back(rows.sides[i]);
         if (!is_as_before) {
             nodes.insert(nodes.end(), values, end);
         }
@@ -141,6 +146,7 @@ void AeroMap::add_raster(Raster raster) {
             return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
         };
         return bytes_agree(raster.cells, other->cells) && bytes_agree(raster.flyability, other->flyability) &&
+               bytes_agree(raster.sides, other->sides) &&
                bytes_agree(raster.nodes, other->nodes);
     };
     const auto known = std::find_if(rasters_.begin(), rasters_.end(), is_same);
@@ -154,17 +160,30 @@ std::size_t AeroMap::memory_bytes() const noexcept {
         if (std::find(rasters_.begin(), rasters_.begin() + static_cast<std::ptrdiff_t>(layer), raster) ==
             rasters_.begin() + static_cast<std::ptrdiff_t>(layer)) {
             bytes += raster->cells.capacity() * sizeof(MapCell) + raster->flyability.capacity() +
-                     raster->nodes.capacity() * sizeof(float);
+                     raster->sides.capacity() + raster->nodes.capacity() * sizeof(float);
         }
     }
     return bytes;
 }
 
-double AeroMap::factor_outside(std::size_t layer, double x_m, double z_m) const noexcept {
+SidedFactor<double> AeroMap::sided_factor_outside(std::size_t layer, double x_m, double z_m) const noexcept {
     if (!(std::isfinite(x_m) && std::isfinite(z_m))) {
-        return 1;
+        return {1, 1};
     }
-    return layers_[layer].effect->factor(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
+    return layers_[layer].effect->sided_factor(plane_.to_world(x_m, layers_[layer].lateral_m, z_m));
+}
+
+SidedFactor<double> AeroMap::sided_factor(std::size_t layer, double x_m, double z_m) const noexcept {
+    const double u = (x_m - extent_.x_low_m) * cells_per_m_;
+    const double w = (z_m - extent_.z_low_m) * cells_per_m_;
+    const MapView map = view(layer);
+    if (!map.contains(u, w)) {
+        return sided_factor_outside(layer, x_m, z_m);
+    }
+    const MapPatch patch = patch_at(map, u, w);
+    const double s = (u - patch.u) * patch.steps_x;
+    const double t = (w - patch.w) * patch.steps_z;
+    return {bilinear(patch.corner, s, t), bilinear(patch.above, s, t)};
 }
 
 bool AeroMap::is_flyable(std::size_t layer, double x_m, double z_m) const {

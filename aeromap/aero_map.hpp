@@ -94,6 +94,9 @@ class DOWNWASH_EXPORT AeroMap {
         return bilinear(corner, s, t);
     }
 
+    /// The same with the part of the surfaces above: exactly 1, or all of K, where one side is all that matters.
+    [[nodiscard]] SidedFactor<double> sided_factor(std::size_t layer, double x_m, double z_m) const noexcept;
+
     /// Whether two layers have the same values, such as those of the left and right rotors of a vehicle that flies
     /// along the middle of a scene. Look-ups inside the extent then agree to the last bit.
     [[nodiscard]] bool are_equal(std::size_t layer, std::size_t other) const noexcept {
@@ -103,8 +106,8 @@ class DOWNWASH_EXPORT AeroMap {
     /// Valid while the map exists.
     [[nodiscard]] MapView view(std::size_t layer) const noexcept {
         const Raster& raster = *rasters_[layer];
-        return {extent_.x_low_m,     extent_.z_low_m,          cells_per_m_,       columns_, rows_,
-                raster.cells.data(), raster.flyability.data(), raster.nodes.data()};
+        return {extent_.x_low_m,     extent_.z_low_m,          cells_per_m_,        columns_,           rows_,
+                raster.cells.data(), raster.flyability.data(), raster.sides.data(), raster.nodes.data()};
     }
 
     /// Whether a rotor hub is inside the flyable area. Exact; the cell decides if it agrees as a whole.
@@ -115,6 +118,7 @@ class DOWNWASH_EXPORT AeroMap {
     struct Raster {
         std::vector<MapCell> cells;
         std::vector<CellFlyability> flyability;  ///< of each cell
+        std::vector<CellSides> sides;            ///< of each cell
         std::vector<float> nodes;  ///< a cell that has the values of the one before it shares them: most cells do
 
         void append(const CellRows& rows);
@@ -124,7 +128,10 @@ class DOWNWASH_EXPORT AeroMap {
     struct Empty {};
     AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent);
 
-    [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
+    [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept {
+        return sided_factor_outside(layer, x_m, z_m).all;
+    }
+    [[nodiscard]] SidedFactor<double> sided_factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
     void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over);
     void add_raster(Raster raster);
     [[nodiscard]] bool is_sound(const Raster& raster) const;

@@ -9,7 +9,7 @@
 #include "downwash/grids/factor_grid.hpp"
 
 // A map as bytes: the counts of layers, columns and rows; then of every layer the number of the first one that holds
-// the same values and, if that is itself, the count of its nodes, the cells, their flyability, the nodes.
+// the same values and, if that is itself, the count of its nodes, the cells, their flyability and sides, the nodes.
 
 namespace downwash {
 namespace {
@@ -73,6 +73,7 @@ std::string AeroMap::to_bytes() const {
         append_count(bytes, raster->nodes.size());
         append(bytes, raster->cells.data(), raster->cells.size());
         append(bytes, raster->flyability.data(), raster->flyability.size());
+        append(bytes, raster->sides.data(), raster->sides.size());
         append(bytes, raster->nodes.data(), raster->nodes.size());
     }
     return bytes;
@@ -99,8 +100,8 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
             Raster raster;
             std::uint64_t nodes = 0;
             if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
-                !take(bytes, columns * rows, raster.flyability) || !take(bytes, nodes, raster.nodes) ||
-                !map.is_sound(raster)) {
+                !take(bytes, columns * rows, raster.flyability) ||
+                !take(bytes, columns * rows, raster.sides) || !take(bytes, nodes, raster.nodes) || !map.is_sound(raster)) {
                 return std::nullopt;
             }
             map.add_raster(std::move(raster));
@@ -114,10 +115,10 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
 
 /// Whether look-ups stay within the raster and find numbers there.
 bool AeroMap::is_sound(const Raster& raster) const {
-    const auto is_cell = [&raster](const MapCell& cell) {
-        const std::size_t nodes = std::size_t{cell.steps_x + 1U} * (cell.steps_z + 1U);
-        return is_step_count(cell.steps_x) && is_step_count(cell.steps_z) &&
-               cell.first_node + nodes <= raster.nodes.size();
+    const auto is_cell = [&raster](const MapCell& cell, CellSides sides) {
+        const std::size_t kinds = sides == CellSides::both ? 2 : 1;
+        return sides <= CellSides::both && is_step_count(cell.steps_x) && is_step_count(cell.steps_z) &&
+               cell.first_node + kinds * node_count(cell) <= raster.nodes.size();
     };
     const auto is_verdict = [](CellFlyability flyability) { return flyability <= CellFlyability::mixed; };
     const AeroSettings& settings = layers_.front().effect->settings();
@@ -125,7 +126,7 @@ bool AeroMap::is_sound(const Raster& raster) const {
     // Counted and not searched for, so that several are looked at at once. NaN fails.
     const auto factors = std::count_if(raster.nodes.begin(), raster.nodes.end(),
                                        [max](float value) { return value >= 0 && value <= max; });
-    return std::all_of(raster.cells.begin(), raster.cells.end(), is_cell) &&
+    return std::equal(raster.cells.begin(), raster.cells.end(), raster.sides.begin(), is_cell) &&
            std::all_of(raster.flyability.begin(), raster.flyability.end(), is_verdict) &&
            static_cast<std::size_t>(factors) == raster.nodes.size();
 }
@@ -134,7 +135,7 @@ bool AeroMap::is_sound(const Raster& raster) const {
 /// This notices changes of models or integration without a new map_format_version.
 bool AeroMap::agrees_with_effect(std::size_t layer) const {
     constexpr std::size_t samples = 64;
-    const auto& [cells, flyability, nodes] = *rasters_[layer];
+    const auto& [cells, flyability, sides, nodes] = *rasters_[layer];
     std::vector<std::size_t> felt;
     for (std::size_t row = 0; row < rows_; row += FactorPatches::block_cells) {
         for (std::size_t column = 0; column < columns_; column += FactorPatches::block_cells) {

@@ -14,9 +14,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-double max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
+SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
     if (effect.settings().map) {
-        return infinity;
+        return {infinity, 0};
     }
     const Scene& scene = effect.scene();
     const double r = effect.column_radius_m();
@@ -50,12 +50,18 @@ double max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
         }
     }
     const double unit_m = effect.rotor_radius_m();
-    return effect.largest_change_beyond(below_m / unit_m, above_m / unit_m);
+    return {effect.largest_change_from_below(below_m / unit_m), effect.largest_change_from_above(above_m / unit_m)};
 }
 
-bool is_quiet(const DirectEffect& effect, const Scene::Bounds& hubs) {
+bool is_quiet(const DirectEffect& effect, const SidedChange& change) {
     constexpr double quiet_change = 0.006;
-    return !effect.settings().enabled || max_change(effect, hubs) <= quiet_change;
+    return !effect.settings().enabled || change.below + change.above <= quiet_change;
+}
+
+CellSides sides_of(const SidedChange& change) {
+    return change.above <= quiet_side   ? CellSides::below
+           : change.below <= quiet_side ? CellSides::above
+                                        : CellSides::both;
 }
 
 }  // namespace downwash

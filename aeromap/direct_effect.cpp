@@ -153,12 +153,19 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     return factors;
 }
 
-double DirectEffect::largest_change_beyond(double below_radii, double above_radii) const {
-    const double below = ground_images_ ? ground_images_->largest_change_beyond(below_radii)
-                                        : ground_.largest_change_beyond(below_radii);
-    const double above = ceiling_images_ ? ceiling_images_->largest_change_beyond(above_radii)
-                                         : ceiling_.largest_change_beyond(above_radii);
-    return below + above;
+SidedFactor<double> DirectEffect::sided_factor(const Vector3& hub_m) const {
+    const Factors k = factors(hub_m);
+    return {k.total, settings_.map ? 1 : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
+}
+
+double DirectEffect::largest_change_from_below(double beyond_radii) const {
+    return ground_images_ ? ground_images_->largest_change_beyond(beyond_radii)
+                          : ground_.largest_change_beyond(beyond_radii);
+}
+
+double DirectEffect::largest_change_from_above(double beyond_radii) const {
+    return ceiling_images_ ? ceiling_images_->largest_change_beyond(beyond_radii)
+                           : ceiling_.largest_change_beyond(beyond_radii);
 }
 
 bool DirectEffect::is_flyable(const Vector3& hub_m) const {

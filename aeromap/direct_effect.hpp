@@ -48,6 +48,9 @@ class DOWNWASH_EXPORT DirectEffect {
     /// max_factor of 10.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
+    /// K of all surfaces and of those above alone. A given map does not tell them apart: then nothing is above.
+    [[nodiscard]] SidedFactor<double> sided_factor(const Vector3& hub_m) const;
+
     /// The thrust ratio K on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
@@ -67,9 +70,9 @@ class DOWNWASH_EXPORT DirectEffect {
     /// K of wide flat surfaces below and above; not used if the settings contain a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
-    /// Upper bound of |K - 1| where no surface below is nearer than the one distance, and none above than the other,
-    /// both in radii.
-    [[nodiscard]] double largest_change_beyond(double below_radii, double above_radii) const;
+    /// Upper bounds of |K - 1| where no surface below, or above, is nearer than a distance in radii.
+    [[nodiscard]] double largest_change_from_below(double beyond_radii) const;
+    [[nodiscard]] double largest_change_from_above(double beyond_radii) const;
 
  private:
     [[nodiscard]] double one_sided(Side side, const Vector3& hub_m) const;

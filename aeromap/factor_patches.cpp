@@ -24,13 +24,14 @@ constexpr std::size_t max_known = 1U << 17U;
 constexpr std::int32_t direct = 0;
 
 /// The product of two parabolas through 3 x 3 values, at parts from 0 to 1 of the square's side.
-double biquadratic(const std::array<double, 9>& values, double x, double z) {
+SidedFactor<double> biquadratic(const std::array<SidedFactor<double>, 9>& values, double x, double z) {
     const auto along_x = parabola_weights(x);
     const auto along_z = parabola_weights(z);
-    double sum = 0;
+    SidedFactor<double> sum{0, 0};
     for (std::size_t row = 0; row < 3; ++row) {
-        const std::size_t n = 3 * row;
-        sum += along_z[row] * (along_x[0] * values[n] + along_x[1] * values[n + 1] + along_x[2] * values[n + 2]);
+        const SidedFactor<double>* const v = &values[3 * row];
+        sum.all += along_z[row] * (along_x[0] * v[0].all + along_x[1] * v[1].all + along_x[2] * v[2].all);
+        sum.above += along_z[row] * (along_x[0] * v[0].above + along_x[1] * v[1].above + along_x[2] * v[2].above);
     }
     return sum;
 }
@@ -83,8 +84,9 @@ void FactorPatches::fit(std::size_t node, const Square& square, bool is_flyable,
 /// Looks at the middles of the quarters: farthest from all samples, and close to where a parabola misses most.
 bool FactorPatches::is_met(const Square& square, const Values& values) {
     const auto is_close = [&](unsigned x, unsigned z) {
-        const double there = sample(square.x + x * (square.side / 4), square.z + z * (square.side / 4));
-        return std::abs(there - biquadratic(values, 0.25 * x, 0.25 * z)) <= allowed_error;
+        const SidedFactor<double> there = sample(square.x + x * (square.side / 4), square.z + z * (square.side / 4));
+        const SidedFactor<double> met = biquadratic(values, 0.25 * x, 0.25 * z);
+        return std::abs(there.all - met.all) <= allowed_error && std::abs(there.above - met.above) <= allowed_error;
     };
     return is_close(1, 1) && is_close(3, 3) && is_close(3, 1) && is_close(1, 3);
 }
@@ -92,10 +94,11 @@ bool FactorPatches::is_met(const Square& square, const Values& values) {
 bool FactorPatches::is_quiet(const Square& square) const {
     return downwash::is_quiet(
         grid_.effect,
-        Scene::Bounds::around(hub_m(square.x, square.z), hub_m(square.x + square.side, square.z + square.side)));
+        max_change(grid_.effect, Scene::Bounds::around(hub_m(square.x, square.z),
+                                                       hub_m(square.x + square.side, square.z + square.side))));
 }
 
-double FactorPatches::factor(double x_m, double z_m) {
+SidedFactor<double> FactorPatches::factor(double x_m, double z_m) {
     const double units_per_m = cell_units / grid_.side_m;
     const double z_low_m = grid_.z_low_m + static_cast<double>(first_) * grid_.side_m;
     const auto x = static_cast<std::uint64_t>(std::llround((x_m - grid_.x_low_m) * units_per_m));
@@ -124,14 +127,14 @@ double FactorPatches::factor(double x_m, double z_m) {
     return biquadratic(values_[static_cast<std::size_t>(-1 - node)], part(x - square.x), part(z - square.z));
 }
 
-double FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
+SidedFactor<double> FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
     throw_if_over(grid_.is_over);
     if (known_.size() >= max_known) {
         known_.clear();
     }
     const auto [known, is_new] = known_.try_emplace(x * (2 * block_units) + z);
     if (is_new) {
-        known->second = grid_.effect.factor(hub_m(x, z));
+        known->second = grid_.effect.sided_factor(hub_m(x, z));
     }
     return known->second;
 }

@@ -35,11 +35,11 @@ class FactorPatches {
 
     /// K at a point of the strip, which is taken to the nearest of 2048 in a cell's side; parabolas miss by about
     /// 0.002 at most.
-    [[nodiscard]] double factor(double x_m, double z_m);
+    [[nodiscard]] SidedFactor<double> factor(double x_m, double z_m);
 
  private:
     /// Of nine samples, x running fastest.
-    using Values = std::array<double, 9>;
+    using Values = std::array<SidedFactor<double>, 9>;
     /// In the lattice of 2048 points to a cell's side, from the strip's lower left corner.
     struct Square {
         std::uint64_t x, z, side;
@@ -48,7 +48,7 @@ class FactorPatches {
     void fit(std::size_t node, const Square& square, bool is_flyable, const FlyableCells& flyable);
     [[nodiscard]] bool is_met(const Square& square, const Values& values);
     [[nodiscard]] bool is_quiet(const Square& square) const;
-    [[nodiscard]] double sample(std::uint64_t x, std::uint64_t z);
+    [[nodiscard]] SidedFactor<double> sample(std::uint64_t x, std::uint64_t z);
     [[nodiscard]] Vector3 hub_m(std::uint64_t x, std::uint64_t z) const;
 
     const LayerGrid& grid_;
@@ -58,7 +58,7 @@ class FactorPatches {
     std::vector<std::int32_t> nodes_;
     std::size_t blocks_ = 0;
     std::vector<Values> values_;
-    std::unordered_map<std::uint64_t, double> known_;  ///< K at points of the lattice; forgotten when they grow many
+    std::unordered_map<std::uint64_t, SidedFactor<double>> known_;  ///< K at points of the lattice; forgotten when they grow many
 };
 
 }  // namespace downwash

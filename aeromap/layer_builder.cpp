@@ -24,7 +24,7 @@ class RowsBuilder {
           last_(last),
           patches_(grid, first) {
         rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
-        everywhere_.factor = [this](double x, double z) { return patches_.factor(x, z); };
+        everywhere_.factor = [this](double x, double z) { return patches_.factor(x, z).all; };
         everywhere_.shortest_turn_m = shortest_turn_m(grid.effect);
         partly_ = everywhere_;
         partly_.is_forbidden_around = [this](double x, double z, double reach) {
@@ -157,6 +157,7 @@ class RowsBuilder {
         const CellFlyability flyable = flyability(i, k);
         if (flyable == CellFlyability::forbidden) {
             rows_.steps.push_back({});
+            rows_.sides.push_back(CellSides::below);
             rows_.nodes.insert(rows_.nodes.end(), 4, 1.0F);
             return;
         }
@@ -165,9 +166,22 @@ class RowsBuilder {
             middle_.clearance_m = clearance_m(middle_.x_m, middle_.z_m);
         }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
-        const CellSteps steps = is_quiet(grid_.effect, hubs_in(cell)) ? CellSteps{} : steps_for(cell, field);
+        const SidedChange change = max_change(grid_.effect, hubs_in(cell));
+        const CellSides sides = sides_of(change);
+        CellSteps steps = is_quiet(grid_.effect, change) ? CellSteps{} : steps_for(cell, field);
+        rows_.sides.push_back(sides);
+        if (sides != CellSides::both) {
+            rows_.steps.push_back(steps);
+            append_nodes(cell, steps, field, rows_.nodes);
+            return;
+        }
+        CellField from_above = field;
+        from_above.factor = [this](double x, double z) { return patches_.factor(x, z).above; };
+        const CellSteps above = steps_for(cell, from_above);
+        steps = {std::max(steps.x, above.x), std::max(steps.z, above.z)};
         rows_.steps.push_back(steps);
         append_nodes(cell, steps, field, rows_.nodes);
+        append_nodes(cell, steps, from_above, rows_.nodes);
     }
 
     const LayerGrid& grid_;

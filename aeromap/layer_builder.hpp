@@ -26,7 +26,8 @@ struct LayerGrid {
 struct CellRows {
     std::vector<CellSteps> steps;
     std::vector<CellFlyability> flyability;
-    std::vector<float> nodes;  ///< of one cell after the other
+    std::vector<CellSides> sides;
+    std::vector<float> nodes;  ///< of one cell after the other: of all surfaces, then of those above where both matter
 };
 
 /// Rows [first, last) of a layer. @throws WorkStopped when it is over before they are built

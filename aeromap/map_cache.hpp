@@ -12,7 +12,7 @@
 namespace downwash {
 
 /// Incremented if maps of the same key get other values or another layout.
-inline constexpr int map_format_version = 8;
+inline constexpr int map_format_version = 9;
 
 /// A digest of everything that makes a map: scene, plane, extent, layers, models with their parameters and tables,
 /// rotors, grid, version. Names of obstacles and files do not count, the contents of meshes, octrees and tables do.

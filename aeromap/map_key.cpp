@@ -122,7 +122,8 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
     description.add_all(std::initializer_list<double>{x_low_m, x_high_m, z_low_m, z_high_m});
     const Scene* described = nullptr;
     for (const auto& [effect, lateral_m] : layers) {
-        const auto& [enabled, ground, ceiling, map_file, map, max_factor, min_distance_radii, grid_m] =
+        // The tilt comes in flight, behind the map.
+        const auto& [enabled, ground, ceiling, tilt_loss, map_file, map, max_factor, min_distance_radii, grid_m] =
             effect->settings();
         description.add("layer").add(lateral_m).add(enabled ? "on" : "off").add(grid_m);
         description.add(effect->rotor_radius_m()).add(effect->min_clearance_m());

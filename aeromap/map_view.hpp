@@ -9,12 +9,20 @@ namespace downwash {
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
+/// Which sides matter in a whole map cell: elsewhere the other one changes K by no more than quiet_side (change_bound.hpp).
+enum class CellSides : std::uint8_t { below, above, both };
+
 /// A cell of a layer: where its grid of values begins, and how fine it is.
 struct MapCell {
     std::uint32_t first_node;
     std::uint16_t steps_x;  ///< intervals along x, a power of two
     std::uint16_t steps_z;  ///< intervals along z, a power of two
 };
+
+/// Values of one kind that a cell has.
+[[nodiscard, gnu::always_inline]] inline std::size_t node_count(const MapCell& cell) noexcept {
+    return (cell.steps_x + std::size_t{1}) * (cell.steps_z + std::size_t{1});
+}
 
 /// A layer of an AeroMap as plain arrays, for code that follows flights through it. Functions that kernels for wide
 /// instructions call are always inlined, so that no copy that only some processors can run reaches the linker.
@@ -23,7 +31,9 @@ struct MapView {
     std::uint32_t columns, rows;
     const MapCell* cells;              ///< x running fastest
     const CellFlyability* flyability;  ///< of each cell
-    const float* nodes;                ///< K, x running fastest within a cell
+    const CellSides* sides;            ///< of each cell
+    /// K, x running fastest within a cell. Behind it, where both sides matter, as many values of the surfaces above.
+    const float* nodes;
 
     /// Whether a place, in cells from the lower corner, has a cell; false for NaN.
     [[nodiscard, gnu::always_inline]] bool contains(double u, double w) const noexcept {
@@ -37,11 +47,12 @@ struct MapPatch {
     double u, w;                ///< its lower corner, in cells from that of the layer
     double steps_x, steps_z;    ///< patches per cell
     double corner[4];           ///< K at the lower left, lower right, upper left and upper right
+    double above[4];            ///< of the surfaces above alone
     CellFlyability flyability;  ///< of the cell
 };
 
 /// A patch without any place in it.
-inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, CellFlyability::mixed};
+inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {}, CellFlyability::mixed};
 
 /// The patch around a place given in cells from the layer's lower corner.
 /// @pre view.contains(u, w)
@@ -57,8 +68,23 @@ inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, CellFlyability:
     const float* upper = lower + cell.steps_x + 1U;
     const double steps_x = cell.steps_x;
     const double steps_z = cell.steps_z;
-    return {i + a / steps_x,  // exact, as all that follows from it
-            k + b / steps_z, steps_x, steps_z, {lower[0], lower[1], upper[0], upper[1]}, view.flyability[number]};
+    MapPatch patch{i + a / steps_x,  // exact, as all that follows from it
+                   k + b / steps_z,
+                   steps_x,
+                   steps_z,
+                   {lower[0], lower[1], upper[0], upper[1]},
+                   {1, 1, 1, 1},
+                   view.flyability[number]};
+    if (view.sides[number] != CellSides::below) {
+        const std::size_t behind = view.sides[number] == CellSides::both ? node_count(cell) : 0;
+        lower += behind;
+        upper += behind;
+        patch.above[0] = lower[0];
+        patch.above[1] = lower[1];
+        patch.above[2] = upper[0];
+        patch.above[3] = upper[1];
+    }
+    return patch;
 }
 
 /// K at the share (s, t) of a patch, each in [0, 1). One template over the lane type.

@@ -142,7 +142,7 @@ class VolumeMap::Builder {
             const Vector3 hub = hub_m(box.at(corner & 1U, corner >> 1U & 1U, corner >> 2U, 1));
             hubs.include({hub, hub});
         }
-        return downwash::is_quiet(effect_, hubs);
+        return downwash::is_quiet(effect_, max_change(effect_, hubs));
     }
 
     /// The longest edge, when K could turn unseen along it.

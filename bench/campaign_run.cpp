@@ -314,7 +314,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                        : nullptr;
         const auto evaluation =
             is_evaluated && !options.stop.stop_requested()
-                ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map, options.map_cache)
+                ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map)
                 : nullptr;
         if (map && is_in_cache(problem, options.map_cache)) {
             map.reset();

@@ -20,11 +20,8 @@ World world_of(const WorldParameter& parameter, const Uncertainty& uncertainty, 
 
 }  // namespace
 
-PlanEvaluation::PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map,
-                               const std::filesystem::path& map_cache)
+PlanEvaluation::PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map)
     : problem_(std::move(problem)), world_count_(worlds), model_(make_flight_model(problem_)), map_(std::move(map)) {
-    free_.push_back(std::make_unique<WorldFlights>(problem_, model_, map_, 1, map_cache));
-    ceiling_ = free_.back()->ceiling();
     const Robot& robot = problem_.robot;
     const Uncertainty& uncertainty = problem_.uncertainty.value();
     for (std::uint64_t i = 1; i <= worlds; ++i) {
@@ -50,7 +47,7 @@ std::unique_ptr<WorldFlights> PlanEvaluation::take() {
             return flights;
         }
     }
-    return std::make_unique<WorldFlights>(problem_, model_, map_, ceiling_, 1);
+    return std::make_unique<WorldFlights>(problem_, model_, map_);
 }
 
 void PlanEvaluation::give_back(std::unique_ptr<WorldFlights> flights) {

@@ -21,9 +21,8 @@ inline constexpr double low_quantile = 0.02, high_quantile = 0.98;
 class PlanEvaluation {
  public:
     /// @param problem has an uncertainty   @param worlds how many: indices 1 to `worlds` of evaluation_seed
-    /// @param map of the problem; nullptr for none   @param map_cache see FlightModel::make_map
-    PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map,
-                   const std::filesystem::path& map_cache);
+    /// @param map of the problem; nullptr for none
+    PlanEvaluation(Problem problem, std::uint64_t worlds, std::shared_ptr<const AeroMap> map);
 
     /// @param plan through all goals of the problem
     [[nodiscard]] WorldFigures evaluate(const Plan& plan);
@@ -37,7 +36,6 @@ class PlanEvaluation {
     std::uint64_t world_count_;
     std::shared_ptr<const FlightModel> model_;
     std::shared_ptr<const AeroMap> map_;
-    CeilingPart ceiling_;
     std::vector<std::string> parameters_;  ///< that are not exact
     std::vector<FlownWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
 

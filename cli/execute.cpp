@@ -108,8 +108,7 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
 void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
     const auto model = make_flight_model(problem);
-    const CeilingPart ceiling{world ? model->ceilings_only() : nullptr, nullptr};
-    const FlightWorld in{world ? &*world : nullptr, &ceiling, 0};
+    const FlightWorld in{world ? &*world : nullptr, 0};
     FlightState believed = start_state(*model, problem.start);
     if (world) {
         believed.world = memory_at_start(*world, believed.plant);

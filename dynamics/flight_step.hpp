@@ -48,6 +48,16 @@ int rotor_with_factor_of(const Factor& factor, int rotor) {
     }
 }
 
+/// K of a rotor, or of the body. A factor that knows what tilt does takes the sine of the pitch too.
+template <class T, class Factor>
+T thrust_ratio(Factor& factor, int rotor, const PlanePoint<T>& hub, const Attitude<T>& a) {
+    if constexpr (requires { factor(rotor, hub.x, hub.z, a.sin_pitch); }) {
+        return factor(rotor, hub.x, hub.z, a.sin_pitch);
+    } else {
+        return factor(rotor, hub.x, hub.z);
+    }
+}
+
 /// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
 /// says so by `thrust_scale(rotor)`.
 template <class T, class Factor>
@@ -63,7 +73,7 @@ T free_air_thrust(const Factor& factor, int rotor, T nominal_n) {
 /// centre between them (docs/model.md 4.3).
 /// @param thrust_n of every rotor in free air with its nominal thrust coefficient [N]: a measure of its speed
 /// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body(); it
-/// may know a wind and thrust coefficients too
+/// may take the sine of the pitch behind the place, and know a wind and thrust coefficients too
 template <class T, class Factor, class P>
 RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m,
                             const T thrust_n[max_rotors], Factor&& factor) {
@@ -74,7 +84,7 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
             factors[i] = factors[same];
         } else {
             const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
-            factors[i] = factor(i, hub.x, hub.z);
+            factors[i] = thrust_ratio(factor, i, hub, a);
         }
         const T acting_n = factors[i] * free_air_thrust(factor, i, thrust_n[i]);
         wrench.thrust_n = wrench.thrust_n + acting_n;
@@ -87,7 +97,7 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
         for (int i = 0; i < model.rotor_count; ++i) {
             free_air_n = free_air_n + free_air_thrust(factor, i, thrust_n[i]);
         }
-        const T push_n = (factor(body, center.x, center.z) - T(1)) * free_air_n;
+        const T push_n = (thrust_ratio(factor, body, center, a) - T(1)) * free_air_n;
         wrench.thrust_n = wrench.thrust_n + push_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[body]) * push_n;
     }

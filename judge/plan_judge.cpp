@@ -35,8 +35,11 @@ struct PlanJudge::Setting {
         : problem(of), obstacles(of.obstacles, of.plane, of.robot.shape(), of.robot.rotors.radius_m), law(of.robot) {
         if (of.aero.enabled) {
             effects.all = make_flight_model(of);
-            effects.ceilings = effects.all->ceilings_only();
             effects.has_fountain = !of.aero.map && of.aero.ground.model == EffectModel::multirotor_body;
+            if (!of.aero.map) {
+                effects.ground_tilt_loss = of.aero.tilt_loss.ground;
+                effects.ceiling_tilt_loss = of.aero.tilt_loss.ceiling;
+            }
         }
     }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "downwash/judge/vehicle.hpp"
@@ -12,9 +13,10 @@ namespace downwash::judge {
 
 /// The effects of a scene, the same in all worlds. Safe to share between threads.
 struct SurfaceEffects {
-    std::shared_ptr<const FlightModel> all;       ///< its formulas only
-    std::shared_ptr<const FlightModel> ceilings;  ///< those of the surfaces above alone; may be nullptr
-    bool has_fountain = false;                    ///< the ground model pushes the body (docs/model.md 4.3)
+    std::shared_ptr<const FlightModel> all;  ///< its formulas only
+    bool has_fountain = false;               ///< the ground model pushes the body (docs/model.md 4.3)
+    double ground_tilt_loss = 0;             ///< docs/model.md 4.7
+    double ceiling_tilt_loss = 0;
 };
 
 /// The effects in one world.
@@ -24,30 +26,35 @@ class Surroundings {
     Surroundings(const SurfaceEffects* effects, const World& world) : effects_(effects), world_(world) {}
 
     /// K at the hub of a rotor in the plane [m].
-    [[nodiscard]] double thrust_ratio(int rotor, Planar hub_m) const {
+    [[nodiscard]] double thrust_ratio(int rotor, Planar hub_m, double pitch_rad) const {
         if (effects_ == nullptr) {
             return 1;
         }
         const Planar seen = hub_m - Planar{world_.scene_x_m, world_.scene_z_m};
-        const double all = effects_->all->direct_factor(rotor, seen.x, seen.z);
-        double above = 1;
-        if (world_.ceiling_scale != world_.ground_scale && effects_->ceilings != nullptr && all != 1) {
-            above = effects_->ceilings->direct_factor(rotor, seen.x, seen.z);
-        }
-        return all + world_.ground_scale * (all - above) + world_.ceiling_scale * (above - 1);
+        const auto level = effects_->all->sided_factor(rotor, seen.x, seen.z);
+        const double below = faded(level.all - level.above, effects_->ground_tilt_loss, pitch_rad);
+        const double above = faded(level.above - 1, effects_->ceiling_tilt_loss, pitch_rad);
+        return 1 + (1 + world_.ground_scale) * below + (1 + world_.ceiling_scale) * above;
     }
 
     /// K_body - 1 at the centre between the rotors: a push from the ground. 0 without a fountain.
     /// @param body its number, behind those of the rotors
-    [[nodiscard]] double fountain(int body, Planar center_m) const {
+    [[nodiscard]] double fountain(int body, Planar center_m, double pitch_rad) const {
         if (effects_ == nullptr || !effects_->has_fountain) {
             return 0;
         }
         const Planar seen = center_m - Planar{world_.scene_x_m, world_.scene_z_m};
-        return (1 + world_.ground_scale) * (effects_->all->direct_factor(body, seen.x, seen.z) - 1);
+        const double push = effects_->all->direct_factor(body, seen.x, seen.z) - 1;
+        return (1 + world_.ground_scale) * faded(push, effects_->ground_tilt_loss, pitch_rad);
     }
 
  private:
+    /// K - 1 of a tilted rotor: half of the level one's where that is loss sin^2 of the tilt.
+    [[nodiscard]] static double faded(double change, double loss, double tilt_rad) {
+        const double half = loss * std::sin(tilt_rad) * std::sin(tilt_rad);
+        return half == 0 ? change : change / (1 + half / std::abs(change));
+    }
+
     const SurfaceEffects* effects_;
     const World& world_;
 };

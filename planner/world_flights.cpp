@@ -58,34 +58,20 @@ class AskingScope {
 }  // namespace
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, CeilingPart ceiling, int threads)
+                           std::shared_ptr<const AeroMap> map, int threads)
     : problem_(problem),
       model_(std::move(model)),
       map_(std::move(map)),
-      ceiling_(std::move(ceiling)),
       goals_(goals_of(problem)),
       threads_(threads),
       pools_(goals_.size()) {}
-
-WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, int threads, const std::filesystem::path& map_cache,
-                           const StopCondition& is_over)
-    : WorldFlights(problem, std::move(model), std::move(map), CeilingPart(), threads) {
-    if (map_ != nullptr) {
-        ceiling_.model = model_->ceilings_only();
-        if (ceiling_.model != nullptr) {
-            ceiling_.map = ceiling_.model->make_map(problem.bounds, threads, {}, map_cache, is_over);
-        }
-    }
-}
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
         FlightRules rules = rules_of_execution();
         rules.finds_min_clearance = true;
         rules.is_over = [this] { return is_over_ && is_over_(); };
-        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_,
-                                                    best_instructions(), &ceiling_);
+        pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_);
     }
     return *pools_[goal];
 }

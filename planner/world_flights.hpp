@@ -27,14 +27,10 @@ struct WorldFlight {
 class DOWNWASH_EXPORT WorldFlights {
  public:
     /// @param map of the planner's own model; nullptr for none: then surfaces do not act
-    /// @param threads at least 1; nothing but the time depends on it   @param map_cache,is_over see
-    /// FlightModel::make_map
+    /// @param threads at least 1; nothing but the time depends on it
     /// @pre problem outlives it
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                 int threads = 1, const std::filesystem::path& map_cache = {}, const StopCondition& is_over = {});
-    /// The same with maps that are there already. @param ceiling that of another WorldFlights of the same problem
-    WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                 CeilingPart ceiling, int threads);
+                 int threads = 1);
 
     ~WorldFlights() = default;
     WorldFlights(const WorldFlights&) = delete;
@@ -56,7 +52,6 @@ class DOWNWASH_EXPORT WorldFlights {
 
     [[nodiscard]] const std::vector<Goal>& goals() const noexcept { return goals_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
-    [[nodiscard]] const CeilingPart& ceiling() const noexcept { return ceiling_; }
 
  private:
     /// The pool of flights to a goal, made when first needed.
@@ -65,7 +60,6 @@ class DOWNWASH_EXPORT WorldFlights {
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;
     std::shared_ptr<const AeroMap> map_;
-    CeilingPart ceiling_;
     std::vector<Goal> goals_;
     int threads_;
     StopCondition is_over_;                           ///< of fly(), while it goes on

@@ -75,13 +75,11 @@ constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
 ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,
                              std::shared_ptr<const AeroMap> map, const SolveOptions& options)
     : problem_(problem),
-      flights_(problem, std::move(model), std::move(map), options.threads, options.map_cache,
-               [stop = options.stop] { return stop.stop_requested(); }),
+      flights_(problem, std::move(model), std::move(map), options.threads),
       threads_(options.threads) {}
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
-    search.ceiling = flights_.ceiling();
     for (std::uint64_t i = 1; i < problem_.planner.worlds; ++i) {
         const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem_.planner.seed} ^ simulation::mixed(i));
         search.worlds.push_back(
@@ -158,7 +156,7 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
             return;
         }
         const Execution flight = execute(flights_.model(), *starts[i], whole.reference, goals, true,
-                                         {&worlds[i], &flights_.ceiling()}, is_over);
+                                         {&worlds[i]}, is_over);
         samples[i].outcome = flight.outcome;
         samples[i].min_clearance_m = flight.min_clearance_m;
         const auto missed = std::find_if(flight.goals.begin(), flight.goals.end(),

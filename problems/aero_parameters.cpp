@@ -83,9 +83,9 @@ void add_table(Rows& rows, const std::string& path, Effect effect) {
 }
 
 /// One side's surface effect; `effect` names it in a Problem.
-template <class Effect>
+template <class Effect, class TiltLossMember>
 void add_surface(Rows& rows, const std::string& path, const std::string& description,
-                 const std::vector<EffectModelInfo>& models, Effect effect) {
+                 const std::vector<EffectModelInfo>& models, Effect effect, TiltLossMember tilt_loss) {
     auto surface = parameters::group<Problem>(path, description).or_none().only("without aero.map", has_no_map);
     surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
         if (count == 0) {
@@ -95,6 +95,12 @@ void add_surface(Rows& rows, const std::string& path, const std::string& descrip
     rows.push_back(std::move(surface));
     add_model(rows, path, models, effect);
     add_table(rows, path, effect);
+    rows.push_back(number(path + ".tilt_loss",
+                          "how fast the effect fades with the tilt of a rotor: K - 1 is halved where it equals tilt_loss "
+                          "times the squared sine of the tilt; 0: a tilted rotor counts as level",
+                          tilt_loss)
+                       .at_least(0)
+                       .at_most(100));
 }
 
 void add_map(Rows& rows) {
@@ -121,9 +127,11 @@ void add_aero_rows(Rows& rows) {
         return model.model == EffectModel::multirotor_body;
     });
     add_surface(
-        rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; });
+        rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; },
+        [](auto& p) -> auto& { return p.aero.tilt_loss.ground; });
     add_surface(
-        rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; });
+        rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; },
+        [](auto& p) -> auto& { return p.aero.tilt_loss.ceiling; });
     rows.push_back(
         number(
             "aero.max_factor",

@@ -34,7 +34,6 @@ struct Counterexample {
 /// The worlds of a search beside the nominal one, and the fleet at its start. Empty for a search in one world.
 struct SearchWorlds {
     std::vector<FlownWorld> worlds;
-    CeilingPart ceiling;
     Fleet start;  ///< in these worlds
 };
 

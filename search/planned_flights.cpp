@@ -79,7 +79,7 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
     if (task.worlds != nullptr) {
         world_crew_ =
             std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
-                                         &task.problem.goal, threads, best_instructions(), &task.worlds->ceiling);
+                                         &task.problem.goal, threads);
     }
     forget();
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <type_traits>
 #include <variant>
 
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/flight_step.hpp"
+#include "downwash/effects/sided_factor.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
 // One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
@@ -15,6 +17,7 @@ struct TickModel {
     PlantModel plant;  ///< what the controller knows, and what flies unless somebody says otherwise
     ControlLaw law;
     double tick_s;  ///< control period, 1 / rate_hz
+    TiltLoss tilt_loss = {};
 };
 
 /// What the plain tick changes: bodies, rotor lag, energy, and every integrator. Nothing but T: see base/numbers.hpp.
@@ -41,7 +44,8 @@ struct State : VehicleState<T> {
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
 /// @param law that of the model, as its own type: what runs tick by tick visits model.law once
 /// @param motion that of the state
-/// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane
+/// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane. That of a tilted rotor is less
+/// if the factor tells the sides apart (see WorldSurroundings); otherwise it is taken as it is
 /// @param[out] given what the controller commanded
 /// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
 /// dynamics::RefinedStep
@@ -53,19 +57,23 @@ DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& la
     VehicleState<T> next;
     next.memory = controllers::remembered(law.control(
         model.plant, state.plant, motion, controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
-    next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
+    if constexpr (requires { factor.sided(0, state.plant.q[0], state.plant.q[1]); }) {
+        const TiltedEffect<T, std::remove_reference_t<Factor>> effect(factor, model.tilt_loss);
+        next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), effect);
+    } else {
+        next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
+    }
     return next;
 }
 
 /// The same in a world that is not what the controller takes it for, perhaps a different one in every lane. In the
 /// world without any difference it is the same to the last bit.
-/// @param noise standard normal numbers of this tick   @param effect,ceiling see WorldSurroundings
-template <class T, class Law, class Effect, class Ceiling, class Integrate = dynamics::OneStep>
+/// @param noise standard normal numbers of this tick   @param effect see WorldSurroundings
+template <class T, class Law, class Effect, class Integrate = dynamics::OneStep>
 DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world,
                                              const T noise[noise_count], const State<T>& state,
                                              const BasicReferencePoint<T>& reference, Effect&& effect,
-                                             Ceiling&& ceiling, controllers::Actuation<T>& given,
-                                             const Integrate& integrate = {}) {
+                                             controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
     next.memory =
@@ -86,7 +94,7 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
         by.u[1] = by.u[1] - sign * (by.u[2] * x);
     };
     shift(moving, motion.attitude, T(1));
-    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, ceiling, plant.body());
+    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, model.tilt_loss);
     next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), surroundings);
     shift(next.plant, dynamics::attitude(plant, next.plant.q[2], next.plant.q[3]), T(-1));
     next.world = later(world, state.plant, state.world, noise);

@@ -23,16 +23,16 @@ constexpr std::int64_t ticks_between_questions = 8;
 constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
 
 /// Writes the log of one flight while it is flown.
-template <class Factor, class Ceiling>
+template <class Factor>
 class Recorder {
  public:
-    /// @param world nullptr: the plain tick   @param factor,ceiling see WorldSurroundings
-    Recorder(const FlightModel& model, const FlownWorld* world, Factor& factor, Ceiling& ceiling, Execution& execution)
+    /// @param world nullptr: the plain tick   @param factor see WorldSurroundings
+    Recorder(const FlightModel& model, const FlownWorld* world, Factor& factor, Execution& execution)
         : model_(model),
           plant_(model.tick().plant),
           world_(world),
-          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor, ceiling,
-                        plant_.body()),
+          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor,
+                        model.tick().tilt_loss),
           execution_(execution) {}
 
     /// Flown so far.
@@ -109,7 +109,7 @@ class Recorder {
             const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
             row.rotor_command_n[i] = given.command.thrust_n[i];
             row.rotor_lag_n[i] = state.plant.thrust_n[i];
-            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z);
+            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z, attitude.sin_pitch);
             row.thrust_command_n += row.rotor_command_n[i];
             row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
             const double free_air_n = dynamics::free_air_thrust(surroundings_, i, thrust_n[i]);
@@ -129,7 +129,7 @@ class Recorder {
     const FlightModel& model_;
     const PlantModel& plant_;
     const FlownWorld* world_;
-    simulation::WorldSurroundings<double, Factor, Ceiling> surroundings_;
+    simulation::WorldSurroundings<double, Factor> surroundings_;
     Execution& execution_;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
@@ -188,10 +188,10 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
     }
 }
 
-template <class Factor, class Ceiling>
+template <class Factor>
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                        std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
-                       Factor factor, Ceiling ceiling) {
+                       Factor factor) {
     const FlownWorld* const world = flown_world(model, in.world);
     Execution execution;
     execution.aero = aero;
@@ -199,7 +199,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
     execution.min_clearance_m = std::numeric_limits<double>::infinity();
 
-    Recorder<Factor, Ceiling> recorder(model, world, factor, ceiling, execution);
+    Recorder<Factor> recorder(model, world, factor, execution);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
     Rejection rejection = recorder.judge(state, reference);
@@ -220,7 +220,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         rejection = world == nullptr
                         ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state, after)
                         : simulation::fly_ticks(model.tick(), *world, in.first_tick + recorder.ticks(), segment, factor,
-                                                ceiling, dynamics::RefinedStep{}, state, after);
+                                                dynamics::RefinedStep{}, state, after);
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     if (execution.rows.empty() || are_within(state.plant, max_state)) {
@@ -236,16 +236,10 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     return execution;
 }
 
-/// Calls fly(effect, effect of ceilings) with what acts on the rotors.
+/// Calls fly(effect) with what acts on the rotors.
 template <class Fly>
-auto with_effects(const FlightModel& model, bool aero, const FlightWorld& in, const Fly& fly) {
-    if (!aero || !model.has_effects()) {
-        return fly(simulation::NoEffect{}, simulation::NoEffect{});
-    }
-    if (in.ceiling != nullptr && in.ceiling->model != nullptr) {
-        return fly(simulation::DirectFactor{model}, simulation::DirectFactor{*in.ceiling->model});
-    }
-    return fly(simulation::DirectFactor{model}, simulation::NoEffect{});
+auto with_effects(const FlightModel& model, bool aero, const Fly& fly) {
+    return aero && model.has_effects() ? fly(simulation::DirectFactor{model}) : fly(simulation::NoEffect{});
 }
 
 }  // namespace
@@ -308,8 +302,8 @@ bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& st
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                   std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over) {
     assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
-    return with_effects(model, aero, in, [&](auto effect, auto ceiling) {
-        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, effect, ceiling);
+    return with_effects(model, aero, [&](auto effect) {
+        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, effect);
     });
 }
 
@@ -323,8 +317,8 @@ std::optional<FlightState> hovering_start(const FlightModel& model, const Flight
     const FlownWorld quiet = without_noise(world);
     FlightState state = start;
     state.world = memory_at_start(quiet, start.plant);
-    const Rejection rejection = with_effects(model, aero, in, [&](auto effect, auto ceiling) {
-        return simulation::fly_ticks(model.tick(), quiet, 0, hover, effect, ceiling, dynamics::OneStep{}, state,
+    const Rejection rejection = with_effects(model, aero, [&](auto effect) {
+        return simulation::fly_ticks(model.tick(), quiet, 0, hover, effect, dynamics::OneStep{}, state,
                                      [&](const FlightState&, const ReferencePoint&, const Given&,
                                          const FlightState& next, const ReferencePoint& reference) {
                                          return is_stable(next, reference) ? Rejection::none : Rejection::unstable;

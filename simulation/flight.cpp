@@ -33,10 +33,10 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
     return Rejection::none;
 }
 
-template <class Factor, class Ceiling>
+template <class Factor>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in, Factor&& factor,
-                       Ceiling&& ceiling) {
+                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in,
+                       Factor&& factor) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     const FlownWorld* const world = flown_world(model, in.world);
     SegmentFlight flight;
@@ -59,7 +59,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
     };
     flight.rejection = world == nullptr
                            ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::OneStep{}, state, after)
-                           : simulation::fly_ticks(model.tick(), *world, in.first_tick, segment, factor, ceiling,
+                           : simulation::fly_ticks(model.tick(), *world, in.first_tick, segment, factor,
                                                    dynamics::OneStep{}, state, after);
     return flight;
 }
@@ -77,15 +77,10 @@ bool is_stable(const FlightState& state, const ReferencePoint& reference) {
 SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                   const ReferenceSegment& segment, FlightState& state, const FlightWorld& in) {
     if (map == nullptr) {
-        return fly_with(model, map, rules, segment, state, in, simulation::NoEffect{}, simulation::NoEffect{});
+        return fly_with(model, map, rules, segment, state, in, simulation::NoEffect{});
     }
     const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
-    simulation::MapEffect<double> effect(maps);
-    if (in.ceiling == nullptr || in.ceiling->map == nullptr) {
-        return fly_with(model, map, rules, segment, state, in, effect, simulation::NoEffect{});
-    }
-    const simulation::RotorMaps ceiling = simulation::rotor_maps(*in.ceiling->model, *in.ceiling->map);
-    return fly_with(model, map, rules, segment, state, in, effect, simulation::MapEffect<double>(ceiling));
+    return fly_with(model, map, rules, segment, state, in, simulation::MapEffect<double>(maps));
 }
 
 }  // namespace downwash

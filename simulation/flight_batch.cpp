@@ -48,7 +48,7 @@ Kernels kernels_for(Instructions instructions, std::size_t law) {
     return {simulation::baseline_kernel(law), simulation::baseline_kernel(law)};
 }
 
-FlightKernelModel make_kernel_model(const FlightSetting& setting, const CeilingPart* ceiling) {
+FlightKernelModel make_kernel_model(const FlightSetting& setting) {
     const simulation::TickModel& tick = setting.model.tick();
     const PlantModel& plant = tick.plant;
     FlightKernelModel kernel{};
@@ -64,10 +64,6 @@ FlightKernelModel make_kernel_model(const FlightSetting& setting, const CeilingP
     kernel.has_map = setting.map != nullptr;
     if (kernel.has_map) {
         kernel.maps = simulation::rotor_maps(setting.model, *setting.map);
-    }
-    kernel.has_ceiling_map = kernel.has_map && ceiling != nullptr && ceiling->map != nullptr;
-    if (kernel.has_ceiling_map) {
-        kernel.ceiling_maps = simulation::rotor_maps(*ceiling->model, *ceiling->map);
     }
     kernel.normal_levels = simulation::normal_levels();
     return kernel;
@@ -94,10 +90,10 @@ std::span<const Instructions> known_instructions() noexcept {
 
 struct FlightPool::Impl {
     Impl(const FlightModel& model, const AeroMap* map, FlightRules the_rules, const Goal* goal,
-         Instructions instructions, const CeilingPart* ceiling)
+         Instructions instructions)
         : rules(std::move(the_rules)),
           setting{model, map, rules, goal},
-          kernel_model(make_kernel_model(setting, ceiling)),
+          kernel_model(make_kernel_model(setting)),
           kernels(kernels_for(instructions, model.tick().law.index())) {}
 
     /// Flies jobs until none is left. Several threads may call it at once.
@@ -205,8 +201,8 @@ struct FlightPool::Impl {
 };
 
 FlightPool::FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads,
-                       Instructions instructions, const CeilingPart* ceiling)
-    : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions, ceiling)) {
+                       Instructions instructions)
+    : impl_(std::make_unique<Impl>(model, map, std::move(rules), goal, instructions)) {
     impl_->others =
         start_threads(threads - 1, [impl = impl_.get()](int i) { impl->stand_by(static_cast<std::size_t>(i)); });
     use_threads(threads);

@@ -60,10 +60,9 @@ class DOWNWASH_EXPORT FlightPool {
     /// @param map,rules as for fly(); all threads call rules.is_over
     /// @param goal of jobs with judged_ticks; may be nullptr when there are none
     /// @param threads at least 1, the calling one included; the others wait between batches
-    /// @param ceiling of jobs in worlds; see FlightWorld
     /// @pre model, map and goal outlive the pool, and the processor has the `instructions`
     FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads = 1,
-               Instructions instructions = best_instructions(), const CeilingPart* ceiling = nullptr);
+               Instructions instructions = best_instructions());
     ~FlightPool();
     FlightPool(const FlightPool&) = delete;
     FlightPool& operator=(const FlightPool&) = delete;

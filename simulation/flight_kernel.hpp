@@ -60,8 +60,6 @@ struct FlightKernelModel {
     RotorMaps maps;
     bool is_in_worlds;     ///< some flight needs what WorldNumbers says
     bool has_noise;        ///< some world has
-    bool has_ceiling_map;  ///< see CeilingPart
-    RotorMaps ceiling_maps;
     const float* normal_levels;
 };
 

@@ -60,9 +60,6 @@ struct LaneGroup {
     }
 };
 
-/// Stands for the effect of ceilings where no flight is in a world.
-struct NoWorlds {};
-
 /// The coordinates (x, z, pitch, arm) of every lane.
 struct Coordinates {
     Pack q[4];
@@ -99,10 +96,9 @@ inline void draw_noises(const FlightKernelModel& model, const LaneGroup& group, 
     }
 }
 
-/// @tparam Ceiling see WorldSurroundings, or NoWorlds
-template <class Law, class Effect, class Ceiling>
-void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect, Ceiling ceiling) {
-    constexpr bool is_in_worlds = !std::is_same_v<Ceiling, NoWorlds>;
+/// @tparam is_in_worlds whether some flights are
+template <class Law, bool is_in_worlds, class Effect>
+void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect) {
     FlightLanes& lanes = group.lanes;
     const PackMask is_active = group.load(lanes.is_active) > Pack(0);
     if (!any(is_active)) {
@@ -139,7 +135,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
             if (model.has_noise) {
                 draw_noises(model, group, first_tick + tick_count, noise);
             }
-            next = tick_in_world(*model.tick, law, world, noise, state, reference, effect, ceiling, given);
+            next = tick_in_world(*model.tick, law, world, noise, state, reference, effect, given);
         } else {
             next = tick(*model.tick, law, state, motion, reference, effect, given);
         }
@@ -198,15 +194,13 @@ fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
     for (int first = 0; first < lane_count; first += lane::pack_width) {
         const LaneGroup group{lanes, first};
         if (!model.is_in_worlds && model.has_map) {
-            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), NoWorlds{});
+            fly_group<Law, false>(model, group, max_ticks, MapEffect<Pack>(model.maps));
         } else if (!model.is_in_worlds) {
-            fly_group<Law>(model, group, max_ticks, NoEffect{}, NoWorlds{});
-        } else if (model.has_ceiling_map) {
-            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), MapEffect<Pack>(model.ceiling_maps));
+            fly_group<Law, false>(model, group, max_ticks, NoEffect{});
         } else if (model.has_map) {
-            fly_group<Law>(model, group, max_ticks, MapEffect<Pack>(model.maps), NoEffect{});
+            fly_group<Law, true>(model, group, max_ticks, MapEffect<Pack>(model.maps));
         } else {
-            fly_group<Law>(model, group, max_ticks, NoEffect{}, NoEffect{});
+            fly_group<Law, true>(model, group, max_ticks, NoEffect{});
         }
     }
 }

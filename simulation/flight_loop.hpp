@@ -15,6 +15,10 @@ struct DirectFactor {
     const FlightModel& model;
     /// K at the hub of a rotor, or of the body, in the plane.
     double operator()(int rotor, double x_m, double z_m) const { return model.direct_factor(rotor, x_m, z_m); }
+    /// The same by side.
+    [[nodiscard]] SidedFactor<double> sided(int rotor, double x_m, double z_m) const {
+        return model.sided_factor(rotor, x_m, z_m);
+    }
 };
 
 /// Integrand of the objective `clearance` [1/m].
@@ -54,10 +58,9 @@ FlightState quiet_tick(const FlightModel& model, const FlightState& state, const
         return tick(model.tick(), state, reference, factor, given, integrate);
     }
     const double no_noise[noise_count] = {};
-    NoEffect ceiling;
     return std::visit(
         [&](const auto& law) {
-            return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, ceiling, given,
+            return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, given,
                                  integrate);
         },
         model.tick().law);
@@ -82,11 +85,11 @@ Rejection fly_steps(const ReferenceSegment& segment, FlightState& state, const S
 }
 
 /// Flies a segment in a world, tick by tick.
-/// @param ceiling see WorldSurroundings   @param after see fly_steps()
-template <class Factor, class Ceiling, class Integrate, class After>
+/// @param effect see WorldSurroundings   @param after see fly_steps()
+template <class Effect, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_t first_tick,
-                    const ReferenceSegment& segment, Factor&& factor, Ceiling&& ceiling, const Integrate& integrate,
-                    FlightState& state, After&& after) {
+                    const ReferenceSegment& segment, Effect&& effect, const Integrate& integrate, FlightState& state,
+                    After&& after) {
     return std::visit(
         [&](const auto& law) {
             double noise[noise_count] = {};
@@ -95,8 +98,7 @@ Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_
                 if (world.has_noise) {
                     draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
                 }
-                return tick_in_world(model, law, world.numbers, noise, from, reference, factor, ceiling, given,
-                                     integrate);
+                return tick_in_world(model, law, world.numbers, noise, from, reference, effect, given, integrate);
             };
             return fly_steps(segment, state, step, after);
         },

@@ -26,7 +26,7 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
       plane_(plane),
       scene_(scene),
       tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)), robot.controller.law,
-            1 / robot.controller.rate_hz},
+            1 / robot.controller.rate_hz, aero.map ? TiltLoss{} : aero.tilt_loss},
       nominal_world_(make_world(robot, {})),
       collisions_(scene, plane, robot.shape()) {
     EffectLayers effects = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
@@ -44,16 +44,6 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
 bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
     return map_key(map.layers(), map.plane(), map.extent()) ==
            map_key(layers_, plane_, rotor_extent(robot_.rotors, bounds));
-}
-
-std::shared_ptr<const FlightModel> FlightModel::ceilings_only() const {
-    AeroSettings aero = layers_.front().effect->settings();
-    if (!aero.enabled || aero.map || aero.ceiling.model == EffectModel::none) {
-        return nullptr;
-    }
-    aero.ground = {};
-    aero.ground.model = EffectModel::none;
-    return std::make_shared<const FlightModel>(robot_, plane_, scene_, aero);
 }
 
 Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {

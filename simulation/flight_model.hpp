@@ -44,14 +44,15 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     /// Number of its layer in the aero map, from 0.
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
-    /// The same vehicle, on which only surfaces above its rotors act; nullptr where none do, or where a given map does
-    /// not tell what comes from where.
-    [[nodiscard]] std::shared_ptr<const FlightModel> ceilings_only() const;
     /// Whether surfaces act on the rotors at all.
     [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
-    /// K evaluated exactly at a hub in plane coordinates.
+    /// K of a level rotor, evaluated exactly at a hub in plane coordinates.
     [[nodiscard]] double direct_factor(int rotor, double x_m, double z_m) const {
         return effect(rotor).factor(plane_.to_world(x_m, rotor_lateral_m(rotor), z_m));
+    }
+    /// The same by side.
+    [[nodiscard]] SidedFactor<double> sided_factor(int rotor, double x_m, double z_m) const {
+        return effect(rotor).sided_factor(plane_.to_world(x_m, rotor_lateral_m(rotor), z_m));
     }
 
     /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
@@ -79,17 +80,10 @@ class DOWNWASH_EXPORT FlightModel {
     std::size_t rotor_layer_[max_rotors + 1] = {};
 };
 
-/// The part of the surface effects that comes from above, which worlds scale apart from the rest.
-struct CeilingPart {
-    std::shared_ptr<const FlightModel> model;  ///< FlightModel::ceilings_only(); may be nullptr
-    std::shared_ptr<const AeroMap> map;        ///< its map, for flights through a map
-};
-
 /// The world of a flight.
 struct FlightWorld {
-    const FlownWorld* world = nullptr;     ///< nullptr: the nominal one
-    const CeilingPart* ceiling = nullptr;  ///< nullptr: all effects count as those of the ground
-    std::int64_t first_tick = 0;           ///< control tick, from the start of the whole flight, with which it begins
+    const FlownWorld* world = nullptr;  ///< nullptr: the nominal one
+    std::int64_t first_tick = 0;        ///< control tick, from the start of the whole flight, with which it begins
 };
 
 /// The world in which to fly tick by tick; nullptr where that is the nominal one and the plain tick does.

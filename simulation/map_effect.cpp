@@ -23,8 +23,8 @@ RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     return maps;
 }
 
-double factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m) {
-    return maps.map->factor(maps.model->rotor_layer(rotor), x_m, z_m);
+SidedFactor<double> factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m) {
+    return maps.map->sided_factor(maps.model->rotor_layer(rotor), x_m, z_m);
 }
 
 }  // namespace downwash::simulation

@@ -4,6 +4,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/plant.hpp"
+#include "downwash/effects/sided_factor.hpp"
 
 // Surface effects along a flight, one template over the lane type: kernels for wide instructions include this. What is
 // no template here is always inlined, so that no copy of it that only some processors understand reaches the linker.
@@ -21,6 +22,11 @@ struct NoEffect {
     template <class T>
     T operator()(int /*rotor*/, T /*x_m*/, T /*z_m*/) const {
         return T(1);
+    }
+    /// The same by side.
+    template <class T>
+    SidedFactor<T> sided(int /*rotor*/, T /*x_m*/, T /*z_m*/) const {
+        return {T(1), T(1)};
     }
     /// All rotors share the first one's.
     [[nodiscard, gnu::always_inline]] int same_as(int /*rotor*/) const noexcept { return 0; }
@@ -40,7 +46,7 @@ struct RotorMaps {
 [[nodiscard]] DOWNWASH_EXPORT RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map);
 
 /// K beyond the map, evaluated directly.
-[[nodiscard]] DOWNWASH_EXPORT double factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m);
+[[nodiscard]] DOWNWASH_EXPORT SidedFactor<double> factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m);
 
 /// The effect looked up in a map along the flights of all lanes. It remembers the patch of the map in which every rotor
 /// is; the values are those of AeroMap::factor() to the last bit.
@@ -63,9 +69,19 @@ class MapEffect {
         const Patches& patches = patches_[rotor];
         const Place at = place(rotor, x_m, z_m);
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
+            return look_up(rotor, x_m, z_m, at, elsewhere).all;
+        }
+        return interpolated(patches.corner, at);
+    }
+
+    /// The same by side.
+    SidedFactor<T> sided(int rotor, T x_m, T z_m) {
+        const Patches& patches = patches_[rotor];
+        const Place at = place(rotor, x_m, z_m);
+        if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             return look_up(rotor, x_m, z_m, at, elsewhere);
         }
-        return factor(patches, at);
+        return {interpolated(patches.corner, at), interpolated(patches.above, at)};
     }
 
     /// 0 in lanes whose hub is in a cell that is flyable throughout.
@@ -85,7 +101,7 @@ class MapEffect {
     struct alignas(sizeof(T)) Patches {
         double u[width], w[width];
         double steps_x[width], steps_z[width];
-        double corner[4][width];
+        double corner[4][width], above[4][width];
         double doubt[width];  ///< 0 where the cell is flyable throughout
     };
 
@@ -101,6 +117,7 @@ class MapEffect {
         patches.steps_z[lane] = patch.steps_z;
         for (int i = 0; i < 4; ++i) {
             patches.corner[i][lane] = patch.corner[i];
+            patches.above[i][lane] = patch.above[i];
         }
         patches.doubt[lane] = patch.flyability == CellFlyability::flyable ? 0 : 1;
     }
@@ -122,9 +139,9 @@ class MapEffect {
         return lane::bits_of(!((at.s >= T(0)) & (at.s < T(1)) & (at.t >= T(0)) & (at.t < T(1))));
     }
 
-    static T factor(const Patches& patches, const Place& at) {
-        const T corner[4] = {lane::load<T>(patches.corner[0]), lane::load<T>(patches.corner[1]),
-                             lane::load<T>(patches.corner[2]), lane::load<T>(patches.corner[3])};
+    static T interpolated(const double (&corners)[4][width], const Place& at) {
+        const T corner[4] = {lane::load<T>(corners[0]), lane::load<T>(corners[1]), lane::load<T>(corners[2]),
+                             lane::load<T>(corners[3])};
         return bilinear(corner, at.s, at.t);
     }
 
@@ -148,13 +165,16 @@ class MapEffect {
     }
 
     /// K where some lanes, given as bits, have left their patches.
-    [[gnu::noinline]] T look_up(int rotor, T x_m, T z_m, const Place& at, unsigned int elsewhere) {
+    [[gnu::noinline]] SidedFactor<T> look_up(int rotor, T x_m, T z_m, const Place& at, unsigned int elsewhere) {
         unsigned int outside = move_patches(rotor, at, elsewhere);
-        T result = factor(patches_[rotor], in_patches(rotor, at.u, at.w));
+        const Place now = in_patches(rotor, at.u, at.w);
+        SidedFactor<T> result{interpolated(patches_[rotor].corner, now), interpolated(patches_[rotor].above, now)};
         for (; outside != 0; outside &= outside - 1) {
             const int lane = __builtin_ctz(outside);
-            lane::set_number(result, lane,
-                             factor_outside(maps_, rotor, lane::number_in(x_m, lane), lane::number_in(z_m, lane)));
+            const SidedFactor<double> there =
+                factor_outside(maps_, rotor, lane::number_in(x_m, lane), lane::number_in(z_m, lane));
+            lane::set_number(result.all, lane, there.all);
+            lane::set_number(result.above, lane, there.above);
         }
         return result;
     }

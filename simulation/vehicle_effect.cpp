@@ -17,8 +17,9 @@ VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose) {
     double command_n[max_rotors];
     dynamics::allocate(plant, weight_n(model), 0.0, command_n);  // no torque
     const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
-    const auto wrench =
-        dynamics::rotor_wrench(plant, attitude, pose.x_m, pose.z_m, command_n, simulation::DirectFactor{model});
+    simulation::DirectFactor level{model};
+    const simulation::TiltedEffect<double, simulation::DirectFactor> tilted(level, model.tick().tilt_loss);
+    const auto wrench = dynamics::rotor_wrench(plant, attitude, pose.x_m, pose.z_m, command_n, tilted);
     VehicleEffect effect;
     effect.force_factor = wrench.thrust_n / weight_n(model);
     effect.pitch_torque_nm = wrench.pitch_torque_nm;

@@ -2,6 +2,7 @@
 
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/flight_step.hpp"
+#include "downwash/effects/sided_factor.hpp"
 
 // What a world has otherwise than the controller believes, as numbers for the tick: docs/model.md 9.
 
@@ -100,36 +101,58 @@ WorldMemory<T> later(const WorldNumbers<T>& world, const dynamics::PlantState<T>
     return next;
 }
 
-/// The surroundings of a vehicle in a world, for the plant: surface effects, rotors, wind.
-/// @tparam Effect callable (rotor, x_m, z_m) -> K where the controller believes the surfaces
-/// @tparam Ceiling the same without what is below
-template <class T, class Effect, class Ceiling>
-class WorldSurroundings {
+/// The surface effect on a vehicle that tilts, for the plant.
+/// @tparam Effect see WorldSurroundings
+template <class T, class Effect>
+class TiltedEffect {
  public:
-    /// @param body number of the body behind those of the rotors: its push comes from the ground alone
-    WorldSurroundings(const WorldNumbers<T>& world, const dynamics::PlanePoint<T>& wind, Effect& effect,
-                      Ceiling& ceiling, int body)
-        : world_(world), wind_(wind), effect_(effect), ceiling_(ceiling), body_(body) {}
+    TiltedEffect(Effect& effect, const TiltLoss& tilt_loss) : effect_(effect), tilt_loss_(tilt_loss) {}
 
     /// K at the hub of a rotor, or of the body, in the plane.
-    T operator()(int rotor, T x_m, T z_m) const {
-        const T x = x_m - world_.scene_x_m;
-        const T z = z_m - world_.scene_z_m;
-        const T factor = effect_(rotor, x, z);
-        const T above = rotor == body_ ? T(1) : ceiling_(rotor, x, z);
-        return factor +
-               (world_.ground_scale * (factor - T(1)) + (world_.ceiling_scale - world_.ground_scale) * (above - T(1)));
+    T operator()(int rotor, T x_m, T z_m, T sin_pitch) const {
+        return tilt_loss_.is_any() ? tilted(effect_.sided(rotor, x_m, z_m), tilt_loss_, sin_pitch).all
+                                   : effect_(rotor, x_m, z_m);
+    }
+    [[nodiscard]] int same_as(int rotor) const { return dynamics::rotor_with_factor_of(effect_, rotor); }
+
+ private:
+    Effect& effect_;
+    const TiltLoss& tilt_loss_;
+};
+
+/// The surroundings of a vehicle in a world, for the plant: surface effects, rotors, wind.
+/// @tparam Effect has K by side where the controller believes the surfaces, `sided(rotor, x_m, z_m)`; one that is a
+/// mere factor (rotor, x_m, z_m) -> K counts as that of the ground, whatever the tilt
+template <class T, class Effect>
+class WorldSurroundings {
+ public:
+    WorldSurroundings(const WorldNumbers<T>& world, const dynamics::PlanePoint<T>& wind, Effect& effect,
+                      const TiltLoss& tilt_loss)
+        : world_(world), wind_(wind), effect_(effect), tilt_loss_(tilt_loss) {}
+
+    /// K at the hub of a rotor, or of the body, in the plane.
+    T operator()(int rotor, T x_m, T z_m, T sin_pitch) const {
+        const SidedFactor<T> k = factor(rotor, x_m - world_.scene_x_m, z_m - world_.scene_z_m, sin_pitch);
+        return k.all +
+               (world_.ground_scale * (k.all - T(1)) + (world_.ceiling_scale - world_.ground_scale) * (k.above - T(1)));
     }
     [[nodiscard]] int same_as(int rotor) const { return dynamics::rotor_with_factor_of(effect_, rotor); }
     [[nodiscard]] dynamics::PlanePoint<T> wind() const { return wind_; }
     [[nodiscard]] T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
 
  private:
+    [[nodiscard]] SidedFactor<T> factor(int rotor, T x_m, T z_m, T sin_pitch) const {
+        if constexpr (requires { effect_.sided(rotor, x_m, z_m); }) {
+            return tilted(effect_.sided(rotor, x_m, z_m), tilt_loss_, sin_pitch);
+        } else {
+            return {effect_(rotor, x_m, z_m), T(1)};
+        }
+    }
+
     const WorldNumbers<T>& world_;
     dynamics::PlanePoint<T> wind_;
     Effect& effect_;
-    Ceiling& ceiling_;
-    int body_;
+    const TiltLoss& tilt_loss_;
 };
 
 }  // namespace downwash::simulation

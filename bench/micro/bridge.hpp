@@ -13,11 +13,6 @@ struct Bridge {
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
     std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
 
-    CeilingPart ceiling = [this] {
-        const auto part = model->ceilings_only();
-        return CeilingPart{part, part->make_map(problem.bounds)};
-    }();
-
     static const Bridge& get() {
         static const Bridge bridge;
         return bridge;

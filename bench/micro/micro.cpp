@@ -117,7 +117,7 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
     FlightRules rules;
     rules.bounds = bridge.problem.bounds;
     const AeroMap* const map = model == Model::dynamics ? nullptr : bridge.map.get();
-    FlightPool pool(*bridge.model, map, rules, nullptr, threads, instructions, &bridge.ceiling);
+    FlightPool pool(*bridge.model, map, rules, nullptr, threads, instructions);
     std::vector<FlownWorld> worlds;
     for (std::uint64_t i = 1; i <= 512; ++i) {
         worlds.push_back(make_world(bridge.problem.robot, draw_world(Uncertainty{}, bridge.problem.robot, 1, i)));

@@ -90,7 +90,7 @@ void ClosedLoopOde::operator()(const double* s, const double velocity[3], double
         const double given_n = command * (world_ != nullptr ? world_->numbers.rotor_thrust_scale[i] : 1);
         const double hub_x = q[0] + std::cos(q[2]) * real.rotor_x_m[i] + std::sin(q[2]) * real.rotor_z_m[i];
         const double hub_z = q[1] - std::sin(q[2]) * real.rotor_x_m[i] + std::cos(q[2]) * real.rotor_z_m[i];
-        const double factor = factor_at(i, hub_x, hub_z);
+        const double factor = factor_at(i, hub_x, hub_z, q[2]);
         acting_thrust += factor * given_n;
         acting_torque -= real.rotor_x_m[i] * factor * given_n;
         power += p.power_coefficient_w_n1p5 * std::pow(command, 1.5);
@@ -116,16 +116,20 @@ void ClosedLoopOde::operator()(const double* s, const double velocity[3], double
     rates[energy] = power + std::abs(joint_torque * u[3]);
 }
 
-double ClosedLoopOde::factor_at(int rotor, double x_m, double z_m) const {
+double ClosedLoopOde::factor_at(int rotor, double x_m, double z_m, double pitch_rad) const {
     if (map_ == nullptr) {
         return 1;
     }
-    if (world_ == nullptr) {
-        return map_->factor(model_.rotor_layer(rotor), x_m, z_m);
-    }
-    const World& world = world_->world;
-    const double believed = map_->factor(model_.rotor_layer(rotor), x_m - world.scene_x_m, z_m - world.scene_z_m);
-    return 1 + (1 + world.ceiling_scale) * (believed - 1);
+    const World as_believed;
+    const World& world = world_ != nullptr ? world_->world : as_believed;
+    const auto level = map_->sided_factor(model_.rotor_layer(rotor), x_m - world.scene_x_m, z_m - world.scene_z_m);
+    const auto fading = [&](double change, double loss) {
+        const double half = loss * std::sin(pitch_rad) * std::sin(pitch_rad);
+        return half > 0 ? change * std::abs(change) / (std::abs(change) + half) : change;
+    };
+    const TiltLoss& loss = model_.tick().tilt_loss;
+    return 1 + (1 + world.ground_scale) * fading(level.all - level.above, loss.ground) +
+           (1 + world.ceiling_scale) * fading(level.above - 1, loss.ceiling);
 }
 
 std::vector<double> ClosedLoopOde::hovered(std::vector<double> state, double seconds) const {

@@ -56,7 +56,7 @@ class ClosedLoopOde {
 
  private:
     /// K at a hub in the plane.
-    [[nodiscard]] double factor_at(int rotor, double x_m, double z_m) const;
+    [[nodiscard]] double factor_at(int rotor, double x_m, double z_m, double pitch_rad) const;
 
     const FlightModel& model_;
     const AeroMap* map_;

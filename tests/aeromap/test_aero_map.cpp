@@ -146,7 +146,7 @@ TEST_CASE("Over level ground a map that is wider keeps no more values") {
     const auto bytes = [&effect](double to_x_m) {
         return AeroMap({{effect, 0}}, {}, {-1, to_x_m, 0.1, 2}).memory_bytes();
     };
-    constexpr std::size_t bytes_per_cell = sizeof(MapCell) + sizeof(CellFlyability);
+    constexpr std::size_t bytes_per_cell = sizeof(MapCell) + sizeof(CellFlyability) + sizeof(CellSides);
     constexpr std::size_t cells_added = 200 * 38;  // 10 m x 1.9 m of 0.05 m
     CHECK(bytes(11) - bytes(1) == cells_added * bytes_per_cell);
 }

@@ -31,8 +31,7 @@ std::optional<Execution> executed(const Problem& problem, const Plan& plan, bool
                                   const std::optional<World>& world) {
     const auto model = make_flight_model(problem);
     const std::optional<FlownWorld> flown = world ? std::optional(make_world(problem.robot, *world)) : std::nullopt;
-    const CeilingPart ceiling{flown ? model->ceilings_only() : nullptr, nullptr};
-    const FlightWorld in{flown ? &*flown : nullptr, &ceiling, 0};
+    const FlightWorld in{flown ? &*flown : nullptr, 0};
     FlightState believed = start_state(*model, problem.start);
     if (flown) {
         believed.world = memory_at_start(*flown, believed.plant);

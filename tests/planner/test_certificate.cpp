@@ -132,12 +132,11 @@ TEST_CASE("The clearances of a certificate are those of flights with direct aero
     const Solution solution = solve(problem);
     REQUIRE(solution.certificate);
     const auto model = make_flight_model(problem);
-    const CeilingPart ceiling{model->ceilings_only(), nullptr};
     for (const WorldSample& sample : solution.certificate->worst) {
         INFO("world " << sample.world);
         const FlownWorld world = make_world(
             problem.robot, draw_world(*problem.uncertainty, problem.robot, problem.planner.seed, sample.world));
-        const FlightWorld in{&world, &ceiling};
+        const FlightWorld in{&world};
         const auto start = hovering_start(*model, start_state(*model, problem.start), true, in);
         REQUIRE(start);
         const Execution flight = execute(*model, *start, solution.plan->reference, goals_of(problem), true, in);
@@ -187,10 +186,9 @@ TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct f
     }
     const std::vector<WorldFlight> flown = flights.fly(*solution.plan, 2, worlds);
     int failed = 0;
-    const CeilingPart ceiling{model->ceilings_only(), nullptr};
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         INFO("world " << i);
-        const FlightWorld in{&worlds[i], &ceiling};
+        const FlightWorld in{&worlds[i]};
         const auto start = hovering_start(*model, start_state(*model, problem.start), true, in);
         if (flown[i].rejection == Rejection::none || !start) {
             continue;

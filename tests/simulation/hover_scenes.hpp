@@ -46,12 +46,12 @@ inline FlightRules rules_of(const Problem& problem) {
 
 /// The same flights one after the other, tick by tick.
 inline void fly_one_by_one(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                           std::vector<FlightJob>& jobs, const CeilingPart* ceiling = nullptr) {
+                           std::vector<FlightJob>& jobs) {
     for (FlightJob& job : jobs) {
         FlightState state = job.start;
         std::int64_t tick = job.first_tick;
         for (FlightLeg& leg : job.legs) {
-            leg.flight = fly(model, map, rules, leg.segment, state, {job.world, ceiling, tick});
+            leg.flight = fly(model, map, rules, leg.segment, state, {job.world, tick});
             tick += leg.flight.ticks;
             leg.end = state;
             if (leg.flight.rejection != Rejection::none) {

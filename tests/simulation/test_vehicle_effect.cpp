@@ -110,6 +110,24 @@ TEST_CASE("wide ground carries like a spring and rights the vehicle, a wide ceil
     }
 }
 
+TEST_CASE("over wide ground every rotor of a vehicle that pitches loses what its tilt takes, under a ceiling none does") {
+    const auto ground = model_among({{"floor", Box{{80, 80, 1}}, {0, 0, -0.5}, {}}});
+    const auto ceiling = model_among({{"roof", Box{{80, 80, 1}}, {0, 0, 5.5}, {}}});
+    for (const double pitch : {-0.5, -0.1, 0.0, 0.2, 0.35}) {
+        const auto hub_z_m = [&](double x_m) { return hub_height_m * std::cos(pitch) - x_m * std::sin(pitch); };
+        double over_ground = 0;
+        double under_ceiling = 0;
+        for (const double x_m : {-reach_m, reach_m}) {
+            const double change = ground_factor(0.7 + hub_z_m(x_m)).value - 1;
+            const double sine = std::sin(pitch);
+            over_ground += 0.5 * (1 + change * change / (change + 0.37 * sine * sine));
+            under_ceiling += 0.5 * ceiling_factor(0.5 - hub_z_m(x_m)).value;
+        }
+        CHECK(vehicle_effect(*ground, {0, 0.7, pitch, 1.57}).force_factor == Approx(over_ground).epsilon(1e-9));
+        CHECK(vehicle_effect(*ceiling, {0, 4.5, pitch, 1.57}).force_factor == Approx(under_ceiling).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula says") {
     Problem problem = test::ceiling_problem();
     problem.obstacles = {test::box("ground", {30, 20, 1}, {0, 0, -0.5})};

@@ -90,7 +90,7 @@ struct Hover {
     template <class After>
     void fly(int ticks, const After& after) {
         const ReferenceSegment segment(reference, reference, ticks, model->tick().tick_s);
-        simulation::fly_ticks(model->tick(), world, 0, segment, simulation::NoEffect{}, simulation::NoEffect{},
+        simulation::fly_ticks(model->tick(), world, 0, segment, simulation::NoEffect{},
                               dynamics::OneStep{}, state,
                               [&](const FlightState&, const ReferencePoint&, const controllers::Actuation<double>&,
                                   const FlightState& next, const ReferencePoint&) {
@@ -111,14 +111,12 @@ TEST_CASE("The world without any difference is the nominal one, to the last bit"
     const Problem problem = problem_with(robot);
     const auto model = make_flight_model(problem);
     const auto map = model->make_map(problem.bounds);
-    const CeilingPart ceiling{model->ceilings_only(), nullptr};
-    const CeilingPart with_map{ceiling.model, ceiling.model->make_map(problem.bounds)};
     const FlownWorld nominal = make_world(robot, {});
     FlightState plain = model->state_at({0, 2, 0, 0.4});
     FlightState other = plain;
     const ReferenceSegment segment(at_rest({0, 2, 0.4}), at_rest({1.5, 2.5, 1}), 300, model->tick().tick_s);
     const SegmentFlight a = fly(*model, map.get(), rules_of(problem), segment, plain);
-    const SegmentFlight b = fly(*model, map.get(), rules_of(problem), segment, other, {&nominal, &with_map, 0});
+    const SegmentFlight b = fly(*model, map.get(), rules_of(problem), segment, other, {&nominal, 0});
     REQUIRE(a.rejection == Rejection::none);
     CHECK(a.ticks == b.ticks);
     CHECK(std::memcmp(&plain.plant, &other.plant, sizeof plain.plant) == 0);
@@ -130,8 +128,6 @@ TEST_CASE("Flights in worlds side by side are those of each alone, to the last b
     const Problem problem = problem_with(real_robot());
     const auto model = make_flight_model(problem);
     const auto map = is_aware ? model->make_map(problem.bounds) : nullptr;
-    CeilingPart ceiling{model->ceilings_only(), nullptr};
-    ceiling.map = is_aware ? ceiling.model->make_map(problem.bounds) : nullptr;
     Random random(3);
     std::vector<FlownWorld> worlds;
     for (int i = 0; i < 40; ++i) {
@@ -154,7 +150,7 @@ TEST_CASE("Flights in worlds side by side are those of each alone, to the last b
     FlightRules rules = rules_of(problem);
     rules.max_tracking_error_m = 0.8;
     std::vector<FlightJob> expected = jobs;
-    fly_one_by_one(*model, map.get(), rules, expected, &ceiling);
+    fly_one_by_one(*model, map.get(), rules, expected);
     int accepted = 0;
     for (const FlightJob& job : expected) {
         accepted += job.rejection() == Rejection::none ? 1 : 0;
@@ -164,7 +160,7 @@ TEST_CASE("Flights in worlds side by side are those of each alone, to the last b
     for (const Instructions instructions : known_instructions()) {
         for (const int threads : {1, 3}) {
             std::vector<FlightJob> flown = jobs;
-            FlightPool(*model, map.get(), rules, nullptr, threads, instructions, &ceiling).fly(flown);
+            FlightPool(*model, map.get(), rules, nullptr, threads, instructions).fly(flown);
             for (std::size_t i = 0; i < jobs.size(); ++i) {
                 INFO("job " << i << " with instructions " << static_cast<int>(instructions));
                 REQUIRE(flown[i].rejection() == expected[i].rejection());
@@ -304,7 +300,6 @@ TEST_CASE("A bias moves the vehicle by as much the other way, and heavier or wea
 TEST_CASE("Surfaces of a world act where they really are, each side by its own scale") {
     const Problem problem = ceiling_problem();
     const auto model = make_flight_model(problem);
-    const CeilingPart ceiling{model->ceilings_only(), nullptr};
     World world;
     world.ceiling_scale = 0.2;
     world.ground_scale = -0.1;
@@ -312,9 +307,8 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
     world.scene_z_m = -0.04;
     const FlownWorld flown = make_world(problem.robot, world);
     simulation::DirectFactor effect{*model};
-    simulation::DirectFactor from_above{*ceiling.model};
-    const simulation::WorldSurroundings<double, simulation::DirectFactor, simulation::DirectFactor> surroundings(
-        flown.numbers, {}, effect, from_above, model->tick().plant.body());
+    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
+                                                                                       model->tick().tilt_loss);
     Random random(8);
     double greatest = 0;
     for (int n = 0; n < 200; ++n) {
@@ -326,7 +320,7 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
             continue;  // at its cap
         }
         const double expected = 1 + 0.9 * (sides.ground - 1) + 1.2 * (sides.ceiling - 1);
-        CHECK(surroundings(0, x_m, z_m) == Approx(expected).epsilon(1e-12));
+        CHECK(surroundings(0, x_m, z_m, 0.0) == Approx(expected).epsilon(1e-12));
         greatest = std::max(greatest, std::abs(expected - sides.total));
     }
     CHECK(greatest > 0.01);
@@ -340,19 +334,17 @@ TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
     problem.aero.ground = EffectModel::multirotor_body;
     const auto model = make_flight_model(problem);
     REQUIRE(model->tick().plant.has_fountain);
-    const CeilingPart ceiling{model->ceilings_only(), nullptr};
     World world;
     world.ceiling_scale = 0.5;
     world.ground_scale = -0.1;
     const FlownWorld flown = make_world(problem.robot, world);
     simulation::DirectFactor effect{*model};
-    simulation::DirectFactor from_above{*ceiling.model};
     const int body = model->tick().plant.body();
-    const simulation::WorldSurroundings<double, simulation::DirectFactor, simulation::DirectFactor> surroundings(
-        flown.numbers, {}, effect, from_above, body);
+    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
+                                                                                       model->tick().tilt_loss);
     for (const double z_m : {0.4, 1.0, 4.6}) {  // the last one close below the ceiling
         const double push = model->direct_factor(body, 0, z_m) - 1;
-        CHECK(surroundings(body, 0, z_m) == Approx(1 + 0.9 * push).epsilon(1e-12));
+        CHECK(surroundings(body, 0, z_m, 0.0) == Approx(1 + 0.9 * push).epsilon(1e-12));
     }
     CHECK(model->direct_factor(body, 0, 0.4) != 1);
 }

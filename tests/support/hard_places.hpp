@@ -13,7 +13,7 @@ namespace downwash::test {
 /// A map against direct evaluation, at hubs in its layers.
 struct MapComparison {
     const AeroMap& map;
-    double worst = 0;  ///< greatest difference
+    double worst = 0;  ///< greatest difference of K, of its part from above, and of K at tilts of 10 and 30 degrees
     int points = 0;    ///< compared
 
     /// @return the direct factor where the hub is within the map and flyable
@@ -24,10 +24,16 @@ struct MapComparison {
             return std::nullopt;
         }
         const MapLayer& from = map.layers()[layer];
-        const double direct = from.effect->factor(map.plane().to_world(x_m, from.lateral_m, z_m));
-        worst = std::max(worst, std::abs(map.factor(layer, x_m, z_m) - direct));
+        const SidedFactor<double> direct = from.effect->sided_factor(map.plane().to_world(x_m, from.lateral_m, z_m));
+        const SidedFactor<double> looked_up = map.sided_factor(layer, x_m, z_m);
+        worst = std::max({worst, std::abs(map.factor(layer, x_m, z_m) - direct.all),
+                          std::abs(looked_up.above - direct.above)});
+        for (const double sine : {0.17, 0.5}) {
+            const TiltLoss loss{default_ground_tilt_loss, 0};
+            worst = std::max(worst, std::abs(tilted(looked_up, loss, sine).all - tilted(direct, loss, sine).all));
+        }
         ++points;
-        return direct;
+        return direct.all;
     }
 };
 
