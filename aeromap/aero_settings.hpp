@@ -11,9 +11,6 @@ namespace downwash {
 
 class FactorGrid;
 
-/// Fitted to static measurements over ground at tilts up to 30 degrees (docs/aeromap.md). There are none under a ceiling.
-inline constexpr double default_ground_tilt_loss = 0.37;
-
 /// How surfaces act on the rotors.
 struct AeroSettings {
     bool enabled = true;                                   ///< false: K = 1 everywhere

@@ -14,6 +14,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/fitting/effect_fit.hpp"
+#include "downwash/fitting/tilt_fit.hpp"
 #include "downwash/report/curve_figure.hpp"
 
 namespace downwash::cli {
@@ -23,7 +24,7 @@ struct FitArguments {
     MeasuredData data;
     std::string model;
     std::vector<std::string> fixed;
-    bool is_weighted = false, as_json = false;
+    bool of_tilt = false, is_weighted = false, as_json = false;
     std::string picture;
 };
 
@@ -188,7 +189,45 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
     return {std::move(curves), std::move(rest)};
 }
 
+Json score_json(const TiltScore& score) {
+    return {{"tilt_loss", score.tilt_loss}, {"rmse", score.rmse}, {"max_error", score.max_error}, {"n", score.points}};
+}
+
+ExitCode fit_tilt(const FitArguments& given) {
+    if (!given.model.empty() || !given.fixed.empty() || given.is_weighted || !given.picture.empty()) {
+        throw UsageError("--tilt-loss fits no model: expected neither --model nor --fix, --weighted or --out");
+    }
+    const TiltFit fit = fit_tilt_loss(given.data.read());
+    if (given.as_json) {
+        Json json = score_json(fit.fitted);
+        json["standard_error"] = json_of(fit.standard_error);
+        json["as_level"] = score_json(fit.as_level);
+        json["left_out"] = Json::object();
+        for (const auto& [source, score] : fit.left_out) {
+            json["left_out"][source] = score_json(score);
+        }
+        print_json(json);
+        return ExitCode::done;
+    }
+    const auto errors = [](const TiltScore& score) {
+        return fmt::format("RMSE {:.4f}, largest error {:.4f}", score.rmse, score.max_error);
+    };
+    fmt::print("tilt_loss = {}{}\n{} of {} measurements with tilt\nas level: {}\n", to_text(fit.fitted.tilt_loss, 3),
+               fit.standard_error ? " +- " + to_text(*fit.standard_error, 2) : "", errors(fit.fitted), fit.fitted.points,
+               errors(fit.as_level));
+    for (const auto& [source, score] : fit.left_out) {
+        fmt::print("{}, fitted to the others: tilt_loss {}, {}\n", source, to_text(score.tilt_loss, 3), errors(score));
+    }
+    return ExitCode::done;
+}
+
 ExitCode run(const FitArguments& given) {
+    if (given.of_tilt) {
+        return fit_tilt(given);
+    }
+    if (given.model.empty()) {
+        throw UsageError("nothing to fit: expected --model NAME or --tilt-loss");
+    }
     const EffectModelInfo& known = model_named(given.model);
     PictureSettings settings;
     if (!given.picture.empty()) {
@@ -231,7 +270,9 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
     auto [command, given] =
         add_command(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares", run);
     given.data.add_options(command);
-    offer_models(*add_value(command, "--model NAME", given.model, "name of a model as in a problem file")->required());
+    offer_models(*add_value(command, "--model NAME", given.model, "name of a model as in a problem file"));
+    command.add_flag("--tilt-loss", given.of_tilt,
+                     "fit the tilt loss instead of a model, beside the measurements without tilt");
     add_value(command, "--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated")
         ->expected(1)
         ->take_all();

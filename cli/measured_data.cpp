@@ -15,6 +15,10 @@
 namespace downwash::cli {
 namespace {
 
+constexpr char data_description[] =
+    "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source, tilt_deg "
+    "and sigma, then rows";
+
 /// The points with an entry in a column; all without one.
 Measurements selected(const Measurements& measurements, const std::string& file, const char* column,
                       const std::string& entry) {
@@ -36,12 +40,17 @@ void require_entry(const Measurements& measurements, const std::string& file, co
                                    : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names));
 }
 
-void MeasuredData::add_options(CLI::App& command) {
-    command
-        .add_option("DATA", file,
-                    "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally "
-                    "surface, source and sigma, then rows")
+void add_data_files(CLI::App& command, std::vector<std::string>& files) {
+    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together")
         ->required();
+}
+
+void MeasuredData::add_options(CLI::App& command) {
+    command.add_option("DATA", file, data_description)->required();
+    add_selection(command);
+}
+
+void MeasuredData::add_selection(CLI::App& command) {
     CLI::Option* at = add_value(
         command, "--surface S", surface,
         "only measurements at this surface, `ground` or `ceiling`; without such a column, the surface of all rows");

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "downwash/effects/measurements.hpp"
 #include "downwash/effects/rotor_layout.hpp"
@@ -13,6 +14,9 @@ namespace downwash::cli {
 
 /// The values of --surface.
 inline constexpr std::array<std::string_view, 2> measured_surfaces{"ground", "ceiling"};
+
+/// Adds the argument DATA for several files of measurements.
+void add_data_files(CLI::App& command, std::vector<std::string>& files);
 
 /// Checks that a selected entry occurs in a column. @throws UsageError when it does not
 /// @param column also the name of the option that selects   @param entry empty: none is selected
@@ -27,6 +31,8 @@ struct MeasuredData {
 
     /// Adds DATA and the options to a command.
     void add_options(CLI::App& command);
+    /// The options without DATA.
+    void add_selection(CLI::App& command);
 
     /// @throws InputError, UsageError when nothing is left
     [[nodiscard]] Measurements read() const;

@@ -55,13 +55,17 @@ Measurements parse_measurements(std::string_view text, std::string_view name) {
     const std::size_t ratio = required(csv, "thrust_ratio", errors);
     errors.throw_any();
     const auto sigma = csv.find("sigma");
+    const auto tilt = csv.find("tilt_deg");
     Measurements measurements{csv.columns, {}};
     for (const CsvTable::Row& row : csv.rows) {
-        Measurement point{0, 0, std::nullopt, row.line, row.cells};
+        Measurement point{0, 0, 0, std::nullopt, row.line, row.cells};
         point.z_over_r = number_in(csv, row, z, 1e-6, 1000, errors).value_or(0);
         point.thrust_ratio = number_in(csv, row, ratio, 0, 100, errors).value_or(0);
         if (sigma && !row.cells[*sigma].empty()) {
             point.sigma = number_in(csv, row, *sigma, 1e-9, 100, errors);
+        }
+        if (tilt && !row.cells[*tilt].empty()) {
+            point.tilt_deg = number_in(csv, row, *tilt, 0, 90, errors).value_or(0);
         }
         measurements.points.push_back(std::move(point));
     }

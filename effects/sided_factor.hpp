@@ -24,6 +24,9 @@ struct TiltLoss {
     friend bool operator==(const TiltLoss&, const TiltLoss&) = default;
 };
 
+/// Fitted to static measurements over ground at tilts up to 30 degrees (docs/aeromap.md). There are none under a ceiling.
+inline constexpr double default_ground_tilt_loss = 0.37;
+
 /// K - 1 of a tilted rotor. It differs by no more than the K - 1 of the level one does: a map that is right to 0.01
 /// for level rotors is so for tilted ones.
 /// @param change K - 1 of the level rotor   @param loss of the side   @param sin_tilt of the angle between its axis and

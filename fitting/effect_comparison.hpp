@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,24 +29,36 @@ struct ModelScore {
     bool is_refitted = false;  ///< false: with the parameters of its source
     bool is_at_bound = false;  ///< refitted, and a parameter is at the end of its allowed range
     double rmse = 0;
+    double level_rmse = 0;  ///< the same if the rotors counted as level
+    /// Refitted: the RMSE over all level measurements of other sources at the same surface, if there are any.
+    std::optional<double> others_rmse;
     std::vector<ErrorBand> bands;
 };
 
-/// All models of one surface compared with the measurements of one source.
+/// All models of one surface compared with the measurements of one source at one tilt.
 struct DataSetComparison {
     std::string source, surface;  ///< empty if the file has no such column
+    double tilt_deg = 0;
     std::size_t points = 0;
     double z_low = 0, z_high = 0;  ///< nearest and farthest z/R
     std::vector<ModelScore> scores;
 };
 
-/// Compares every model made for a surface with the measurements of each source and surface: with the parameters of the
-/// model's source and, where the measurements suffice, refitted to them (fit_effect; the formula is fitted unclamped).
+/// Where bands of errors begin and end, in radii.
+inline constexpr std::array error_band_edges{0.0, 0.5, 1.0, 2.0, std::numeric_limits<double>::infinity()};
+
+/// Whether a model can be compared with measurements at a surface. @param surface empty: unknown
+[[nodiscard]] bool is_comparable(const EffectModelInfo& model, const std::string& surface,
+                                 const RotorNeighbours& neighbours);
+
+/// Compares every model made for a surface with the measurements of each source, surface and tilt: with the parameters of
+/// the model's source and, where level measurements suffice, refitted to them (fit_effect; the formula is fitted
+/// unclamped). Over the ground the effect of a tilted rotor fades by default_ground_tilt_loss.
 /// @param neighbours of the vehicle measured; for one rotor alone the multirotor models are left out
 /// @param max_factor >= 1
-/// @throws InputError when there are more than 100 pairs of source and surface, or a surface is neither "ground" nor
+/// @throws InputError when there are more than 100 sets of source, surface and tilt, or a surface is neither "ground" nor
 /// "ceiling" nor empty
-[[nodiscard]] DOWNWASH_EXPORT std::vector<DataSetComparison> compare_effects(const Measurements& measurements,
+[[nodiscard]] DOWNWASH_EXPORT std::vector<DataSetComparison> compare_effects(const std::vector<Measurements>& data,
                                                                              const RotorNeighbours& neighbours = {},
                                                                              double max_factor = 2);
 

@@ -256,3 +256,7 @@ TEST_CASE("Disabled effects leave the free air everywhere and heed no given map"
     CHECK(effect->is_flyable({0.5, 0, 0.5}));
     CHECK(AeroMap(test::layers(effect, {0}), {}, {0, 1, 0, 1}).is_flyable(0, 0.5, 0.5));
 }
+
+TEST_CASE("Over ground tilt counts unless one says otherwise, under a ceiling it does not") {
+    CHECK(AeroSettings().tilt_loss == TiltLoss{default_ground_tilt_loss, 0});
+}

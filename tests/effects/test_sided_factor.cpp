@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "../support/random.hpp"
-#include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/effects/sided_factor.hpp"
 
 using namespace downwash;
@@ -49,8 +48,4 @@ TEST_CASE("Each side fades by its own loss") {
     const SidedFactor<double> under_ceiling = tilted(level, {0, 0.4}, 0.5);
     CHECK(under_ceiling.above == Approx(1 + 0.2 * 0.2 / (0.2 + 0.1)).epsilon(1e-14));
     CHECK(under_ceiling.all == Approx(under_ceiling.above + 0.3).epsilon(1e-14));
-}
-
-TEST_CASE("Over ground tilt counts unless one says otherwise, under a ceiling it does not") {
-    CHECK(AeroSettings().tilt_loss == TiltLoss{default_ground_tilt_loss, 0});
 }
