@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
     if (effect.settings().map) {
-        return {infinity, 0};
+        return {0, infinity};
     }
     const Scene& scene = effect.scene();
     const double r = effect.column_radius_m();

@@ -155,7 +155,7 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
 
 SidedFactor<double> DirectEffect::sided_factor(const Vector3& hub_m) const {
     const Factors k = factors(hub_m);
-    return {k.total, settings_.map ? 1 : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
+    return {k.total, settings_.map ? k.total : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
 }
 
 double DirectEffect::largest_change_from_below(double beyond_radii) const {

@@ -48,7 +48,7 @@ class DOWNWASH_EXPORT DirectEffect {
     /// max_factor of 10.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
-    /// K of all surfaces and of those above alone. A given map does not tell them apart: then nothing is above.
+    /// K of all surfaces and of those above alone. A given map does not tell them apart and counts as above.
     [[nodiscard]] SidedFactor<double> sided_factor(const Vector3& hub_m) const;
 
     /// The thrust ratio K on the commanded free-air thrust.

@@ -42,8 +42,8 @@ UncertaintyRows aero_rows() {
     using U = Uncertainty;
     UncertaintyRows rows;
     SpreadRows<U> aero(rows, "aero", "surfaces and their effects");
-    aero.add("ceiling_scale", "relative change of K - 1 below surfaces", 0.9, &U::ceiling_scale);
-    aero.add("ground_scale", "relative change of K - 1 above surfaces, and of a given map", 0.9, &U::ground_scale);
+    aero.add("ceiling_scale", "relative change of K - 1 below surfaces, and of a given map", 0.9, &U::ceiling_scale);
+    aero.add("ground_scale", "relative change of K - 1 above surfaces", 0.9, &U::ground_scale);
     SpreadRows<U> offset(rows, "aero.scene_offset_m", "where the surfaces are, from where they are believed to be");
     offset.add("x", "along the plane [m]", 10, &U::scene_x_m);
     offset.add("z", "upwards [m]", 10, &U::scene_z_m);

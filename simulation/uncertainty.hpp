@@ -15,8 +15,10 @@ namespace downwash {
 /// What is not known exactly, and how well it is known: of vehicle and sensors, and of the world around them.
 /// docs/model.md 9 says where the defaults come from.
 struct Uncertainty : RobotUncertainty {
-    Spread ceiling_scale = Spread::of_sd(0.15);  ///< relative, of K - 1
-    Spread ground_scale = Spread::of_sd(0.15);
+    // Of K - 1, relative: the scatter of all measurements about the default models (docs/aeromap.md). A normal
+    // distribution of the ground's would turn lift into suction; a uniform one of that standard deviation does not.
+    Spread ceiling_scale = Spread::of_sd(0.15);
+    Spread ground_scale = Spread::over(-0.8, 0.8);
     Spread scene_x_m = Spread::of_sd(0.02);
     Spread scene_z_m = Spread::of_sd(0.02);
 

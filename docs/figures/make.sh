@@ -73,4 +73,6 @@ replace() { # NAME, new text on standard input
     cat "$page" >../aeromap.md
     rm -f "$text" "$page"
 }
-"$downwash" aeromap compare "$data" --rotor-spacing 2.5 --markdown | replace comparison
+tilted=../../effects/measurements/tilted_rotors_ground.csv
+"$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison
+{ echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt

@@ -9,6 +9,7 @@ using Catch::StartsWith;
 namespace {
 
 const std::string measured = DOWNWASH_MEASUREMENTS;
+const std::string tilted = DOWNWASH_TILTED_ROTORS;
 
 }  // namespace
 
@@ -106,6 +107,9 @@ TEST_CASE("Fits that cannot be made end with 2 and say why") {
              {"fit good.csv --model multirotor-body", "multirotor-body needs the other rotors"},
              {"fit good.csv --model multirotor-images", "expected --rotor-spacing"},
              {"compare good.csv --json --markdown", "expected at most one"},
+             {"fit good.csv", "expected --model NAME or --tilt-loss"},
+             {"fit good.csv --tilt-loss --model he", "--tilt-loss fits no model"},
+             {"fit good.csv --tilt-loss --surface ground", "expected a column tilt_deg"},
          }) {
         CAPTURE(arguments);
         check_rejected(work.run("aeromap", arguments), reason);
@@ -133,7 +137,7 @@ TEST_CASE("A comparison lists every model for every source and surface") {
 
 TEST_CASE("A comparison says for each surface what too high a K does, and a page shows it whole") {
     const Workspace work;
-    const std::string markdown = work.run("aeromap compare", measured, "--rotor-spacing 2.5 --markdown").out;
+    const std::string markdown = work.run("aeromap compare", measured, tilted, "--rotor-spacing 2.5 --markdown").out;
     CHECK_THAT(markdown, Contains("Under a ceiling") && Contains("Over the ground"));
     const std::string page = read_file(DOWNWASH_AEROMAP_PAGE);
     const std::string begin = "<!-- comparison -->\n";
@@ -163,4 +167,33 @@ TEST_CASE("A comparison without a column of surfaces takes all measurements at t
     write_file(work / "m.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,grond\n");
     check_rejected(work.run("aeromap compare", work / "m.csv"), "line 2");
     check_rejected(work.run("aeromap compare", work / "m.csv"), "did you mean 'ground'?");
+}
+
+TEST_CASE("The tilt loss is fitted with its error, beside the level disc and other arrangements, and the page quotes it") {
+    const Workspace work;
+    const auto fit = work.json("aeromap fit", tilted, "--tilt-loss");
+    CHECK(fit.at("tilt_loss").get<double>() == Approx(0.37).margin(0.01));
+    CHECK(fit.at("n") == 53);
+    CHECK(fit.at("rmse").get<double>() < 0.5 * fit.at("as_level").at("rmse").get<double>());
+    CHECK(fit.at("left_out").size() == 2);
+    const std::string text = work.run("aeromap fit", tilted, "--tilt-loss").out;
+    CHECK_THAT(text, StartsWith("tilt_loss = 0.365 +- "));
+    CHECK_THAT(read_file(DOWNWASH_AEROMAP_PAGE), Contains("<!-- tilt -->\n```\n" + text + "```\n<!-- /tilt -->\n"));
+}
+
+TEST_CASE("A comparison of several files says how far all of them scatter about each model") {
+    const Workspace work;
+    const auto compared = work.json("aeromap compare", measured, tilted);
+    CHECK(compared.at("data_sets").size() == 10);
+    bool has_default = false;
+    for (const auto& model : compared.at("scatter")) {
+        if (model.at("model") == "sanchez-cuevas") {
+            has_default = true;
+            CHECK(model.at("surface") == "ceiling");
+            CHECK(model.at("from_half_a_radius").at("scatter").get<double>() == Approx(0.15).margin(0.005));
+            CHECK(model.at("from_half_a_radius").at("n") == 22);
+        }
+    }
+    CHECK(has_default);
+    CHECK_THAT(work.run("aeromap compare", measured, tilted).out, Contains("+- 0.45"));
 }

@@ -23,13 +23,13 @@ std::filesystem::path problem_with(const Workspace& work, const std::string& gro
 TEST_CASE("A grid built where a fountain pushes the body says that it lacks it") {
     const Workspace work;
     const auto build = [&](const std::string& ground, const char* more = "") {
-        return work.run("aeromap build", problem_with(work, ground), "-o", work / "grid.csv", "--step 0.5", more);
+        return work.run("aeromap build", problem_with(work, ground), "-o", work / "grid.csv", "--step 0.5 --rotor 1", more);
     };
     const std::string line = "# fountain: not contained: the grid holds the factors of rotors\n";
     const Result loud = succeeded(build("multirotor-body"));
     CHECK_THAT(loud.err, Contains("does not contain the fountain that pushes the body"));
     CHECK_THAT(read_file(work / "grid.csv"), Contains(line));
-    CHECK(build("multirotor-body", "--quiet --lateral -1 1").err.empty());
+    CHECK(build("multirotor-body", "--quiet").err.empty());
     CHECK_THAT(read_file(work / "grid.csv"), Contains(line));
     CHECK_THAT(build("multirotor-images").err, !Contains("fountain"));
     CHECK_THAT(read_file(work / "grid.csv"), !Contains("fountain"));
@@ -64,9 +64,10 @@ TEST_CASE("The whole vehicle is written over place and pitch as its formulas say
             }
             continue;
         }
-        const auto k = [](double height) {
+        const auto k = [pitch](double height) {
             const double r = 0.1905 / (4 * height);
-            return r * r < 0.5 ? 1 / (1 - r * r) : 2;
+            const double level = r * r < 0.5 ? r * r / (1 - r * r) : 1;
+            return 1 + level * level / (level + 0.37 * std::sin(pitch) * std::sin(pitch));
         };
         const double weight = 4.95 * 9.80665;
         const double torque = -0.5 * weight * 0.32 * (k(front) - k(rear));

@@ -26,10 +26,18 @@ bool has_model(const DataSetComparison& set, EffectModel model) {
 
 }  // namespace
 
+namespace {
+
+std::vector<DataSetComparison> compared(const Measurements& measurements, const RotorNeighbours& neighbours = {}) {
+    return compare_effects({measurements}, neighbours);
+}
+
+}  // namespace
+
 TEST_CASE("A model is compared with measurements as it is flown, band by band") {
     // Cheeseman and Bennett: a pole at 0.2, so the cap of 2; 4/3 at 0.5, 16/15 at 1, 64/63 at 2.
     const auto sets =
-        compare_effects(parse_measurements("z_over_r,thrust_ratio\n0.2,1.5\n0.5,1.3\n1,1.1\n1,1.2\n2,1\n", "m.csv"));
+        compared(parse_measurements("z_over_r,thrust_ratio\n0.2,1.5\n0.5,1.3\n1,1.1\n1,1.2\n2,1\n", "m.csv"));
     REQUIRE(sets.size() == 1);
     CHECK(sets[0].points == 5);
     CHECK(sets[0].z_low == 0.2);
@@ -49,7 +57,7 @@ TEST_CASE("A model is compared with measurements as it is flown, band by band") 
 }
 
 TEST_CASE("The shipped measurements are compared source by source and surface by surface") {
-    const auto sets = compare_effects(read_measurements(DOWNWASH_MEASUREMENTS));
+    const auto sets = compared(read_measurements(DOWNWASH_MEASUREMENTS));
     REQUIRE(sets.size() == 3);
     CHECK((sets[0].source == "jirs2024" && sets[0].surface == "ceiling" && sets[0].points == 16));
     CHECK((sets[1].source == "jirs2024" && sets[1].surface == "ground" && sets[1].points == 16));
@@ -74,7 +82,7 @@ TEST_CASE("The shipped measurements are compared source by source and surface by
 
 TEST_CASE("Multirotor models are compared when the vehicle is known") {
     const auto sets =
-        compare_effects(parse_measurements("z_over_r,thrust_ratio,surface\n1,1.4,ground\n2,1.2,ground\n", "m.csv"),
+        compared(parse_measurements("z_over_r,thrust_ratio,surface\n1,1.4,ground\n2,1.2,ground\n", "m.csv"),
                         square_quadrotor(2.5));
     REQUIRE(sets.size() == 1);
     // Thesis (2.14) with d/R = 2.5 at z = R: the losses are 1/16, 1/(6.25 + 4)^1.5 and 0.5/(12.5 + 4)^1.5.
@@ -84,7 +92,7 @@ TEST_CASE("Multirotor models are compared when the vehicle is known") {
 }
 
 TEST_CASE("Where a refit is impossible only the source's numbers are compared, from hundreds of sources nothing") {
-    const auto sets = compare_effects(parse_measurements("z_over_r,thrust_ratio\n1,1.1\n1,1.2\n", "m.csv"));
+    const auto sets = compared(parse_measurements("z_over_r,thrust_ratio\n1,1.1\n1,1.2\n", "m.csv"));
     REQUIRE(sets.size() == 1);
     const auto is_of_he = [](const ModelScore& score) { return score.effect.model == EffectModel::he; };
     CHECK(std::count_if(sets[0].scores.begin(), sets[0].scores.end(), is_of_he) == 1);
@@ -92,16 +100,57 @@ TEST_CASE("Where a refit is impossible only the source's numbers are compared, f
     for (int i = 0; i < 101; ++i) {
         text += "1,1.1," + std::to_string(i) + "\n";
     }
-    CHECK_THROWS_AS(compare_effects(parse_measurements(text, "m.csv")), InputError);
+    CHECK_THROWS_AS(compared(parse_measurements(text, "m.csv")), InputError);
 }
 
 TEST_CASE("A surface that no model was made for is an error with the line that has it") {
     const auto measured_at = [](const std::string& surface) {
         return parse_measurements("z_over_r,thrust_ratio,surface\n1,1.1,ground\n2,1.1," + surface + "\n", "m.csv");
     };
-    CHECK(compare_effects(measured_at("ceiling")).size() == 2);
-    CHECK(compare_effects(measured_at("")).size() == 2);
-    CHECK_THROWS_WITH(compare_effects(measured_at("cieling")),
+    CHECK(compared(measured_at("ceiling")).size() == 2);
+    CHECK(compared(measured_at("")).size() == 2);
+    CHECK_THROWS_WITH(compared(measured_at("cieling")),
                       "line 3 of the measurements has the surface 'cieling'; expected ground or ceiling; did you mean "
                       "'ceiling'?");
+}
+
+TEST_CASE("Tilted rotors are a data set for every tilt, and K fades as in flight") {
+    // Cheeseman and Bennett's K - 1 at one radius is 1/15; at 30 degrees sin^2 is 1/4.
+    const auto sets = compared(parse_measurements(
+        "z_over_r,thrust_ratio,surface,tilt_deg\n1,1.07,ground,\n1,1.05,ground,30\n1,1.04,ceiling,30\n", "m.csv"));
+    REQUIRE(sets.size() == 3);
+    CHECK(sets[0].tilt_deg == 0);
+    CHECK(sets[1].tilt_deg == 30);
+    const ModelScore& over_ground = score_of(sets[1], EffectModel::cheeseman_bennett, false);
+    const double faded = std::pow(1.0 / 15, 2) / (1.0 / 15 + 0.37 / 4);
+    CHECK(over_ground.bands[2].mean_error == Approx(1 + faded - 1.05).epsilon(1e-9));
+    CHECK(over_ground.level_rmse == Approx(std::abs(16.0 / 15 - 1.05)).epsilon(1e-9));
+    CHECK_FALSE(has_model(sets[1], EffectModel::sanchez_cuevas));
+    const ModelScore& under_ceiling = score_of(sets[2], EffectModel::sanchez_cuevas, false);
+    CHECK(under_ceiling.rmse == under_ceiling.level_rmse);
+}
+
+TEST_CASE("A refit is tried on all other sources at the same surface") {
+    const auto sets = compared(parse_measurements("z_over_r,thrust_ratio,surface,source\n0.5,1.3,ground,a\n1,1.1,ground,a\n"
+                                                  "1,1.2,ground,b\n2,1.1,ground,b\n1,1.3,ceiling,b\n",
+                                                  "m.csv"));
+    const ModelScore& li = score_of(sets[0], EffectModel::li, true);
+    const double rho = li.effect.parameters[0];
+    const auto k = [rho](double z) { return 1 / (1 - rho / (16 * z * z)); };
+    REQUIRE(li.others_rmse);
+    CHECK(*li.others_rmse == Approx(std::sqrt((std::pow(k(1) - 1.2, 2) + std::pow(k(2) - 1.1, 2)) / 2)).epsilon(1e-9));
+    CHECK_FALSE(score_of(sets[0], EffectModel::li, false).others_rmse);
+}
+
+TEST_CASE("With its tilt loss the default ground model is within 0.02 of every bench with tilted rotors") {
+    const auto sets = compared(read_measurements(DOWNWASH_TILTED_ROTORS));
+    REQUIRE(sets.size() == 7);
+    for (const DataSetComparison& set : sets) {
+        CAPTURE(set.source, set.tilt_deg);
+        const ModelScore& score = score_of(set, EffectModel::cheeseman_bennett, false);
+        CHECK(score.rmse < 0.02);
+        if (set.tilt_deg > 15) {
+            CHECK(score.rmse < 0.75 * score.level_rmse);
+        }
+    }
 }

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace downwash;
     try {
         const Measurements measurements = parse_measurements({reinterpret_cast<const char*>(data), size}, "data.csv");
-        for (const DataSetComparison& set : compare_effects(measurements)) {
+        for (const DataSetComparison& set : compare_effects({measurements})) {
             for (const ModelScore& score : set.scores) {
                 if (!(score.rmse >= 0)) {
                     std::abort();

@@ -81,7 +81,7 @@ PlantVector rate(const Robot& robot, const RotorFactor& factor, const PlantVecto
         const Vector3& p = rotors.positions_m[i];
         const double thrust_n = lags ? s[9 + i] : command.rotor_n[i];
         const double k = factor(i, s[0] + std::cos(s[2]) * p[0] + std::sin(s[2]) * p[2],
-                                s[1] - std::sin(s[2]) * p[0] + std::cos(s[2]) * p[2]);
+                                s[1] - std::sin(s[2]) * p[0] + std::cos(s[2]) * p[2], s[2]);
         f3 += k * thrust_n;
         t2 -= p[0] * k * thrust_n;
         d[8] += rotors.power_coefficient_w_n1p5 * std::pow(thrust_n, 1.5);

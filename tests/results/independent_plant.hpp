@@ -17,7 +17,7 @@ struct HeldCommand {
 };
 
 /// Surface effect at a rotor hub: (rotor, x_m, z_m) -> K.
-using RotorFactor = std::function<double(std::size_t, double, double)>;
+using RotorFactor = std::function<double(std::size_t, double, double, double)>;
 
 /// The plant as docs write it down, mass matrix and all, and nothing of dynamics/: the state after some time.
 [[nodiscard]] PlantVector integrated(const Robot& robot, const RotorFactor& factor, PlantVector state,

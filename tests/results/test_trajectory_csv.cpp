@@ -52,8 +52,11 @@ void check_that_rows_follow(const Problem& problem, const std::vector<Row>& rows
     const auto model = make_flight_model(problem);
     const std::size_t rotors = problem.robot.rotors.positions_m.size();
     const bool lags = problem.robot.rotors.time_constant_s > 0;
-    const auto factor = [&](std::size_t rotor, double x_m, double z_m) {
-        return model->direct_factor(static_cast<int>(rotor), x_m, z_m);
+    const auto factor = [&](std::size_t rotor, double x_m, double z_m, double pitch_rad) {
+        const auto level = model->sided_factor(static_cast<int>(rotor), x_m, z_m);
+        const double below = level.all - level.above;
+        const double half = problem.aero.tilt_loss.ground * std::pow(std::sin(pitch_rad), 2);
+        return level.above + (below > 0 ? below * below / (below + half) : below);
     };
     double worst = 0;
     for (std::size_t k = 0; k + 1 < rows.size(); ++k) {

@@ -57,7 +57,11 @@ class AirForces {
             const mjtNum* hub = d->site_xpos + 3 * i;
             const mjtNum* axes = d->site_xmat + 9 * i;
             const mjtNum free_air_n = m->na > 0 ? d->act[i] : d->ctrl[1 + i];
-            const mjtNum more_n = (model_.direct_factor(i, hub[0], hub[2]) - 1) * free_air_n;
+            const auto level = model_.sided_factor(i, hub[0], hub[2]);
+            const mjtNum below = level.all - level.above;
+            const mjtNum half = default_ground_tilt_loss * (1 - axes[8] * axes[8]);  // sin^2 of the axis' tilt
+            const mjtNum change = level.above - 1 + (below > 0 ? below * below / (below + half) : below);
+            const mjtNum more_n = change * free_air_n;
             push(m, d, {more_n * axes[2], more_n * axes[5], more_n * axes[8]}, {hub[0], hub[1], hub[2]}, multirotor_);
         }
     }
