@@ -146,8 +146,7 @@ void AeroMap::add_raster(Raster raster) {
             return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
         };
         return bytes_agree(raster.cells, other->cells) && bytes_agree(raster.flyability, other->flyability) &&
-               bytes_agree(raster.sides, other->sides) &&
-               bytes_agree(raster.nodes, other->nodes);
+               bytes_agree(raster.sides, other->sides) && bytes_agree(raster.nodes, other->nodes);
     };
     const auto known = std::find_if(rasters_.begin(), rasters_.end(), is_same);
     rasters_.push_back(known != rasters_.end() ? *known : std::make_shared<const Raster>(std::move(raster)));

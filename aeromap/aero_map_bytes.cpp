@@ -100,8 +100,8 @@ std::optional<AeroMap> AeroMap::from_bytes(std::vector<MapLayer> layers, const P
             Raster raster;
             std::uint64_t nodes = 0;
             if (!take_count(bytes, nodes) || !take(bytes, columns * rows, raster.cells) ||
-                !take(bytes, columns * rows, raster.flyability) ||
-                !take(bytes, columns * rows, raster.sides) || !take(bytes, nodes, raster.nodes) || !map.is_sound(raster)) {
+                !take(bytes, columns * rows, raster.flyability) || !take(bytes, columns * rows, raster.sides) ||
+                !take(bytes, nodes, raster.nodes) || !map.is_sound(raster)) {
                 return std::nullopt;
             }
             map.add_raster(std::move(raster));

@@ -9,7 +9,8 @@ namespace downwash {
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
-/// Which sides matter in a whole map cell: elsewhere the other one changes K by no more than quiet_side (change_bound.hpp).
+/// Which sides matter in a whole map cell: elsewhere the other one changes K by no more than quiet_side
+/// (change_bound.hpp).
 enum class CellSides : std::uint8_t { below, above, both };
 
 /// A cell of a layer: where its grid of values begins, and how fine it is.
@@ -69,11 +70,7 @@ inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {}, CellFlyabil
     const double steps_x = cell.steps_x;
     const double steps_z = cell.steps_z;
     MapPatch patch{i + a / steps_x,  // exact, as all that follows from it
-                   k + b / steps_z,
-                   steps_x,
-                   steps_z,
-                   {lower[0], lower[1], upper[0], upper[1]},
-                   {1, 1, 1, 1},
+                   k + b / steps_z,        steps_x, steps_z, {lower[0], lower[1], upper[0], upper[1]}, {1, 1, 1, 1},
                    view.flyability[number]};
     if (view.sides[number] != CellSides::below) {
         const std::size_t behind = view.sides[number] == CellSides::both ? node_count(cell) : 0;

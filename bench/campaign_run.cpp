@@ -312,10 +312,9 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
         auto map = (plans_need_maps || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
                        ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
                        : nullptr;
-        const auto evaluation =
-            is_evaluated && !options.stop.stop_requested()
-                ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map)
-                : nullptr;
+        const auto evaluation = is_evaluated && !options.stop.stop_requested()
+                                    ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map)
+                                    : nullptr;
         if (map && is_in_cache(problem, options.map_cache)) {
             map.reset();
         }

@@ -197,8 +197,9 @@ void print_scatter(const std::vector<EffectScatter>& scatters, bool as_markdown)
         }
         fmt::print("{}", cell(text_of(scatter.all), 16));
     };
-    row("surface", "model", scatters.front(),
-        [](const RelativeScatter& band) { return band_name({band.z_low, band.z_high, 0, 0}); });
+    row("surface", "model", scatters.front(), [](const RelativeScatter& band) {
+        return band_name({band.z_low, band.z_high, 0, 0});
+    });
     if (as_markdown) {
         fmt::print("\n| --- | --- |");
         for (std::size_t i = 0; i <= scatters.front().bands.size(); ++i) {

@@ -213,8 +213,8 @@ ExitCode fit_tilt(const FitArguments& given) {
         return fmt::format("RMSE {:.4f}, largest error {:.4f}", score.rmse, score.max_error);
     };
     fmt::print("tilt_loss = {}{}\n{} of {} measurements with tilt\nas level: {}\n", to_text(fit.fitted.tilt_loss, 3),
-               fit.standard_error ? " +- " + to_text(*fit.standard_error, 2) : "", errors(fit.fitted), fit.fitted.points,
-               errors(fit.as_level));
+               fit.standard_error ? " +- " + to_text(*fit.standard_error, 2) : "", errors(fit.fitted),
+               fit.fitted.points, errors(fit.as_level));
     for (const auto& [source, score] : fit.left_out) {
         fmt::print("{}, fitted to the others: tilt_loss {}, {}\n", source, to_text(score.tilt_loss, 3), errors(score));
     }

@@ -16,7 +16,8 @@ namespace downwash::cli {
 namespace {
 
 constexpr char data_description[] =
-    "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source, tilt_deg "
+    "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source, "
+    "tilt_deg "
     "and sigma, then rows";
 
 /// The points with an entry in a column; all without one.
@@ -41,8 +42,7 @@ void require_entry(const Measurements& measurements, const std::string& file, co
 }
 
 void add_data_files(CLI::App& command, std::vector<std::string>& files) {
-    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together")
-        ->required();
+    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together")->required();
 }
 
 void MeasuredData::add_options(CLI::App& command) {

@@ -35,8 +35,8 @@ struct DOWNWASH_EXPORT Measurements {
 };
 
 /// Reads measurements from a CSV file: lines that begin with `#` are comments, then a header with `z_over_r` (in
-/// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty) and `tilt_deg` (in [0, 90],
-/// or empty for 0), and any others, for example `surface` and `source`. At most 100000 rows and 16 MB.
+/// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty) and `tilt_deg` (in [0,
+/// 90], or empty for 0), and any others, for example `surface` and `source`. At most 100000 rows and 16 MB.
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
 

@@ -24,7 +24,8 @@ struct TiltLoss {
     friend bool operator==(const TiltLoss&, const TiltLoss&) = default;
 };
 
-/// Fitted to static measurements over ground at tilts up to 30 degrees (docs/aeromap.md). There are none under a ceiling.
+/// Fitted to static measurements over ground at tilts up to 30 degrees (docs/aeromap.md). There are none under a
+/// ceiling.
 inline constexpr double default_ground_tilt_loss = 0.37;
 
 /// K - 1 of a tilted rotor. It differs by no more than the K - 1 of the level one does: a map that is right to 0.01

@@ -118,8 +118,8 @@ std::vector<DataSet> data_sets(const std::vector<Measurements>& data) {
         const auto source = measurements.index("source");
         const auto surface = measurements.index("surface");
         for (const Measurement& point : measurements.points) {
-            const DataSet key{source ? point.cells[*source] : "", surface ? point.cells[*surface] : "", point.tilt_deg,
-                              {}};
+            const DataSet key{
+                source ? point.cells[*source] : "", surface ? point.cells[*surface] : "", point.tilt_deg, {}};
             auto set = std::find_if(sets.begin(), sets.end(), [&key](const DataSet& known) {
                 return known.source == key.source && known.surface == key.surface && known.tilt_deg == key.tilt_deg;
             });

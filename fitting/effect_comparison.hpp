@@ -51,13 +51,13 @@ inline constexpr std::array error_band_edges{0.0, 0.5, 1.0, 2.0, std::numeric_li
 [[nodiscard]] bool is_comparable(const EffectModelInfo& model, const std::string& surface,
                                  const RotorNeighbours& neighbours);
 
-/// Compares every model made for a surface with the measurements of each source, surface and tilt: with the parameters of
-/// the model's source and, where level measurements suffice, refitted to them (fit_effect; the formula is fitted
+/// Compares every model made for a surface with the measurements of each source, surface and tilt: with the parameters
+/// of the model's source and, where level measurements suffice, refitted to them (fit_effect; the formula is fitted
 /// unclamped). Over the ground the effect of a tilted rotor fades by default_ground_tilt_loss.
 /// @param neighbours of the vehicle measured; for one rotor alone the multirotor models are left out
 /// @param max_factor >= 1
-/// @throws InputError when there are more than 100 sets of source, surface and tilt, or a surface is neither "ground" nor
-/// "ceiling" nor empty
+/// @throws InputError when there are more than 100 sets of source, surface and tilt, or a surface is neither "ground"
+/// nor "ceiling" nor empty
 [[nodiscard]] DOWNWASH_EXPORT std::vector<DataSetComparison> compare_effects(const std::vector<Measurements>& data,
                                                                              const RotorNeighbours& neighbours = {},
                                                                              double max_factor = 2);

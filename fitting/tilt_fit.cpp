@@ -105,7 +105,8 @@ TiltFit fit_tilt_loss(const Measurements& measurements) {
         }
     }
     if (points.empty()) {
-        throw_input_error("a tilt loss needs measurements of tilted rotors: expected a column tilt_deg with some above 0");
+        throw_input_error(
+            "a tilt loss needs measurements of tilted rotors: expected a column tilt_deg with some above 0");
     }
     TiltFit fit;
     const double loss = best_loss(points);

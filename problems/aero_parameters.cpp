@@ -95,12 +95,13 @@ void add_surface(Rows& rows, const std::string& path, const std::string& descrip
     rows.push_back(std::move(surface));
     add_model(rows, path, models, effect);
     add_table(rows, path, effect);
-    rows.push_back(number(path + ".tilt_loss",
-                          "how fast the effect fades with the tilt of a rotor: K - 1 is halved where it equals tilt_loss "
-                          "times the squared sine of the tilt; 0: a tilted rotor counts as level",
-                          tilt_loss)
-                       .at_least(0)
-                       .at_most(100));
+    rows.push_back(
+        number(path + ".tilt_loss",
+               "how fast the effect fades with the tilt of a rotor: K - 1 is halved where it equals tilt_loss "
+               "times the squared sine of the tilt; 0: a tilted rotor counts as level",
+               tilt_loss)
+            .at_least(0)
+            .at_most(100));
 }
 
 void add_map(Rows& rows) {

@@ -77,9 +77,8 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
       tick_s_(task.model.tick().tick_s),
       crew_(task.model, task.map, planning_rules(task.problem, true, is_over), &task.problem.goal, threads) {
     if (task.worlds != nullptr) {
-        world_crew_ =
-            std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
-                                         &task.problem.goal, threads);
+        world_crew_ = std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
+                                                   &task.problem.goal, threads);
     }
     forget();
 }

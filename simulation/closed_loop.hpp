@@ -44,8 +44,8 @@ struct State : VehicleState<T> {
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
 /// @param law that of the model, as its own type: what runs tick by tick visits model.law once
 /// @param motion that of the state
-/// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane. That of a tilted rotor is less
-/// if the factor tells the sides apart (see WorldSurroundings); otherwise it is taken as it is
+/// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane. That of a tilted rotor is
+/// less if the factor tells the sides apart (see WorldSurroundings); otherwise it is taken as it is
 /// @param[out] given what the controller commanded
 /// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
 /// dynamics::RefinedStep

@@ -35,8 +35,7 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
 
 template <class Factor>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in,
-                       Factor&& factor) {
+                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in, Factor&& factor) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     const FlownWorld* const world = flown_world(model, in.world);
     SegmentFlight flight;

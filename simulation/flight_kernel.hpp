@@ -58,8 +58,8 @@ struct FlightKernelModel {
     MotionReach reach;  ///< with hubs as part of the body
     bool has_map;
     RotorMaps maps;
-    bool is_in_worlds;     ///< some flight needs what WorldNumbers says
-    bool has_noise;        ///< some world has
+    bool is_in_worlds;  ///< some flight needs what WorldNumbers says
+    bool has_noise;     ///< some world has
     const float* normal_levels;
 };
 

@@ -46,7 +46,8 @@ struct RotorMaps {
 [[nodiscard]] DOWNWASH_EXPORT RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map);
 
 /// K beyond the map, evaluated directly.
-[[nodiscard]] DOWNWASH_EXPORT SidedFactor<double> factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m);
+[[nodiscard]] DOWNWASH_EXPORT SidedFactor<double> factor_outside(const RotorMaps& maps, int rotor, double x_m,
+                                                                 double z_m);
 
 /// The effect looked up in a map along the flights of all lanes. It remembers the patch of the map in which every rotor
 /// is; the values are those of AeroMap::factor() to the last bit.

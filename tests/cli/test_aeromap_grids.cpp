@@ -23,7 +23,8 @@ std::filesystem::path problem_with(const Workspace& work, const std::string& gro
 TEST_CASE("A grid built where a fountain pushes the body says that it lacks it") {
     const Workspace work;
     const auto build = [&](const std::string& ground, const char* more = "") {
-        return work.run("aeromap build", problem_with(work, ground), "-o", work / "grid.csv", "--step 0.5 --rotor 1", more);
+        return work.run("aeromap build", problem_with(work, ground), "-o", work / "grid.csv", "--step 0.5 --rotor 1",
+                        more);
     };
     const std::string line = "# fountain: not contained: the grid holds the factors of rotors\n";
     const Result loud = succeeded(build("multirotor-body"));

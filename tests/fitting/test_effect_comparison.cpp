@@ -83,7 +83,7 @@ TEST_CASE("The shipped measurements are compared source by source and surface by
 TEST_CASE("Multirotor models are compared when the vehicle is known") {
     const auto sets =
         compared(parse_measurements("z_over_r,thrust_ratio,surface\n1,1.4,ground\n2,1.2,ground\n", "m.csv"),
-                        square_quadrotor(2.5));
+                 square_quadrotor(2.5));
     REQUIRE(sets.size() == 1);
     // Thesis (2.14) with d/R = 2.5 at z = R: the losses are 1/16, 1/(6.25 + 4)^1.5 and 0.5/(12.5 + 4)^1.5.
     const double loss = 1.0 / 16 + std::pow(10.25, -1.5) + 0.5 * std::pow(16.5, -1.5);
@@ -131,9 +131,10 @@ TEST_CASE("Tilted rotors are a data set for every tilt, and K fades as in flight
 }
 
 TEST_CASE("A refit is tried on all other sources at the same surface") {
-    const auto sets = compared(parse_measurements("z_over_r,thrust_ratio,surface,source\n0.5,1.3,ground,a\n1,1.1,ground,a\n"
-                                                  "1,1.2,ground,b\n2,1.1,ground,b\n1,1.3,ceiling,b\n",
-                                                  "m.csv"));
+    const auto sets =
+        compared(parse_measurements("z_over_r,thrust_ratio,surface,source\n0.5,1.3,ground,a\n1,1.1,ground,a\n"
+                                    "1,1.2,ground,b\n2,1.1,ground,b\n1,1.3,ceiling,b\n",
+                                    "m.csv"));
     const ModelScore& li = score_of(sets[0], EffectModel::li, true);
     const double rho = li.effect.parameters[0];
     const auto k = [rho](double z) { return 1 / (1 - rho / (16 * z * z)); };

@@ -21,9 +21,10 @@ const EffectScatter& scatter_of(const std::vector<EffectScatter>& all, EffectMod
 
 TEST_CASE("Bias and scatter are relative to the model's K - 1, those of tilted rotors and near points left out") {
     // K - 1 of Cheeseman and Bennett: 1/3 at 0.5, 1/15 at 1.
-    const auto all = effect_scatter({parse_measurements("z_over_r,thrust_ratio,surface,tilt_deg\n0.5,1.5,ground,\n"
-                                                        "1,1.08,ground,\n0.3,1.1,ground,\n1,3,ground,20\n1,3,,\n",
-                                                        "m.csv")});
+    const auto all =
+        effect_scatter({parse_measurements("z_over_r,thrust_ratio,surface,tilt_deg\n0.5,1.5,ground,\n"
+                                           "1,1.08,ground,\n0.3,1.1,ground,\n1,3,ground,20\n1,3,,\n",
+                                           "m.csv")});
     const EffectScatter& scatter = scatter_of(all, EffectModel::cheeseman_bennett);
     CHECK(scatter.surface == "ground");
     const double x[] = {1.0 / 3, 1.0 / 15};

@@ -110,7 +110,8 @@ TEST_CASE("wide ground carries like a spring and rights the vehicle, a wide ceil
     }
 }
 
-TEST_CASE("over wide ground every rotor of a vehicle that pitches loses what its tilt takes, under a ceiling none does") {
+TEST_CASE(
+    "over wide ground every rotor of a vehicle that pitches loses what its tilt takes, under a ceiling none does") {
     const auto ground = model_among({{"floor", Box{{80, 80, 1}}, {0, 0, -0.5}, {}}});
     const auto ceiling = model_among({{"roof", Box{{80, 80, 1}}, {0, 0, 5.5}, {}}});
     for (const double pitch : {-0.5, -0.1, 0.0, 0.2, 0.35}) {

@@ -90,8 +90,7 @@ struct Hover {
     template <class After>
     void fly(int ticks, const After& after) {
         const ReferenceSegment segment(reference, reference, ticks, model->tick().tick_s);
-        simulation::fly_ticks(model->tick(), world, 0, segment, simulation::NoEffect{},
-                              dynamics::OneStep{}, state,
+        simulation::fly_ticks(model->tick(), world, 0, segment, simulation::NoEffect{}, dynamics::OneStep{}, state,
                               [&](const FlightState&, const ReferencePoint&, const controllers::Actuation<double>&,
                                   const FlightState& next, const ReferencePoint&) {
                                   after(next);

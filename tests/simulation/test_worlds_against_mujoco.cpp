@@ -51,8 +51,7 @@ double difference_from_mujoco(const Robot& robot, const World& in) {
             }
             return at;
         };
-        state =
-            simulation::tick_in_world(model, law, world.numbers, no_noise, state, reference, calm, given, finely);
+        state = simulation::tick_in_world(model, law, world.numbers, no_noise, state, reference, calm, given, finely);
         mujoco.command(given.command, model.plant.rotor_count);
         for (int i = 0; i < 10; ++i) {
             mj_step(mujoco.model(), data);

@@ -26,8 +26,8 @@ struct MapComparison {
         const MapLayer& from = map.layers()[layer];
         const SidedFactor<double> direct = from.effect->sided_factor(map.plane().to_world(x_m, from.lateral_m, z_m));
         const SidedFactor<double> looked_up = map.sided_factor(layer, x_m, z_m);
-        worst = std::max({worst, std::abs(map.factor(layer, x_m, z_m) - direct.all),
-                          std::abs(looked_up.above - direct.above)});
+        worst = std::max(
+            {worst, std::abs(map.factor(layer, x_m, z_m) - direct.all), std::abs(looked_up.above - direct.above)});
         for (const double sine : {0.17, 0.5}) {
             const TiltLoss loss{default_ground_tilt_loss, 0};
             worst = std::max(worst, std::abs(tilted(looked_up, loss, sine).all - tilted(direct, loss, sine).all));
