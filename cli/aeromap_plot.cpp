@@ -52,11 +52,12 @@ struct Shown {
           rotor(problem && !vehicle && !hover),
           models(!request.models.empty()),
           data(!request.data.empty()),
-          distances(models || data || request.is_flow),
+          curves(models || data),
+          distances(curves || request.is_flow),
           multirotor(std::any_of(request.models.begin(), request.models.end(),
                                  [](const std::string& name) { return is_multirotor(model_named(name).model); })) {}
 
-    bool problem, vehicle, hover, rotor, models, data, distances, multirotor;
+    bool problem, vehicle, hover, rotor, models, data, curves, distances, multirotor;
 };
 
 /// An option that only some pictures use.
@@ -66,7 +67,7 @@ struct OptionUse {
     const char* use;  ///< for people
 };
 
-constexpr std::array<OptionUse, 13> option_uses{{
+constexpr std::array<OptionUse, 14> option_uses{{
     {"--what", &Shown::problem, "PROBLEM"},
     {"--rotor", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
     {"--lateral", &Shown::rotor, "PROBLEM and --what factor, ground or ceiling"},
@@ -79,6 +80,7 @@ constexpr std::array<OptionUse, 13> option_uses{{
     {"--source", &Shown::data, "--data"},
     {"--max-factor", &Shown::models, "--model"},
     {"--rotor-spacing", &Shown::multirotor, "--model multirotor-images or multirotor-body"},
+    {"--tilt-deg", &Shown::curves, "--model or --data"},
     {"--z-over-r", &Shown::distances, "--model, --data or --flow"},
 }};
 
@@ -193,6 +195,8 @@ void add_aeromap_plot(CLI::App& aeromap, Action& action) {
     add_value(plot, "--max-factor K", given.max_factor, "cap of K; default 2");
     add_value(plot, "--rotor-spacing D", given.rotor_spacing,
               "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
+    add_value(plot, "--tilt-deg T...", given.tilt_deg,
+              "tilts of the rotor over ground [deg], a curve and its measurements for each; default 0");
     plot.add_flag("--flow", given.is_flow, "the potential flow of a rotor and its image below the ground");
     add_value(plot, "--z-over-r LOW HIGH", given.z_over_r,
               "distance from the surface in rotor radii; shown range of curves (default 0 4), or the rotor's height "

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "downwash/base/text.hpp"
@@ -12,6 +14,7 @@
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/effects/measurements.hpp"
+#include "downwash/effects/sided_factor.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -30,7 +33,28 @@ AxisRange shown_range(const PlotRequest& request) {
     return {given[0], given[1]};
 }
 
-Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRange& range) {
+/// The tilts that are shown. @throws UsageError
+std::vector<double> shown_tilts(const PlotRequest& request) {
+    for (const double tilt_deg : request.tilt_deg) {
+        if (!(tilt_deg >= 0 && tilt_deg <= 90)) {
+            throw UsageError("--tilt-deg {}: expected degrees from 0 to 90", tilt_deg);
+        }
+    }
+    for (const std::string& name : request.models) {
+        if (!request.tilt_deg.empty() && model_named(name).surface == "ceiling") {
+            throw UsageError(
+                "--tilt-deg: expected models of the ground; what tilt does under a ceiling was not measured");
+        }
+    }
+    return request.tilt_deg.empty() ? std::vector<double>{0} : request.tilt_deg;
+}
+
+/// What a name says of a tilt.
+std::string tilt_text(double tilt_deg) {
+    return tilt_deg > 0 ? fmt::format(", {} degrees", to_text(tilt_deg)) : "";
+}
+
+Curve curve_of(const std::string& name, double tilt_deg, const PlotRequest& request, const AxisRange& range) {
     constexpr int intervals = 800;
     const EffectModelInfo& model = model_named(name);
     if (model.model == EffectModel::table) {
@@ -44,10 +68,11 @@ Curve curve_of(const std::string& name, const PlotRequest& request, const AxisRa
         choice.rotor_spacing = request.rotor_spacing;
     }
     const EffectCurve effect = curve_option(choice);
-    Curve curve{std::string(model.name), {}, AxisRange{model.valid_from, model.valid_to}};
+    const double sine = std::sin(tilt_deg * std::numbers::pi / 180);
+    Curve curve{std::string(model.name) + tilt_text(tilt_deg), {}, AxisRange{model.valid_from, model.valid_to}};
     for (int i = 0; i <= intervals; ++i) {
         const double z_over_r = range.low + (range.high - range.low) * i / intervals;
-        curve.points.push_back({z_over_r, effect(z_over_r)});
+        curve.points.push_back({z_over_r, 1 + tilted_change(effect(z_over_r) - 1, default_ground_tilt_loss, sine)});
     }
     return curve;
 }
@@ -96,21 +121,28 @@ std::vector<std::string> groups(const Measurements& measurements, const std::str
     return measurements.index(column) ? measurements.entries(column) : std::vector<std::string>{""};
 }
 
-void add_measurements(CurveFigure& figure, const PlotRequest& request, const AxisRange& range) {
+void add_measurements(CurveFigure& figure, const std::vector<double>& tilts_deg, const PlotRequest& request,
+                      const AxisRange& range) {
     const Measurements all = read_measurements(request.data);
     for (const std::string& source : groups(all, request.data, "source", request.source)) {
         const Measurements of_source = source.empty() ? all : all.with("source", source);
         for (const std::string& surface : groups(all, request.data, "surface", request.surface)) {
             const Measurements group = surface.empty() ? of_source : of_source.with("surface", surface);
-            std::string name = source.empty() ? "measured" : source;
-            name += surface.empty() ? "" : ", " + surface;
-            if (MeasuredPoints points = points_of(std::move(name), group, range); !points.points.empty()) {
-                figure.measurements.push_back(std::move(points));
+            const std::string name = (source.empty() ? "measured" : source) + (surface.empty() ? "" : ", " + surface);
+            for (const double tilt_deg : tilts_deg) {
+                Measurements at_tilt{group.columns, {}};
+                std::copy_if(group.points.begin(), group.points.end(), std::back_inserter(at_tilt.points),
+                             [&](const Measurement& point) { return point.tilt_deg == tilt_deg; });
+                MeasuredPoints points = points_of(name + tilt_text(tilt_deg), at_tilt, range);
+                if (!points.points.empty()) {
+                    figure.measurements.push_back(std::move(points));
+                }
             }
         }
     }
     if (figure.measurements.empty()) {
-        throw UsageError("--data {} has no measurement for z/R from {} to {}", request.data, range.low, range.high);
+        throw UsageError("--data {} has no measurement for z/R from {} to {} at {}", request.data, range.low,
+                         range.high, request.tilt_deg.empty() ? "no tilt" : "these tilts");
     }
 }
 
@@ -130,11 +162,14 @@ CurveFigure model_figure(const PlotRequest& request) {
     figure.x_range = range;
     figure.level = 1;
     figure.dotted_name = "where the model was not shown to hold";
+    const std::vector<double> tilts_deg = shown_tilts(request);
     for (const std::string& name : request.models) {
-        figure.curves.push_back(curve_of(name, request, range));
+        for (const double tilt_deg : tilts_deg) {
+            figure.curves.push_back(curve_of(name, tilt_deg, request, range));
+        }
     }
     if (!request.data.empty()) {
-        add_measurements(figure, request, range);
+        add_measurements(figure, tilts_deg, request, range);
     }
     return figure;
 }

@@ -22,6 +22,7 @@ struct PlotRequest {
     std::vector<std::string> models;
     std::string data, surface, source;
     std::vector<double> z_over_r;
+    std::vector<double> tilt_deg;  ///< of rotors over ground; empty: level
     std::optional<double> max_factor, rotor_spacing;
     bool is_flow = false;
     std::string output;

@@ -25,10 +25,12 @@ plot figure_2_2.svg --flow --z-over-r 1.5
 plot figure_2_9.svg --model cheeseman-bennett he hayden li --data "$data" --surface ground --z-over-r 0.3 4
 plot figure_2_12.svg --model cheeseman-bennett multirotor-images multirotor-body --rotor-spacing 2.5 \
     --data "$data" --surface ground --z-over-r 0.3 4
+tilted=../../effects/measurements/tilted_rotors_ground.csv
+plot figure_2_20.svg --model cheeseman-bennett --tilt-deg 0 10 30 --data "$tilted" --z-over-r 0.5 4
 plot figure_2_15.svg --model sanchez-cuevas momentum-theory fairing-cfd --data "$data" --surface ceiling --z-over-r 0.2 4
 
 # Maps over the plane of motion.
-for scene in figure_5_5_box figure_5_5_pipe figure_5_7 figure_5_8 figure_5_9; do
+for scene in figure_5_5_box figure_5_5_pipe figure_5_6 figure_5_7 figure_5_8 figure_5_9; do
     plot "$scene.svg" "$scene.yaml" --lateral 0
 done
 plot figure_c_5.svg "$bridge"
@@ -73,6 +75,5 @@ replace() { # NAME, new text on standard input
     cat "$page" >../aeromap.md
     rm -f "$text" "$page"
 }
-tilted=../../effects/measurements/tilted_rotors_ground.csv
 "$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison
 { echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt
