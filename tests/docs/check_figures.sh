@@ -32,6 +32,12 @@ cell() {
         index($0, row) == 1 { gsub(/^ +| +$/, "", $(n + 1)); print $(n + 1); exit }' "bench/results/$1"
 }
 
+# Power near surfaces, in both readings.
+power() { cell power_readings.md "$1" "$2"; }
+quotes docs/model.md "where K is $(power mp-arm-ada 2):"
+quotes docs/model.md "| $(power mp-arm-ada 3), $(power mp-arm-da 3) | $(power mp-arm-ada 5) | $(power mp-arm-da 5) |"
+quotes docs/model.md "| $(power mp-arm-ada 4), $(power mp-arm-da 4) | $(power mp-arm-ada 6) | $(power mp-arm-da 6) |"
+
 campaign=bench/results/all.md
 quotes README.md "none of the $(seeds mp-arm-ada) MP-ARM-ADA plans failed"
 [[ $(failed mp-arm-ada) == 0 ]] || quotes README.md "$(failed mp-arm-ada) MP-ARM-ADA plans failed"
