@@ -32,6 +32,29 @@ cell() {
         index($0, row) == 1 { gsub(/^ +| +$/, "", $(n + 1)); print $(n + 1); exit }' "bench/results/$1"
 }
 
+# Beside a wall, as shares of thrust T = 4 C_T rho n^2 D^4 with C_T = 0.1, and of T R.
+wall() { # FACILITY or all, least distance: mean force in %, greatest force in %, greatest moment
+    awk -F, -v facility="$1" -v from="$2" '
+        /^#/ || /^facility/ || (facility != "all" && $1 != facility) || $4 < from { next }
+        {
+            thrust = 4 * 0.1 * 1.225 * ($3 / 60) ^ 2 * 0.3048 ^ 4
+            force = 100 * $5 / thrust
+            moment = $6 / (thrust * 0.1524)
+            sum += force
+            ++n
+            if (force * force > f * f) { f = force }
+            if (moment * moment > m * m) { m = moment }
+        }
+        END { printf "%.1f %.1f %.3f\n", sum / n, f < 0 ? -f : f, m < 0 ? -m : m }' effects/measurements/wall_effect.csv
+}
+read -r _ force moment_touching < <(wall all 0)
+read -r _ _ moment < <(wall all 1.5)
+read -r pulls _ _ < <(wall DU2SRI 0)
+read -r pushes _ _ < <(wall txc 0)
+quotes docs/model.md "the force is at most $force % of the thrust"
+quotes docs/model.md "$pulls % on average in one and +$pushes % in the other"
+quotes docs/model.md "The moment is at most $moment_touching T R with a disc that touches the wall, and $moment T R from"
+
 # Power near surfaces, in both readings.
 power() { cell power_readings.md "$1" "$2"; }
 quotes docs/model.md "where K is $(power mp-arm-ada 2):"
