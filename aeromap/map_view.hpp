@@ -9,8 +9,7 @@ namespace downwash {
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
 enum class CellFlyability : std::uint8_t { flyable, forbidden, mixed };
 
-/// Which sides matter in a whole map cell: elsewhere the other one changes K by no more than quiet_side
-/// (change_bound.hpp).
+/// Which sides matter in a whole map cell: the other one changes K by no more than 0.002 there.
 enum class CellSides : std::uint8_t { below, above, both };
 
 /// A cell of a layer: where its grid of values begins, and how fine it is.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -18,6 +19,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/effects/sided_factor.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -31,6 +33,7 @@ struct QueryArguments {
     std::optional<int> rotor;
     ModelChoice model;
     std::vector<double> z_over_r;
+    double tilt_deg = 0;
     int threads = default_threads();
     bool no_cache = false, is_quiet = false, as_json = false;
 };
@@ -42,6 +45,13 @@ struct PointEffect {
     std::optional<double> factor, ground, ceiling;
 };
 
+double sin_tilt(const QueryArguments& given) {
+    if (!(given.tilt_deg >= -90 && given.tilt_deg <= 90)) {
+        throw UsageError("--tilt-deg {}: expected degrees from -90 to 90", given.tilt_deg);
+    }
+    return std::sin(given.tilt_deg * std::numbers::pi / 180);
+}
+
 /// The factors of a problem: from its map where a point lies on one of the map's planes, directly elsewhere.
 class Effects {
  public:
@@ -50,6 +60,7 @@ class Effects {
         : problem_(problem),
           model_(make_flight_model(problem)),
           rotor_(rotor_option(given.rotor, model_->tick().plant.rotor_count)),
+          sin_tilt_(sin_tilt(given)),
           cache_(std::move(cache)),
           threads_(given.threads),
           is_quiet_(given.is_quiet) {}
@@ -59,17 +70,19 @@ class Effects {
         PointEffect effect{point_m, direct.is_flyable(point_m), {}, {}, {}};
         if (effect.is_flyable) {
             const DirectEffect::Factors factors = direct.factors(point_m);
+            const TiltLoss& loss = model_->tick().tilt_loss;
             if (!problem_.aero.map) {
-                effect.ground = factors.ground;
-                effect.ceiling = factors.ceiling;
+                effect.ground = tilted<double>({factors.ground, 1}, loss, sin_tilt_).all;
+                effect.ceiling = tilted<double>({factors.ceiling, factors.ceiling}, loss, sin_tilt_).all;
             }
-            effect.factor = map_factor(point_m).value_or(factors.total);
+            const SidedFactor<double> level = map_factor(point_m).value_or(direct.sided_factor(point_m));
+            effect.factor = tilted(level, loss, sin_tilt_).all;
         }
         return effect;
     }
 
  private:
-    std::optional<double> map_factor(const Vector3& point_m) {
+    std::optional<SidedFactor<double>> map_factor(const Vector3& point_m) {
         constexpr double on_plane_m = 1e-9;
         if (!problem_.aero.enabled) {
             return std::nullopt;
@@ -78,7 +91,7 @@ class Effects {
         for (int rotor = 0; rotor < model_->tick().plant.rotor_count; ++rotor) {
             const MapLayer& layer = model_->layer(rotor);
             if (layer.effect.get() == &model_->effect(rotor_) && std::abs(local_m[1] - layer.lateral_m) <= on_plane_m) {
-                return map().factor(model_->rotor_layer(rotor), local_m[0], local_m[2]);
+                return map().sided_factor(model_->rotor_layer(rotor), local_m[0], local_m[2]);
             }
         }
         return std::nullopt;
@@ -97,6 +110,7 @@ class Effects {
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;
     int rotor_;
+    double sin_tilt_;
     std::filesystem::path cache_;
     int threads_;
     bool is_quiet_;
@@ -227,12 +241,14 @@ void query_problem(const QueryArguments& given) {
 void query_model(const QueryArguments& given) {
     const EffectCurve curve = curve_option(given.model);
     const EffectModelInfo& model = info(curve.effect().model);
+    const TiltLoss loss{model.surface == "ground" ? default_ground_tilt_loss : 0, 0};
     auto points = Json::array();
     for (const double z_over_r : given.z_over_r) {
         if (!(z_over_r >= 0 && std::isfinite(z_over_r))) {
             throw UsageError("--z-over-r {}: expected a finite distance in radii, at least 0", z_over_r);
         }
-        points.push_back({{"z_over_r", z_over_r}, {"factor", curve(z_over_r)}});
+        points.push_back(
+            {{"z_over_r", z_over_r}, {"factor", tilted<double>({curve(z_over_r), 1}, loss, sin_tilt(given)).all}});
     }
     if (given.as_json) {
         print_json({{"model", model.name}, {"points", std::move(points)}});
@@ -278,6 +294,8 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
               "number of the rotor, counted from 1; the multirotor models consider its neighbours, default 1");
     offer_models(*add_value(command, "--model NAME", given.model.name, "name of a model as in a problem file"));
     add_value(command, "--z-over-r V...", given.z_over_r, "distance from the surface in rotor radii");
+    add_value(command, "--tilt-deg T", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]")
+        ->capture_default_str();
     add_model_options(command, given.model);
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);

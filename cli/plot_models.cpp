@@ -72,7 +72,8 @@ Curve curve_of(const std::string& name, double tilt_deg, const PlotRequest& requ
     Curve curve{std::string(model.name) + tilt_text(tilt_deg), {}, AxisRange{model.valid_from, model.valid_to}};
     for (int i = 0; i <= intervals; ++i) {
         const double z_over_r = range.low + (range.high - range.low) * i / intervals;
-        curve.points.push_back({z_over_r, 1 + tilted_change(effect(z_over_r) - 1, default_ground_tilt_loss, sine)});
+        curve.points.push_back(
+            {z_over_r, tilted<double>({effect(z_over_r), 1}, {default_ground_tilt_loss, 0}, sine).all});
     }
     return curve;
 }

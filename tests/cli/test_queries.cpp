@@ -128,3 +128,31 @@ TEST_CASE("Planners are listed for people and for programs") {
         }
     }
 }
+
+TEST_CASE("A query at a tilt gives what is left of the ground's effect, and all of a ceiling's") {
+    const Workspace work;
+    const auto at_tilt = [&](const char* model) {
+        return work.json("aeromap query --z-over-r 1 --tilt-deg 30 --model", model).at("points").at(0).at("factor");
+    };
+    const double x = 1.0 / 15;  // Cheeseman and Bennett's K - 1; sin^2 of 30 degrees is 1/4
+    CHECK(at_tilt("cheeseman-bennett").get<double>() == Approx(1 + x * x / (x + 0.37 / 4)).epsilon(1e-12));
+    CHECK(at_tilt("sanchez-cuevas").get<double>() == Approx(1 / (1 - 1 / 6.924 / 1.3168 / 1.3168)).epsilon(1e-12));
+    check_rejected(work.run("aeromap query --model he --z-over-r 1 --tilt-deg 91"), "expected degrees from -90 to 90");
+
+    // Over the ground and under the deck of the bridge, by side and as a whole.
+    const auto points = work.json("aeromap query", problem_file("bridge_inspection"),
+                                  "--at 0 0 0.3 --at 0 0 9.8 --tilt-deg 20 --no-cache")
+                            .at("points");
+    const auto level =
+        work.json("aeromap query", problem_file("bridge_inspection"), "--at 0 0 0.3 --at 0 0 9.8 --no-cache")
+            .at("points");
+    const auto number = [](const auto& of, std::size_t i, const char* name) {
+        return of.at(i).at(name).template get<double>();
+    };
+    CHECK(number(points, 0, "ground") < number(level, 0, "ground"));
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(number(points, i, "ceiling") == number(level, i, "ceiling"));
+        CHECK(number(points, i, "factor") ==
+              Approx(number(points, i, "ground") + number(points, i, "ceiling") - 1).epsilon(1e-9));
+    }
+}
