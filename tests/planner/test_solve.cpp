@@ -266,6 +266,18 @@ TEST_CASE("the time limit is heeded within a long flight") {
     CHECK(solve(problem).planning.simulated_s * problem.robot.controller.rate_hz < 1e7);
 }
 
+TEST_CASE("the time limit is heeded within a long hold") {
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.goal.hold_s = 360;
+    problem.robot.controller.rate_hz = 1000;
+    problem.planner.parameters = {{"first_batch_size", 1000.0}};
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 0.05;
+    // A hold takes 360,000 ticks, and the first batch has a hundred: no processor simulates ten in a twentieth of a
+    // second.
+    CHECK(solve(problem).planning.simulated_s * problem.robot.controller.rate_hz < 3.6e6);
+}
+
 TEST_CASE("without surface effects the aware planner is the dynamics-aware one") {
     Problem problem = with(Variant::mp_arm_ada);
     problem.aero.enabled = false;
