@@ -54,7 +54,7 @@ def main():
     seeds = range(1, given.seeds + 1)
 
     print("# Plans before and after a change")
-    print()
+    print()  # say here what the change is
     print(
         f"The shipped problems as they are, MP-ARM-ADA, seeds 1 to {given.seeds}, {given.time_limit:g} s and one thread each; "
         f"before: commit {version(trees[0])}, after: {version(trees[1])}."
