@@ -52,7 +52,7 @@ struct MapPatch {
 };
 
 /// A patch without any place in it.
-inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {}, CellFlyability::mixed};
+inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {1, 1, 1, 1}, CellFlyability::mixed};
 
 /// The patch around a place given in cells from the layer's lower corner.
 /// @pre view.contains(u, w)

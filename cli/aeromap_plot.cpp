@@ -195,8 +195,7 @@ void add_aeromap_plot(CLI::App& aeromap, Action& action) {
     add_value(plot, "--max-factor K", given.max_factor, "cap of K; default 2");
     add_value(plot, "--rotor-spacing D", given.rotor_spacing,
               "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
-    add_value(plot, "--tilt-deg T...", given.tilt_deg,
-              "tilts of the rotor over ground [deg], a curve and its measurements for each; default 0");
+    add_value(plot, "--tilt-deg T...", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
     plot.add_flag("--flow", given.is_flow, "the potential flow of a rotor and its image below the ground");
     add_value(plot, "--z-over-r LOW HIGH", given.z_over_r,
               "distance from the surface in rotor radii; shown range of curves (default 0 4), or the rotor's height "

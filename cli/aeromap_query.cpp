@@ -294,8 +294,7 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
               "number of the rotor, counted from 1; the multirotor models consider its neighbours, default 1");
     offer_models(*add_value(command, "--model NAME", given.model.name, "name of a model as in a problem file"));
     add_value(command, "--z-over-r V...", given.z_over_r, "distance from the surface in rotor radii");
-    add_value(command, "--tilt-deg T", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]")
-        ->capture_default_str();
+    add_value(command, "--tilt-deg T", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
     add_model_options(command, given.model);
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);

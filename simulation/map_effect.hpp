@@ -82,7 +82,7 @@ class MapEffect {
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             return look_up(rotor, x_m, z_m, at, elsewhere);
         }
-        return {interpolated(patches.corner, at), interpolated(patches.above, at)};
+        return sides(patches, at);
     }
 
     /// 0 in lanes whose hub is in a cell that is flyable throughout.
@@ -103,7 +103,8 @@ class MapEffect {
         double u[width], w[width];
         double steps_x[width], steps_z[width];
         double corner[4][width], above[4][width];
-        double doubt[width];  ///< 0 where the cell is flyable throughout
+        double doubt[width];          ///< 0 where the cell is flyable throughout
+        unsigned int have_above = 0;  ///< the lanes, as bits, whose patch has a part from above
     };
 
     /// Hubs in cells from the lower corner of a layer, and as shares of the patches.
@@ -121,6 +122,9 @@ class MapEffect {
             patches.above[i][lane] = patch.above[i];
         }
         patches.doubt[lane] = patch.flyability == CellFlyability::flyable ? 0 : 1;
+        const unsigned int bit = 1U << static_cast<unsigned int>(lane);
+        const bool has_above = patch.above[0] != 1 || patch.above[1] != 1 || patch.above[2] != 1 || patch.above[3] != 1;
+        patches.have_above = has_above ? patches.have_above | bit : patches.have_above & ~bit;
     }
 
     [[nodiscard]] Place place(int rotor, T x_m, T z_m) const {
@@ -146,6 +150,11 @@ class MapEffect {
         return bilinear(corner, at.s, at.t);
     }
 
+    /// Where no lane has a part from above, it is 1 and need not be interpolated.
+    static SidedFactor<T> sides(const Patches& patches, const Place& at) {
+        return {interpolated(patches.corner, at), patches.have_above != 0 ? interpolated(patches.above, at) : T(1)};
+    }
+
     /// Enters the patches around hubs that have left theirs, given as bits. Those outside the map are in none.
     /// @return the lanes outside
     [[gnu::noinline]] unsigned int move_patches(int rotor, const Place& at, unsigned int elsewhere) {
@@ -169,7 +178,7 @@ class MapEffect {
     [[gnu::noinline]] SidedFactor<T> look_up(int rotor, T x_m, T z_m, const Place& at, unsigned int elsewhere) {
         unsigned int outside = move_patches(rotor, at, elsewhere);
         const Place now = in_patches(rotor, at.u, at.w);
-        SidedFactor<T> result{interpolated(patches_[rotor].corner, now), interpolated(patches_[rotor].above, now)};
+        SidedFactor<T> result = sides(patches_[rotor], now);
         for (; outside != 0; outside &= outside - 1) {
             const int lane = __builtin_ctz(outside);
             const SidedFactor<double> there =

@@ -105,7 +105,7 @@ TEST_CASE("Results stand without their page, and the page of before is gone") {
         words("solve", problem_file("bridge_inspection"), "--variant mp-arm-da --max-iterations 1 --out x");
     REQUIRE(work.run(command).code == 1);  // without a plan every other file is small
     if (has_pages) {
-        const FileSizeLimit limit(work.text("x/report.html").size() - 1);
+        const FileSizeLimit limit(work.text("x/report.html").size() * 9 / 10);  // its times have other digits next time
         const Result result = work.run(command);
         CHECK(result.code == 1);
         CHECK_THAT(result.out, Catch::StartsWith("No solution within the limits"));
