@@ -42,6 +42,12 @@ const AeroSettings& checked(const AeroSettings& settings, double radius_m) {
     std::vector<KeyError> errors;
     inspect(settings.ground, "aero.ground", errors);
     inspect(settings.ceiling, "aero.ceiling", errors);
+    for (const auto& [loss, key] : {std::pair(settings.tilt_loss.ground, "aero.ground.tilt_loss"),
+                                    std::pair(settings.tilt_loss.ceiling, "aero.ceiling.tilt_loss")}) {
+        if (!is_at_least(loss, 0)) {
+            errors.push_back({key, "must be a finite number of at least 0"});
+        }
+    }
     if (!is_at_least(settings.max_factor, 1)) {
         errors.push_back({"aero.max_factor", "must be a finite number of at least 1"});
     }

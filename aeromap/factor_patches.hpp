@@ -58,8 +58,8 @@ class FactorPatches {
     std::vector<std::int32_t> nodes_;
     std::size_t blocks_ = 0;
     std::vector<Values> values_;
-    std::unordered_map<std::uint64_t, SidedFactor<double>>
-        known_;  ///< K at points of the lattice; forgotten when they grow many
+    /// K at points of the lattice; forgotten when they grow many.
+    std::unordered_map<std::uint64_t, SidedFactor<double>> known_;
 };
 
 }  // namespace downwash

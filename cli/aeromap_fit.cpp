@@ -245,7 +245,18 @@ ExitCode run(const FitArguments& given) {
     for (const std::string& text : given.fixed) {
         options.fixed.push_back(named_number("--fix", text));
     }
-    const Measurements measurements = given.data.read();
+    Measurements measurements = given.data.read();
+    const std::size_t tilted =
+        std::erase_if(measurements.points, [](const Measurement& point) { return point.tilt_deg != 0; });
+    if (measurements.points.empty()) {
+        throw UsageError(
+            "{} has measurements of tilted rotors only, and the parameters of models are those of level ones",
+            given.data.file);
+    }
+    if (tilted > 0) {
+        print_error(
+            fmt::format("downwash: {} measurements of tilted rotors are left out; --tilt-loss fits those\n", tilted));
+    }
     if (given.data.surface.empty() && measurements.entries("surface").size() > 1) {
         print_error(
             fmt::format("downwash: {} holds several surfaces, and all are fitted together; --surface selects one\n",

@@ -17,8 +17,7 @@ namespace {
 
 constexpr char data_description[] =
     "measurements as CSV: `#` comments, a header with z_over_r and thrust_ratio and optionally surface, source, "
-    "tilt_deg "
-    "and sigma, then rows";
+    "tilt_deg and sigma, then rows";
 
 /// The points with an entry in a column; all without one.
 Measurements selected(const Measurements& measurements, const std::string& file, const char* column,

@@ -138,7 +138,8 @@ TEST_CASE("Settings out of their range and a table without values lead to every 
     settings.ceiling.parameters[0] = 0;
     settings.ground = EffectModel::he;
     settings.ground.parameters[1] = std::numeric_limits<double>::quiet_NaN();
-    CHECK(test::errors_of([&] { return DirectEffect(scene_of({}), settings, 0); }).size() == 5);
+    settings.tilt_loss = {-1, std::numeric_limits<double>::infinity()};
+    CHECK(test::errors_of([&] { return DirectEffect(scene_of({}), settings, 0); }).size() == 7);
 }
 
 TEST_CASE("The fountain is averaged over the discs of all rotors") {

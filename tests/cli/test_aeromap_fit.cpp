@@ -198,3 +198,12 @@ TEST_CASE("A comparison of several files says how far all of them scatter about 
     CHECK(has_default);
     CHECK_THAT(work.run("aeromap compare", measured, tilted).out, Contains("+- 0.45"));
 }
+
+TEST_CASE("A model is fitted to level rotors, whatever else the file holds") {
+    const Workspace work;
+    const Result result = succeeded(work.run("aeromap fit", tilted, "--model he --json"));
+    CHECK_THAT(result.err, Contains("53 measurements of tilted rotors are left out; --tilt-loss fits those"));
+    CHECK(work.json("aeromap fit", tilted, "--model he --source bench_coplanar").at("n") == 9);
+    CHECK_THAT(result.out, Contains("\"n\": 9"));
+    check_rejected(work.run("aeromap fit", tilted, "--model he --source bench_face_to_face"), "tilted rotors only");
+}
