@@ -32,6 +32,7 @@ class DOWNWASH_EXPORT VolumeMap {
  public:
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
     /// left
+    /// @param effect of a multirotor model: it is that of a vehicle at one heading (see neighbours_of)
     /// @param threads at least 1; the bytes do not depend on it   @param on_progress see run_parallel
     /// @throws InputError if the block is empty or not finite, or needs more than max_volume_boxes
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
