@@ -6,6 +6,7 @@
 
 #include "downwash/effects/sided_factor.hpp"
 #include "downwash/effects/surface_effect.hpp"
+#include "downwash/effects/wall_effect.hpp"
 
 namespace downwash {
 
@@ -17,6 +18,7 @@ struct AeroSettings {
     SurfaceEffect ground{EffectModel::cheeseman_bennett};  ///< surfaces below a rotor
     SurfaceEffect ceiling{EffectModel::sanchez_cuevas};    ///< surfaces above a rotor
     TiltLoss tilt_loss{default_ground_tilt_loss, 0};       ///< not of a given map, which is taken as it is
+    WallEffect wall;                                       ///< surfaces beside a vehicle; none by default
     std::optional<std::string> map_file;                   ///< the file of `map`
     std::shared_ptr<const FactorGrid> map;                 ///< K given as a grid, in place of both models; empty: none
     double max_factor = 2.0;                               ///< cap of each side and of their superposition, >= 1

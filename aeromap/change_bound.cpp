@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
-    if (effect.settings().map) {
+    if (effect.settings().map || effect.is_of_walls()) {
         return {0, infinity};
     }
     const Scene& scene = effect.scene();

@@ -48,6 +48,15 @@ const AeroSettings& checked(const AeroSettings& settings, double radius_m) {
             errors.push_back({key, "must be a finite number of at least 0"});
         }
     }
+    if (!(settings.wall.decay_radii > 0) || !std::isfinite(settings.wall.decay_radii)) {
+        errors.push_back({"aero.wall.decay_radii", "must be a finite number above 0"});
+    }
+    for (const auto& [share, key] :
+         {std::pair(settings.wall.force, "aero.wall.force"), std::pair(settings.wall.moment, "aero.wall.moment")}) {
+        if (!std::isfinite(share)) {
+            errors.push_back({key, "must be a finite number"});
+        }
+    }
     if (!is_at_least(settings.max_factor, 1)) {
         errors.push_back({"aero.max_factor", "must be a finite number of at least 1"});
     }
@@ -119,6 +128,35 @@ DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const Ae
     return effect;
 }
 
+DirectEffect DirectEffect::walls(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                 double rotor_radius_m, double reach_m, double heading_rad) {
+    AeroSettings of_walls = settings;
+    of_walls.ground = of_walls.ceiling = EffectModel::none;
+    of_walls.map = nullptr;
+    DirectEffect effect(std::move(scene), of_walls, rotor_radius_m);
+    effect.min_clearance_m_ = -std::numeric_limits<double>::infinity();
+    effect.wall_view_ = {reach_m, {std::cos(heading_rad), std::sin(heading_rad), 0}};
+    return effect;
+}
+
+double DirectEffect::wall_nearness(const Vector3& center_m) const {
+    const auto distance_m = [&](double ahead_m) {
+        const Vector3& ahead = wall_view_->ahead;
+        return horizontal_clearance_m(
+            *scene_, {center_m[0] + ahead_m * ahead[0], center_m[1] + ahead_m * ahead[1], center_m[2]});
+    };
+    const double here_m = distance_m(0);
+    if (!std::isfinite(here_m)) {
+        return 0;
+    }
+    // The distance falls as fast as the way leads towards the wall. Between two walls this step makes it change sides
+    // without a jump.
+    constexpr double step_m = 0.02;
+    const double towards = lane::clamp((distance_m(-step_m) - distance_m(step_m)) / (2 * step_m), -1.0, 1.0);
+    const double gap_m = std::max(0.0, here_m - wall_view_->reach_m - rotor_radius_m_);
+    return towards * std::exp(-gap_m / (settings_.wall.decay_radii * rotor_radius_m_));
+}
+
 double DirectEffect::one_sided(Side side, const Vector3& hub_m) const {
     const bool is_below = side == Side::below;
     const EffectCurve& curve = is_below ? ground_ : ceiling_;
@@ -149,6 +187,10 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
     if (!settings_.enabled) {
         return factors;
     }
+    if (wall_view_) {
+        factors.total = is_finite(hub_m) ? 1 + wall_nearness(hub_m) : 1;
+        return factors;
+    }
     if (settings_.map) {
         constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
         return {unknown, unknown, settings_.map->contains(hub_m) ? settings_.map->factor(hub_m) : 1.0};
@@ -161,7 +203,7 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
 
 SidedFactor<double> DirectEffect::sided_factor(const Vector3& hub_m) const {
     const Factors k = factors(hub_m);
-    return {k.total, settings_.map ? k.total : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
+    return {k.total, settings_.map || wall_view_ ? k.total : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
 }
 
 double DirectEffect::largest_change_from_below(double beyond_radii) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
@@ -31,6 +32,13 @@ class DOWNWASH_EXPORT DirectEffect {
     /// @param neighbours of any of its rotors   @pre settings.ground.model is multirotor_body
     [[nodiscard]] static DirectEffect fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                                double rotor_radius_m, const RotorNeighbours& neighbours);
+
+    /// How near walls are: 1 + cos(angle) exp(-gap / decay), with the angle between the plane of motion and the nearest
+    /// wall at the height of the centre between the rotors, and the gap between that wall and the nearest rotor's edge
+    /// (docs/model.md 4.8). Above 1 where the wall is ahead. Defined everywhere, so that everything is flyable.
+    /// @param reach_m from that centre to the hub of the foremost rotor, >= 0   @param heading_rad of the plane
+    [[nodiscard]] static DirectEffect walls(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                            double rotor_radius_m, double reach_m, double heading_rad);
 
     /// The two one-sided factors and their superposition at a rotor hub.
     struct Factors {
@@ -70,12 +78,23 @@ class DOWNWASH_EXPORT DirectEffect {
     /// K of wide flat surfaces below and above; not used if the settings contain a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
+    /// Whether this is how near walls are, see walls(), and no thrust ratio.
+    [[nodiscard]] bool is_of_walls() const noexcept { return wall_view_.has_value(); }
+    /// Of walls(): from the centre between the rotors to the hub of the foremost one. @pre is_of_walls()
+    [[nodiscard]] double wall_reach_m() const noexcept { return wall_view_->reach_m; }
     /// Upper bounds of |K - 1| where no surface below, or above, is nearer than a distance in radii.
     [[nodiscard]] double largest_change_from_below(double beyond_radii) const;
     [[nodiscard]] double largest_change_from_above(double beyond_radii) const;
 
  private:
+    /// Where to look for walls.
+    struct WallView {
+        double reach_m;
+        Vector3 ahead;  ///< unit vector along the plane of motion, level
+    };
+
     [[nodiscard]] double one_sided(Side side, const Vector3& hub_m) const;
+    [[nodiscard]] double wall_nearness(const Vector3& center_m) const;
 
     std::shared_ptr<const Scene> scene_;
     AeroSettings settings_;
@@ -86,6 +105,7 @@ class DOWNWASH_EXPORT DirectEffect {
     std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;        ///< null for curves that have none
     std::shared_ptr<const RotorImages> ground_images_, ceiling_images_;  ///< of the multirotor models
     std::vector<Vector3> fountain_hubs_m_;                               ///< from the centre, level; empty for a rotor
+    std::optional<WallView> wall_view_;
     std::shared_ptr<const Footprints> footprints_;
 };
 

@@ -230,11 +230,14 @@ double longest_cell_side_m(const DirectEffect& effect) {
 }
 
 double shortest_turn_m(const DirectEffect& effect) {
-    constexpr double turn_radii = 0.08;  // of tables and fountains
+    constexpr double turn_radii = 0.08;  // of tables, fountains and walls
     if (const auto& map = effect.settings().map) {
         const double x_m = map->x().step_m();
         const double y_m = map->is_planar() ? x_m : map->y().step_m();
         return 0.5 * std::min({x_m, y_m, map->z().step_m()});
+    }
+    if (effect.is_of_walls()) {
+        return turn_radii * effect.rotor_radius_m();
     }
     return effect.ground().falls_with_distance() && effect.ceiling().falls_with_distance()
                ? std::numeric_limits<double>::infinity()

@@ -73,7 +73,7 @@ void add_scene(Description& description, const Scene& scene) {
 }
 
 void add_effect(Description& description, const SurfaceEffect& effect) {
-    const auto& [model, parameters, file, table, d_over_r] = effect;
+    const auto& [model, parameters, file, table, pipe_radii, d_over_r] = effect;
     description.add(info(model).name).add_all(parameters);
     if (table) {
         description.add(digest_of(*table));
@@ -123,7 +123,7 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
     const Scene* described = nullptr;
     for (const auto& [effect, lateral_m] : layers) {
         // The tilt comes in flight, behind the map.
-        const auto& [enabled, ground, ceiling, tilt_loss, map_file, map, max_factor, min_distance_radii, grid_m] =
+        const auto& [enabled, ground, ceiling, tilt_loss, wall, map_file, map, max_factor, min_distance_radii, grid_m] =
             effect->settings();
         description.add("layer").add(lateral_m).add(enabled ? "on" : "off").add(grid_m);
         description.add(effect->rotor_radius_m()).add(effect->min_clearance_m());
@@ -134,6 +134,9 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
         add_curve(description, effect->ceiling());
         if (map) {
             add_grid(description, *map);
+        }
+        if (effect->is_of_walls()) {
+            description.add("walls").add(wall.decay_radii).add(effect->wall_reach_m());
         }
         if (&effect->scene() == described) {
             description.add("same scene");

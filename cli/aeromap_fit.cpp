@@ -15,6 +15,7 @@
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/fitting/effect_fit.hpp"
 #include "downwash/fitting/tilt_fit.hpp"
+#include "downwash/fitting/wall_fit.hpp"
 #include "downwash/report/curve_figure.hpp"
 
 namespace downwash::cli {
@@ -24,7 +25,7 @@ struct FitArguments {
     MeasuredData data;
     std::string model;
     std::vector<std::string> fixed;
-    bool of_tilt = false, is_weighted = false, as_json = false;
+    bool of_tilt = false, of_walls = false, is_weighted = false, as_json = false;
     std::string picture;
 };
 
@@ -193,10 +194,15 @@ Json score_json(const TiltScore& score) {
     return {{"tilt_loss", score.tilt_loss}, {"rmse", score.rmse}, {"max_error", score.max_error}, {"n", score.points}};
 }
 
-ExitCode fit_tilt(const FitArguments& given) {
+/// Refuses what goes with a model only.
+void expect_no_model(const FitArguments& given, std::string_view instead) {
     if (!given.model.empty() || !given.fixed.empty() || given.is_weighted || !given.picture.empty()) {
-        throw UsageError("--tilt-loss fits no model: expected neither --model nor --fix, --weighted or --out");
+        throw UsageError("{} fits no model: expected neither --model nor --fix, --weighted or --out", instead);
     }
+}
+
+ExitCode fit_tilt(const FitArguments& given) {
+    expect_no_model(given, "--tilt-loss");
     const TiltFit fit = fit_tilt_loss(given.data.read());
     if (given.as_json) {
         Json json = score_json(fit.fitted);
@@ -221,12 +227,56 @@ ExitCode fit_tilt(const FitArguments& given) {
     return ExitCode::done;
 }
 
+Json wall_json(const WallFit& fit) {
+    const auto share = [](const WallShare& of) {
+        return Json{{"value", of.value},
+                    {"standard_error", json_of(of.standard_error)},
+                    {"rmse", of.rmse},
+                    {"largest", of.largest}};
+    };
+    return {{"force", share(fit.force)},
+            {"moment", share(fit.moment)},
+            {"decay_radii", fit.effect.decay_radii},
+            {"n", fit.points}};
+}
+
+ExitCode fit_wall(const FitArguments& given) {
+    expect_no_model(given, "--walls");
+    const MeasuredData& data = given.data;
+    if (given.of_tilt || !data.surface.empty() || !data.source.empty() || data.from || data.to || data.rotor_spacing) {
+        throw UsageError("--walls takes all of DATA: expected neither --tilt-loss nor a selection");
+    }
+    const WallFit fit = fit_walls(read_wall_measurements(given.data.file));
+    if (given.as_json) {
+        Json json = wall_json(fit);
+        json["by_facility"] = Json::object();
+        for (const auto& [facility, own] : fit.by_facility) {
+            json["by_facility"][facility] = wall_json(own);
+        }
+        print_json(json);
+        return ExitCode::done;
+    }
+    const auto share = [](const WallShare& of) {
+        return fmt::format("{:+.4f}{}, RMSE {:.4f}, largest measured {:.4f}", of.value,
+                           of.standard_error ? fmt::format(" +- {:.4f}", *of.standard_error) : "", of.rmse, of.largest);
+    };
+    fmt::print("{} measurements beside a wall\ndecay_radii = {:.2f}\n", fit.points, fit.effect.decay_radii);
+    fmt::print("force  = {}\nmoment = {}\n", share(fit.force), share(fit.moment));
+    for (const auto& [facility, own] : fit.by_facility) {
+        fmt::print("{} alone: force {}; moment {}\n", facility, share(own.force), share(own.moment));
+    }
+    return ExitCode::done;
+}
+
 ExitCode run(const FitArguments& given) {
+    if (given.of_walls) {
+        return fit_wall(given);
+    }
     if (given.of_tilt) {
         return fit_tilt(given);
     }
     if (given.model.empty()) {
-        throw UsageError("nothing to fit: expected --model NAME or --tilt-loss");
+        throw UsageError("nothing to fit: expected --model NAME, --tilt-loss or --walls");
     }
     const EffectModelInfo& known = model_named(given.model);
     PictureSettings settings;
@@ -284,6 +334,7 @@ void add_aeromap_fit(CLI::App& aeromap, Action& action) {
     offer_models(*add_value(command, "--model NAME", given.model, "name of a model as in a problem file"));
     command.add_flag("--tilt-loss", given.of_tilt,
                      "fit the tilt loss instead of a model, beside the measurements without tilt");
+    command.add_flag("--walls", given.of_walls, "fit force and moment beside a wall instead of a model");
     add_value(command, "--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated")
         ->expected(1)
         ->take_all();

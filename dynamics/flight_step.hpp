@@ -30,11 +30,13 @@ void allocate(const BasicPlantModel<P>& model, T total_thrust_n, T pitch_torque_
     }
 }
 
-/// Total thrust along b3 [N] and pitch torque [N m] of rotors in aerodynamic effect (thesis figure C.3).
+/// Total thrust along b3 [N] and pitch torque [N m] of rotors in aerodynamic effect (thesis figure C.3), and the
+/// horizontal force along x [N] by which walls push.
 template <class T>
 struct RotorWrench {
     T thrust_n;
     T pitch_torque_nm;
+    T wall_push_n = T(0);
 };
 
 /// The earliest rotor that is known to have the same thrust ratio K as rotor i, perhaps rotor i itself. A factor that
@@ -58,6 +60,16 @@ T thrust_ratio(Factor& factor, int rotor, const PlanePoint<T>& hub, const Attitu
     }
 }
 
+/// How near walls are, from -1 (the vehicle touches one behind it) to 1 (ahead).
+template <class T, class P, class Factor>
+T wall_nearness(const BasicPlantModel<P>& model, Factor& factor, const PlanePoint<T>& center) {
+    if constexpr (requires { factor.wall_nearness(model.walls(), center.x, center.z); }) {
+        return factor.wall_nearness(model.walls(), center.x, center.z);
+    } else {
+        return factor(model.walls(), center.x, center.z) - T(1);
+    }
+}
+
 /// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
 /// says so by `thrust_scale(rotor)`.
 template <class T, class Factor>
@@ -70,10 +82,12 @@ T free_air_thrust(const Factor& factor, int rotor, T nominal_n) {
 }
 
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
-/// centre between them (docs/model.md 4.3).
+/// centre between them (docs/model.md 4.3). Walls add a horizontal force through the centre of mass and a moment
+/// (4.8).
 /// @param thrust_n of every rotor in free air with its nominal thrust coefficient [N]: a measure of its speed
-/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body(); it
-/// may take the sine of the pitch behind the place, and know a wind and thrust coefficients too
+/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body(), or
+/// for walls() one more than how near they are; it may take the sine of the pitch behind the place, and know a wind and
+/// thrust coefficients too
 template <class T, class Factor, class P>
 RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m,
                             const T thrust_n[max_rotors], Factor&& factor) {
@@ -90,16 +104,23 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
         wrench.thrust_n = wrench.thrust_n + acting_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
     }
-    if (model.has_fountain) {
+    if (model.has_fountain || model.has_walls) {
         const int body = model.body();
         const PlanePoint<T> center = rotor_position(model, a, x_m, z_m, body);
         T free_air_n(0);
         for (int i = 0; i < model.rotor_count; ++i) {
             free_air_n = free_air_n + free_air_thrust(factor, i, thrust_n[i]);
         }
-        const T push_n = (thrust_ratio(factor, body, center, a) - T(1)) * free_air_n;
-        wrench.thrust_n = wrench.thrust_n + push_n;
-        wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[body]) * push_n;
+        if (model.has_fountain) {
+            const T push_n = (thrust_ratio(factor, body, center, a) - T(1)) * free_air_n;
+            wrench.thrust_n = wrench.thrust_n + push_n;
+            wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[body]) * push_n;
+        }
+        if (model.has_walls) {
+            const T acting_n = wall_nearness(model, factor, center) * free_air_n;
+            wrench.wall_push_n = T(-model.wall_force) * acting_n;
+            wrench.pitch_torque_nm = wrench.pitch_torque_nm + T(model.wall_moment_m) * acting_n;
+        }
     }
     return wrench;
 }
@@ -127,6 +148,9 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
     T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
                   joint_torque_nm};
+    if (model.has_walls) {
+        force[0] = force[0] + wrench.wall_push_n;
+    }
     if constexpr (requires { factor.wind(); }) {
         if (model.has_drag) {
             add_drag(model, a, u, factor.wind(), force);

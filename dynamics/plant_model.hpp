@@ -13,10 +13,16 @@ struct PlantStructure {
     int rotor_count;
     /// Near the ground the air that rises between the rotors pushes the body at their centre (thesis (2.17)).
     bool has_fountain;
+    bool has_walls;      ///< walls beside the vehicle push it and turn it
     bool has_rotor_lag;  ///< without it thrust follows the command at once
     bool has_drag;       ///< of the multirotor or of the arm
+    /// What a wall does that a rotor touches, over the free-air thrust: a force away from it, and a moment [m] by which
+    /// the side towards it sinks.
+    double wall_force, wall_moment_m;
     /// The number of the body, behind those of the rotors: its hub is the centre between all of theirs.
     [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
+    /// The number under which a factor says how near walls are, behind that of the body and at the same place.
+    [[nodiscard, gnu::always_inline]] constexpr int walls() const noexcept { return rotor_count + 1; }
 };
 
 /// What may differ from lane to lane. Nothing but T: see base/numbers.hpp.

@@ -42,7 +42,10 @@ struct DOWNWASH_EXPORT SurfaceEffect {
     std::array<double, max_model_parameters> parameters{};  ///< in the order of info(model).parameters
     // Of the model `table` only:
     std::string file;                          ///< where the table comes from
-    std::shared_ptr<const EffectTable> table;  ///< never empty while the model is `table`
+    std::shared_ptr<const EffectTable> table;  ///< K of points; never empty while the model is `table`
+    /// The file holds K of whole discs over a pipe of this radius in rotor radii, and `table` is points_of_pipe() of
+    /// it. Empty: over a wide flat surface.
+    std::optional<double> pipe_radii;
     /// The second coordinate of a table over (z/R, d/R): a fixed value, or the distance to the nearest wall, measured
     /// in the rotor plane from the hub.
     std::optional<double> d_over_r;

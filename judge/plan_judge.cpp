@@ -36,6 +36,8 @@ struct PlanJudge::Setting {
         if (of.aero.enabled) {
             effects.all = make_flight_model(of);
             effects.has_fountain = !of.aero.map && of.aero.ground.model == EffectModel::multirotor_body;
+            effects.wall_force = of.aero.wall.force;
+            effects.wall_moment_m = of.aero.wall.moment * of.robot.rotors.radius_m;
             if (!of.aero.map) {
                 effects.ground_tilt_loss = of.aero.tilt_loss.ground;
                 effects.ceiling_tilt_loss = of.aero.tilt_loss.ceiling;

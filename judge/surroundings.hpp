@@ -17,6 +17,7 @@ struct SurfaceEffects {
     bool has_fountain = false;               ///< the ground model pushes the body (docs/model.md 4.3)
     double ground_tilt_loss = 0;             ///< docs/model.md 4.7
     double ceiling_tilt_loss = 0;
+    double wall_force = 0, wall_moment_m = 0;  ///< docs/model.md 4.8; over the thrust; 0: walls do nothing
 };
 
 /// The effects in one world.
@@ -46,6 +47,21 @@ class Surroundings {
         const Planar seen = center_m - Planar{world_.scene_x_m, world_.scene_z_m};
         const double push = effects_->all->direct_factor(body, seen.x, seen.z) - 1;
         return (1 + world_.ground_scale) * faded(push, effects_->ground_tilt_loss, pitch_rad);
+    }
+
+    /// What walls do to the vehicle.
+    struct WallLoad {
+        double force_x_n = 0, moment_nm = 0;
+    };
+    /// @param layer its number, behind that of the body   @param center_m between the rotors   @param thrust_n of all
+    /// rotors in free air
+    [[nodiscard]] WallLoad walls(int layer, Planar center_m, double thrust_n) const {
+        if (effects_ == nullptr || (effects_->wall_force == 0 && effects_->wall_moment_m == 0)) {
+            return {};
+        }
+        const Planar seen = center_m - Planar{world_.scene_x_m, world_.scene_z_m};
+        const double ahead = effects_->all->direct_factor(layer, seen.x, seen.z) - 1;
+        return {-ahead * effects_->wall_force * thrust_n, ahead * effects_->wall_moment_m * thrust_n};
     }
 
  private:

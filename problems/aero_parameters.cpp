@@ -1,6 +1,7 @@
 #include "downwash/problems/aero_parameters.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,7 @@
 #include "downwash/base/sha256.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/effects/effect_table.hpp"
+#include "downwash/effects/pipe_table.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 
 namespace downwash {
@@ -63,16 +65,35 @@ void add_model(Rows& rows, const std::string& path, const std::vector<EffectMode
     }
 }
 
+/// The table in a file, as K of points.
+std::shared_ptr<const EffectTable> points_in(const std::string& file, const std::optional<double>& pipe_radii) {
+    auto table = read_effect_table(file);
+    return pipe_radii ? std::make_shared<const EffectTable>(points_of_pipe(*table, *pipe_radii)) : table;
+}
+
 template <class Effect>
 void add_table(Rows& rows, const std::string& path, Effect effect) {
     const auto is_table = [effect](const Problem& p, std::size_t) { return effect(p).model == EffectModel::table; };
-    rows.push_back(
-        parameters::file<Problem>(
-            path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
-            [effect](auto& p) -> auto& { return effect(p).file; },
-            [effect](Problem& p, std::size_t, const std::string& name) { effect(p).table = read_effect_table(name); },
-            [effect](const Problem& p, std::size_t) { return digest_of(*effect(p).table); })
-            .only("with the model table", is_table));
+    rows.push_back(parameters::file<Problem>(
+                       path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
+                       [effect](auto& p) -> auto& { return effect(p).file; },
+                       [effect](Problem& p, std::size_t, const std::string& name) {
+                           effect(p).table = points_in(name, effect(p).pipe_radii);
+                       },
+                       [effect](const Problem& p, std::size_t) { return digest_of(*effect(p).table); })
+                       .only("with the model table", is_table));
+    auto pipe = number(
+        path + ".pipe_radii",
+        "the table was measured with the hub over the axis of a pipe of this radius, in rotor radii, and holds for the "
+        "whole disc; null: over a wide, flat surface",
+        [effect](auto& p) -> auto& { return effect(p).pipe_radii; });
+    pipe.set = [effect, keep = pipe.set](Problem& p, std::size_t i, const Value& value) {
+        keep(p, i, value);
+        if (effect(p).table) {
+            effect(p).table = points_in(effect(p).file, effect(p).pipe_radii);
+        }
+    };
+    rows.push_back(std::move(pipe).at_least(0.02).at_most(100).only("with the model table", is_table));
     rows.push_back(number(
                        path + ".d_over_r",
                        "second distance of a table over two; null: the distance to the nearest wall at rotor height",
@@ -133,6 +154,26 @@ void add_aero_rows(Rows& rows) {
     add_surface(
         rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; },
         [](auto& p) -> auto& { return p.aero.tilt_loss.ceiling; });
+    rows.push_back(parameters::group<Problem>(
+        "aero.wall",
+        "what walls beside the vehicle do to it, as shares of the thrust; they fade with the gap to the "
+        "nearest rotor's edge"));
+    rows.push_back(number(
+                       "aero.wall.force", "horizontal force where a rotor touches the wall, positive: away from it",
+                       [](auto& p) -> auto& { return p.aero.wall.force; })
+                       .at_least(-0.2)
+                       .at_most(0.2));
+    rows.push_back(number(
+                       "aero.wall.moment",
+                       "pitch moment there, over thrust and rotor radius, positive: the side towards the wall sinks",
+                       [](auto& p) -> auto& { return p.aero.wall.moment; })
+                       .at_least(-0.5)
+                       .at_most(0.5));
+    rows.push_back(number(
+                       "aero.wall.decay_radii", "gap in rotor radii over which both fall to 1/e",
+                       [](auto& p) -> auto& { return p.aero.wall.decay_radii; })
+                       .at_least(0.05)
+                       .at_most(20));
     rows.push_back(
         number(
             "aero.max_factor",

@@ -40,7 +40,7 @@ class LinearEffect {
     struct Tangent {
         double x_m, z_m, factor, slope_x_1_m, slope_z_1_m;
     };
-    Tangent tangents_[max_rotors + 1] = {};  // one more for what acts on the body
+    Tangent tangents_[max_rotors + 2] = {};  // two more for what acts on the body
 };
 
 }  // namespace downwash::simulation

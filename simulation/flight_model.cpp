@@ -14,6 +14,10 @@ bool has_fountain(const AeroSettings& aero) {
     return aero.enabled && !aero.map && aero.ground.model == EffectModel::multirotor_body;
 }
 
+bool has_walls(const AeroSettings& aero) {
+    return aero.enabled && aero.wall.is_any();
+}
+
 bool sees_neighbours(const AeroSettings& aero) {
     return is_multirotor(aero.ground.model) || is_multirotor(aero.ceiling.model);
 }
@@ -29,6 +33,11 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
             1 / robot.controller.rate_hz, aero.map ? TiltLoss{} : aero.tilt_loss},
       nominal_world_(make_world(robot, {})),
       collisions_(scene, plane, robot.shape()) {
+    if (has_walls(aero)) {
+        tick_.plant.has_walls = true;
+        tick_.plant.wall_force = aero.wall.force;
+        tick_.plant.wall_moment_m = aero.wall.moment * robot.rotors.radius_m;
+    }
     EffectLayers effects = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
     layers_ = std::move(effects.layers);
     std::copy(effects.layer_of.begin(), effects.layer_of.end(), rotor_layer_);
@@ -79,14 +88,26 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
         }
         find_or_add(known->second, hubs_m[i][1]);
     }
-    if (has_fountain(aero)) {
-        double center_y_m = 0;
-        for (const Vector3& hub_m : hubs_m) {
-            center_y_m += hub_m[1] / static_cast<double>(hubs_m.size());
+    Vector3 center_m{0, 0, 0};
+    for (const Vector3& hub_m : hubs_m) {
+        for (const std::size_t axis : {0U, 1U}) {
+            center_m[axis] += hub_m[axis] / static_cast<double>(hubs_m.size());
         }
+    }
+    if (has_fountain(aero)) {
         find_or_add(std::make_shared<const DirectEffect>(DirectEffect::fountain(
                         scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m, heading_rad))),
-                    center_y_m);
+                    center_m[1]);
+    }
+    if (has_walls(aero)) {
+        all.layer_of.resize(hubs_m.size() + 1, 0);
+        double reach_m = 0;
+        for (const Vector3& hub_m : hubs_m) {
+            reach_m = std::max(reach_m, std::abs(hub_m[0] - center_m[0]));
+        }
+        find_or_add(std::make_shared<const DirectEffect>(
+                        DirectEffect::walls(scene, aero, rotors.radius_m, reach_m, heading_rad)),
+                    center_m[1]);
     }
     return all;
 }

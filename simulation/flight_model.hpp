@@ -36,7 +36,7 @@ class DOWNWASH_EXPORT FlightModel {
         return robot_.controller.delay_s == 0 && !tick_.plant.has_drag;
     }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
-    /// The surface effect on rotor i, or on tick().plant.body() (see rotor_wrench).
+    /// The surface effect on rotor i, or on tick().plant.body(), or that of walls() (see rotor_wrench).
     [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
     /// The effect with its place beside the plane, as a map stores it.
     [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers_[rotor_layer_[rotor]]; }
@@ -77,7 +77,7 @@ class DOWNWASH_EXPORT FlightModel {
     FlownWorld nominal_world_;
     CollisionChecker collisions_;
     std::vector<MapLayer> layers_;
-    std::size_t rotor_layer_[max_rotors + 1] = {};
+    std::size_t rotor_layer_[max_rotors + 2] = {};
 };
 
 /// The world of a flight.
@@ -103,14 +103,14 @@ struct FlightWorld {
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
 [[nodiscard]] DOWNWASH_EXPORT Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
 
-/// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle and, where the ground
-/// model has a fountain, its body.
+/// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle, of its body where the
+/// ground model has a fountain, and of walls where they act.
 struct EffectLayers {
     std::vector<MapLayer> layers;
-    std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body, if the fountain pushes it
+    std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body (0 without a fountain); then of walls
 };
 /// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
-/// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours
+/// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours, and for walls
 [[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
                                                          const std::shared_ptr<const Scene>& scene,
                                                          const AeroSettings& aero, double heading_rad = 0);

@@ -11,6 +11,9 @@ RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
         maps.view[i] = map.view(model.rotor_layer(i));
     }
+    if (plant.has_walls) {
+        maps.view[plant.walls()] = map.view(model.rotor_layer(plant.walls()));
+    }
     for (int i = 0; i < plant.rotor_count; ++i) {
         maps.same_as[i] = i;
         for (int j = i; j-- > 0;) {

@@ -36,7 +36,7 @@ struct NoEffect {
 struct RotorMaps {
     const FlightModel* model;
     const AeroMap* map;
-    MapView view[max_rotors + 1];  ///< per rotor; then of the body, where there is a fountain
+    MapView view[max_rotors + 2];  ///< per rotor; then of the body, where there is a fountain; then of walls
     /// The earliest rotor, or the rotor itself, that shares its look-up: rotors one behind the other as seen along the
     /// lateral axis, where their layers hold the same.
     int same_as[max_rotors];
@@ -190,7 +190,7 @@ class MapEffect {
     }
 
     const RotorMaps& maps_;
-    Patches patches_[max_rotors + 1];
+    Patches patches_[max_rotors + 2];
 };
 
 }  // namespace downwash::simulation

@@ -114,6 +114,8 @@ class TiltedEffect {
                                    : effect_(rotor, x_m, z_m);
     }
     [[nodiscard]] int same_as(int rotor) const { return dynamics::rotor_with_factor_of(effect_, rotor); }
+    /// How near walls are, whatever the tilt.
+    T wall_nearness(int walls, T x_m, T z_m) const { return effect_(walls, x_m, z_m) - T(1); }
 
  private:
     Effect& effect_;
@@ -137,6 +139,10 @@ class WorldSurroundings {
                (world_.ground_scale * (k.all - T(1)) + (world_.ceiling_scale - world_.ground_scale) * (k.above - T(1)));
     }
     [[nodiscard]] int same_as(int rotor) const { return dynamics::rotor_with_factor_of(effect_, rotor); }
+    /// How near walls are. Worlds move them, and change nothing else of them.
+    T wall_nearness(int walls, T x_m, T z_m) const {
+        return effect_(walls, x_m - world_.scene_x_m, z_m - world_.scene_z_m) - T(1);
+    }
     [[nodiscard]] dynamics::PlanePoint<T> wind() const { return wind_; }
     [[nodiscard]] T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
 

@@ -26,6 +26,7 @@ plot figure_2_9.svg --model cheeseman-bennett he hayden li --data "$data" --surf
 plot figure_2_12.svg --model cheeseman-bennett multirotor-images multirotor-body --rotor-spacing 2.5 \
     --data "$data" --surface ground --z-over-r 0.3 4
 tilted=../../effects/measurements/tilted_rotors_ground.csv
+walls=../../effects/measurements/walls/wall_effect.csv
 plot figure_2_20.svg --model cheeseman-bennett --tilt-deg 0 10 30 --data "$tilted" --z-over-r 0.5 4
 plot figure_2_15.svg --model sanchez-cuevas momentum-theory fairing-cfd --data "$data" --surface ceiling --z-over-r 0.2 4
 
@@ -77,3 +78,4 @@ replace() { # NAME, new text on standard input
 }
 "$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison
 { echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt
+{ echo "\`\`\`"; "$downwash" aeromap fit "$walls" --walls; echo "\`\`\`"; } | replace walls

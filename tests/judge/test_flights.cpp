@@ -129,6 +129,26 @@ TEST_CASE("The fountain pushes the vehicle in a world as the planner says") {
     }
 }
 
+TEST_CASE("Walls push and turn the vehicle in a world as the planner says") {
+    Problem problem = shipped("box_girder_bay");
+    const Plan plan = plan_of(problem, 100);
+    problem.aero.wall = {0.02, 0.04, 1};
+    const judge::PlanJudge judge(problem);
+    const judge::JudgedFlight beside = judge.fly(plan, {true, std::nullopt});
+    compare(beside, *executed(problem, plan, true, std::nullopt));
+    problem.uncertainty.emplace();
+    const judge::PlanJudge uncertain(problem);
+    for (std::uint64_t index = 0; index < 5; ++index) {
+        CAPTURE(index);
+        const World world = draw_world(*problem.uncertainty, problem.robot, 1, index);
+        compare(uncertain.fly(plan, {true, world}), *executed(problem, plan, true, world));
+    }
+    problem.aero.wall = {};
+    problem.uncertainty.reset();
+    const judge::JudgedFlight without = judge::PlanJudge(problem).fly(plan, {true, std::nullopt});
+    CHECK(std::abs(without.energy_j - beside.energy_j) > 1e-5 * without.energy_j);  // or nothing was compared
+}
+
 TEST_CASE("Straight plans that end in trouble end the same way") {
     Problem problem = ceiling_problem();
     Plan plan;

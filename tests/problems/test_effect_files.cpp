@@ -1,6 +1,7 @@
 #include <string>
 
 #include "downwash/effects/effect_table.hpp"
+#include "downwash/effects/pipe_table.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_writer.hpp"
@@ -117,4 +118,36 @@ TEST_CASE("a grid that does not fit its problem is an error") {
         volume += std::string(node) + ",1.25\n";
     }
     CHECK(errors_with_map(folder, volume) == "sound");
+}
+
+TEST_CASE("a table measured over a pipe is turned into one of points, and read alike whatever the order of its keys") {
+    const TestFolder folder;
+    folder.write("pipe.csv", "z_over_r,factor\n0.4,1.25\n1,1.06\n2,1\n");
+    const Problem problem =
+        folder.read(edited(good_problem, ground, "{model: table, pipe_radii: 0.5, file: pipe.csv}"));
+    REQUIRE(problem.aero.ground.table);
+    CHECK(problem.aero.ground.pipe_radii == 0.5);
+    CHECK(mean_over_pipe(problem.aero.ground.table->at(), 0.5, 0.4) == Approx(1.25).margin(1e-8));
+    CHECK(problem.aero.ground.table->factors()[0] > 1.4);
+    check_written_elsewhere(folder, problem);
+    CHECK_THAT(errors_after(folder, ground, "{model: table, file: pipe.csv, pipe_radii: 0.001}"),
+               Catch::Contains("pipe_radii"));
+    folder.write("strong.csv", "z_over_r,factor\n0.4,60\n1,1.06\n2,1\n");
+    CHECK_THAT(errors_after(folder, ground, "{model: table, file: strong.csv, pipe_radii: 0.1}"),
+               Catch::Contains("is the table of this pipe?"));
+}
+
+TEST_CASE("the shipped tables say what they were made from: K falls below one near two radii beside a wall") {
+    const auto corner = read_effect_table(DOWNWASH_PROBLEMS "/tables/ground_beside_wall.csv");
+    CHECK(corner->at(1.2)(2) < 1);
+    CHECK(corner->at(1.2)(1.2) > 1);
+    for (const double z_over_r : {0.5, 0.8, 1.2, 2.0, 4.0}) {
+        const double images = 1 / (16 * z_over_r * z_over_r);
+        CHECK(corner->at(4)(z_over_r) == Approx(1 / (1 - images)).margin(6e-4));
+    }
+    const auto tandem = read_effect_table(DOWNWASH_PROBLEMS "/tables/tandem_rotors.csv");
+    for (double z_over_r = 0.5; z_over_r < 4; z_over_r += 0.05) {
+        CHECK(tandem->at()(1.5) <= tandem->at()(z_over_r));
+    }
+    CHECK(tandem->at()(0.8) > 1);
 }

@@ -86,12 +86,13 @@ TEST_CASE("edges that fly side by side come out bit for bit as one by one, whate
     CHECK(unaware.count(Rejection::flyable_area) == 0);
 }
 
-TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm limits and unequal rotors") {
+TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, walls, arm limits and unequal rotors") {
     Problem problem = cluttered_problem();
     problem.robot.rotors.time_constant_s = 0.02;
     problem.robot.rotors.positions_m[0][2] = 0.1;
     limit_arm(problem.robot, -2, 2);
     problem.aero.ground = SurfaceEffect(EffectModel::multirotor_body);
+    problem.aero.wall = {0.02, 0.04, 1};
     CHECK(rejections_of_equal_flights(problem, true, rules_of(problem), 100).count(Rejection::none) == 1);
     // So they do where clearance is measured.
     const Problem plain = cluttered_problem();

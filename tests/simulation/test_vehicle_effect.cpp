@@ -4,6 +4,7 @@
 #include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 // The vehicle of the tests: four rotors of R = 0.1905 m at x = +-0.32 m, 0.06 m over its centre of mass; 4.95 kg.
@@ -183,4 +184,39 @@ TEST_CASE("a vehicle is flyable as long as its outermost disc is") {
     const double tilted_x_m = 3 - (1.3 * radius_m + reach_m * std::cos(0.3) + hub_height_m * std::sin(0.3));
     CHECK(is_flyable(*model, {tilted_x_m - 1e-6, 2, 0.3, 0}));
     CHECK_FALSE(is_flyable(*model, {tilted_x_m + 1e-6, 2, 0.3, 0}));
+}
+
+TEST_CASE("A wall pushes a hovering vehicle away and pulls the side towards it down, as its shares of the thrust say") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles = {{"wall", Box{{1, 40, 10}}, {1.5, 0, 2}, {}}};
+    problem.aero.wall = {0.02, 0.04, 0.5};
+    const auto model = make_flight_model(problem);
+    const PlanarPose pose{0.3, 2, 0, -std::acos(-1.0) / 2};
+    // The wall is 0.7 m from the centre: 0.38 m from the nearest hub.
+    const double nearness = std::exp(-(0.7 - reach_m - radius_m) / (0.5 * radius_m));
+    const VehicleEffect effect = vehicle_effect(*model, pose);
+    CHECK(effect.force_factor == Approx(1).margin(1e-12));
+    CHECK(effect.pitch_torque_nm == Approx(0.04 * radius_m * nearness * weight_n).epsilon(1e-4));
+
+    const PlantModel& plant = model->tick().plant;
+    const FlightState state = model->state_at(pose);
+    double command_n[max_rotors];
+    dynamics::allocate(plant, weight_n, 0.0, command_n);
+    const auto motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
+    double with[4];
+    double without[4];
+    const simulation::DirectFactor factor{*model};
+    dynamics::accelerations(plant, state.plant.q, state.plant.u, motion, command_n, 0.0, factor, with);
+    PlantModel free = plant;
+    free.has_walls = false;
+    dynamics::accelerations(free, state.plant.q, state.plant.u, motion, command_n, 0.0, factor, without);
+    // The generalised forces that make the difference: the push along x, the moment on the pitch alone.
+    double more[4];
+    double less[4];
+    dynamics::inverse_dynamics(plant, motion.equations, with, more);
+    dynamics::inverse_dynamics(plant, motion.equations, without, less);
+    CHECK(more[0] - less[0] == Approx(-0.02 * nearness * weight_n).epsilon(1e-4));
+    CHECK(more[1] - less[1] == Approx(0).margin(1e-9));
+    CHECK(more[2] - less[2] == Approx(0.04 * radius_m * nearness * weight_n).epsilon(1e-4));
+    CHECK(more[3] - less[3] == Approx(0).margin(1e-9));
 }

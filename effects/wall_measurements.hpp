@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+
+namespace downwash {
+
+/// What a wall did to a vehicle that hovered beside it, over its thrust T.
+struct WallMeasurement {
+    std::string facility;                  ///< where it was measured; empty if the file does not say
+    double distance_over_r = 0;            ///< from the axis of the nearest rotor to the wall, in rotor radii
+    double force_over_thrust = 0;          ///< horizontal force over T
+    double moment_over_thrust_radius = 0;  ///< pitch moment over T R
+};
+
+/// Reads such measurements from a CSV file: lines that begin with `#` are comments, then a header with
+/// `distance_over_r` (in [1, 1000]), `force_over_thrust` and `moment_over_thrust_radius` (in [-10, 10]), perhaps
+/// `facility`, and any others. At most 100000 rows and 16 MB.
+/// @throws InputError with "file:line: what is wrong" for each error found
+[[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> read_wall_measurements(const std::filesystem::path& file);
+
+/// The same from text; errors use `name` as the name of the file.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> parse_wall_measurements(std::string_view text,
+                                                                                   std::string_view name);
+
+}  // namespace downwash
