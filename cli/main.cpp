@@ -157,6 +157,7 @@ void add_study(CLI::App& program, Action& action) {
     CLI::App* study = program.add_subcommand("study", "Check claims by runs of our own");
     study->require_subcommand(1);
     add_study_uncertainty(*study, action);
+    add_thesis_studies(*study, action);
 }
 
 /// Results that do not reach standard output are an error, unless its reader went away.

@@ -26,6 +26,7 @@ judge:       base scene dynamics effects grids aeromap controllers simulation pr
 fitting:     base effects
 exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
 report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
+studies:     base scene dynamics effects grids aeromap controllers simulation problems search planner results report
 cli:         *
 bench:       *
 docs:        *

@@ -106,7 +106,7 @@ TEST_CASE("Fits that cannot be made end with 2 and say why") {
              {"fit good.csv --model multirotor-body", "multirotor-body needs the other rotors"},
              {"fit good.csv --model multirotor-images", "expected --rotor-spacing"},
              {"compare good.csv --json --markdown", "expected at most one"},
-             {"fit good.csv", "expected --model NAME or --tilt-loss"},
+             {"fit good.csv", "expected --model NAME, --tilt-loss or --walls"},
              {"fit good.csv --tilt-loss --model he", "--tilt-loss fits no model"},
              {"fit good.csv --tilt-loss --surface ground", "expected a column tilt_deg"},
          }) {

@@ -51,9 +51,9 @@ read -r _ force moment_touching < <(wall all 0)
 read -r _ _ moment < <(wall all 1.5)
 read -r pulls _ _ < <(wall DU2SRI 0)
 read -r pushes _ _ < <(wall txc 0)
-quotes docs/model.md "the force is at most $force % of the thrust"
-quotes docs/model.md "$pulls % on average in one and +$pushes % in the other"
-quotes docs/model.md "The moment is at most $moment_touching T R with a disc that touches the wall, and $moment T R from"
+quotes docs/aeromap.md "the force is at most $force % of the thrust"
+quotes docs/aeromap.md "$pulls % on average in one and +$pushes % in the other"
+quotes docs/aeromap.md "the moment is at most $moment_touching T R with a disc that touches the wall, and $moment T R from"
 
 # Power near surfaces, in both readings.
 power() { cell power_readings.md "$1" "$2"; }
