@@ -44,12 +44,15 @@ CurveFigure difference_figure(const SurfaceEffect& ceiling, const RotorPair& pai
     figure.y_label = "K front / K rear - 1 [%]";
     figure.x_range = AxisRange{0, 0.6};
     figure.y_range = AxisRange{0, 40};
+    const double cap_m = EffectCurve(ceiling, max_factor).cap_distance() * pair.radius_m;
     for (const double pitch_deg : {1.0, 3.0, 5.0, 10.0, 15.0}) {
         Curve curve{fmt::format("{:.0f} deg", pitch_deg), {}};
+        const double capped_m =
+            cap_m + pair.arm_m * std::sin(pitch_deg * degree);  // the front rotor's K is no formula's any more
         for (int i = 1; i <= 300; ++i) {
             const double distance_m = 0.002 * i;
             const double share = difference_between_rotors(ceiling, pair, pitch_deg * degree, distance_m);
-            curve.points.push_back({distance_m, share < 0.5 ? 100 * share : std::nan("")});
+            curve.points.push_back({distance_m, distance_m > capped_m && share < 0.5 ? 100 * share : std::nan("")});
         }
         figure.curves.push_back(std::move(curve));
     }
