@@ -348,6 +348,25 @@ TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
     CHECK(model->direct_factor(body, 0, 0.4) != 1);
 }
 
+TEST_CASE("Walls are where a world has them, and as strong as believed whatever it does to K") {
+    Problem problem = ceiling_problem();
+    problem.obstacles = {{"wall", Box{{1, 40, 10}}, {1.5, 0, 2}, {}}};
+    problem.aero.wall = {0.02, 0.04, 1};
+    const auto model = make_flight_model(problem);
+    World world;
+    world.ceiling_scale = 0.5;
+    world.ground_scale = -0.3;
+    world.scene_x_m = 0.1;
+    const FlownWorld flown = make_world(problem.robot, world);
+    simulation::DirectFactor effect{*model};
+    const int walls = model->tick().plant.walls();
+    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
+                                                                                       model->tick().tilt_loss);
+    const double nearness = model->direct_factor(walls, 0.2, 2) - 1;
+    CHECK(nearness > 0.2);
+    CHECK(surroundings.wall_nearness(walls, 0.3, 2.0) == Approx(nearness).epsilon(1e-9));
+}
+
 TEST_CASE("Noise is standard normal, white, and the same for a tape and a tick") {
     constexpr int ticks = 40000;
     double sum[simulation::noise_count] = {}, squares[simulation::noise_count] = {}, fourth = 0;
