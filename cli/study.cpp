@@ -5,6 +5,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/studies/ceiling_envelope.hpp"
+#include "downwash/studies/partial_ground_effect.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -44,6 +45,9 @@ void add_thesis_studies(CLI::App& study, Action& action) {
     add_thesis_study(study, action, "ceiling-envelope",
                      "Compare the rotors of a pitched vehicle under a ceiling (thesis 4.6, figure 4.9)",
                      studies::ceiling_envelope);
+    add_thesis_study(study, action, "partial-ground-effect",
+                     "Fly a quadrotor over the edge of a plate under three controllers, with every ground model (thesis 3.4)",
+                     studies::partial_ground_effect);
 }
 
 }  // namespace downwash::cli
