@@ -43,7 +43,7 @@ inline SpacePlant random_space_plant(Random& random, int joints) {
                                random_vector(random, 1),
                                random_vector(random, 0.3)});
     }
-    const int rotors = random.integer(3, max_rotors);
+    const int rotors = random.integer(5, max_rotors);
     for (int i = 0; i < rotors; ++i) {
         plant.rotors.push_back({random_vector(random, 0.4),
                                 {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1},
