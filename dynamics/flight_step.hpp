@@ -126,8 +126,9 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
 }
 
 /// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (docs/model.md 3; thesis (4.2)).
-template <class T, class P>
-T rotor_power(const BasicPlantModel<P>& model, const T thrust_n[max_rotors]) {
+/// @param model of a plant in the plane or in space
+template <class T, class Model>
+T rotor_power(const Model& model, const T thrust_n[max_rotors]) {
     T sum(0);
     for (int i = 0; i < model.rotor_count; ++i) {
         // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.

@@ -1,0 +1,185 @@
+#pragma once
+
+#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/dynamics/space_body.hpp"
+
+// The plant in space over one control tick: bodies, rotors anywhere and tilted, the surface effect as a function.
+
+namespace downwash::dynamics {
+
+/// The state of a plant in space with n joints; coordinates and speeds as in space_body.hpp.
+template <class T, int n>
+struct SpaceState {
+    T q[space_coordinates<n>];  ///< the quaternion q[3..6] of length 1
+    T u[space_speeds<n>];
+    T thrust_n[max_rotors];  ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
+    T energy_j;              ///< rotor and arm energy spent so far
+};
+
+/// The commands, constant over one tick.
+template <class T, int n>
+struct SpaceCommand {
+    T thrust_n[max_rotors];  ///< free-air thrust of each rotor
+    T joint_torque_nm[room_for<n>];
+};
+
+/// Angular momentum [N m s] of all rotors about their axes, in body axes: Jr Omega with Omega from T = C_T Omega^2.
+template <class T, int n, class P>
+LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n[max_rotors]) {
+    LaneVector<T> spin{T(0), T(0), T(0)};
+    if (!model.has_gyroscopic_term) {
+        return spin;
+    }
+    for (int i = 0; i < model.rotor_count; ++i) {
+        // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.
+        const T root = lane::sqrt(lane::max(thrust_n[i], T(0)));
+        spin = spin + (T(model.rotor[i].spin_kg_m2_s_n0p5) * root) * spread<T>(model.rotor[i].axis);
+    }
+    return spin;
+}
+
+/// Wrench of all rotors. Each one pushes along its axis with K times its free-air thrust. Its drag torque follows its
+/// speed and has no K (thesis (4.13), yaw row).
+/// @param position_m of the multirotor's centre of mass, world   @param thrust_n of every rotor in free air [N]
+/// @param factor callable (rotor, x_m, y_m, z_m) -> K at the hub of that rotor in the world; it may know
+/// `same_as(rotor)` and `thrust_scale(rotor)`, see flight_step.hpp
+template <class T, int n, class P, class Factor>
+SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
+                            const LaneVector<T>& position_m, const T thrust_n[max_rotors], Factor&& factor) {
+    SpaceWrench<T> wrench{{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
+    T factors[max_rotors];
+    for (int i = 0; i < model.rotor_count; ++i) {
+        const LaneVector<T> place = spread<T>(model.rotor[i].position_m);
+        const LaneVector<T> axis = spread<T>(model.rotor[i].axis);
+        if (const int same = rotor_with_factor_of(factor, i); same != i) {
+            factors[i] = factors[same];
+        } else {
+            const LaneVector<T> hub = position_m + attitude * place;
+            factors[i] = factor(i, hub.x, hub.y, hub.z);
+        }
+        const T free_air_n = free_air_thrust(factor, i, thrust_n[i]);
+        const LaneVector<T> push = (factors[i] * free_air_n) * axis;
+        wrench.force_n = wrench.force_n + push;
+        wrench.torque_nm = wrench.torque_nm + (cross(place, push) + (T(model.rotor[i].reaction_m) * free_air_n) * axis);
+    }
+    return wrench;
+}
+
+/// du/dt under the free-air thrusts of the rotors and joint torques.
+/// @param rotor_spin rotor_spin_of() the thrusts   @param surroundings as `factor` of rotor_wrench(); what touches the
+/// multirotor adds `load(q, u, attitude)`, a SpaceWrench
+template <class T, int n, class P, class Surroundings>
+void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>], const T u[space_speeds<n>],
+                   const T thrust_n[max_rotors], const LaneVector<T>& rotor_spin, const T joint_torque_nm[room_for<n>],
+                   Surroundings&& surroundings, T du[space_speeds<n>]) {
+    const SpacePlaces<T, n> p = places_at(model, q);
+    const SpaceEquations<T, n> e = equations_of_motion(model, p, u);
+    SpaceWrench<T> wrench = rotor_wrench(model, p.attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, surroundings);
+    if (model.has_gyroscopic_term) {
+        wrench.torque_nm = wrench.torque_nm - cross(LaneVector<T>{u[3], u[4], u[5]}, rotor_spin);
+    }
+    if constexpr (requires { surroundings.load(q, u, p.attitude); }) {
+        const SpaceWrench<T> load = surroundings.load(q, u, p.attitude);
+        wrench.force_n = wrench.force_n + load.force_n;
+        wrench.torque_nm = wrench.torque_nm + load.torque_nm;
+    }
+    forward_dynamics(model, p, e, wrench, joint_torque_nm, du);
+}
+
+/// Brings the quaternion of coordinates q to length 1. Within a step of 10 ms its length changes by less than 1e-8
+/// at 10 rad/s; nothing else depends on its length.
+template <class T>
+void normalise_attitude(T q[7]) {
+    const T scale = T(1) / lane::sqrt(q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
+    for (int i = 3; i < 7; ++i) {
+        q[i] = scale * q[i];
+    }
+}
+
+/// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order, in which the four
+/// numbers of the quaternion are numbers like others; it is brought back to length 1 at the end. The surroundings are
+/// asked at every stage.
+/// @param dt_s > 0   @param surroundings as for accelerations()
+template <class T, int n, class P, class Surroundings>
+SpaceState<T, n> space_step(const BasicSpaceModel<P, n>& model, const SpaceState<T, n>& state,
+                            const SpaceCommand<T, n>& command, T dt_s, Surroundings&& surroundings) {
+    constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
+    constexpr double weight[] = {1, 2, 2, 1};
+    constexpr int coordinates = space_coordinates<n>;
+    constexpr int speeds = space_speeds<n>;
+    const bool has_lag = model.has_rotor_lag;
+    const int rotors = model.rotor_count;
+    T q[coordinates], u[speeds], thrust_n[max_rotors];                 // at the stage
+    T dq[coordinates] = {}, du[speeds] = {}, thrust_rate[max_rotors];  // there
+    T q_sum[coordinates], u_sum[speeds], thrust_sum[max_rotors], power_sum(0);
+    for (int i = 0; i < coordinates; ++i) {
+        q[i] = state.q[i];
+        q_sum[i] = T(0);
+    }
+    for (int i = 0; i < speeds; ++i) {
+        u[i] = state.u[i];
+        u_sum[i] = T(0);
+    }
+    for (int i = 0; i < rotors; ++i) {
+        thrust_n[i] = has_lag ? state.thrust_n[i] : command.thrust_n[i];
+        thrust_sum[i] = T(0);
+    }
+    LaneVector<T> rotor_spin = rotor_spin_of(model, thrust_n);
+    for (int stage = 0; stage < 4; ++stage) {
+        if (stage > 0) {
+            const T step_s = T(share_of_step[stage]) * dt_s;
+            for (int i = 0; i < coordinates; ++i) {
+                q[i] = state.q[i] + step_s * dq[i];
+            }
+            for (int i = 0; i < speeds; ++i) {
+                u[i] = state.u[i] + step_s * du[i];
+            }
+            if (has_lag) {
+                for (int i = 0; i < rotors; ++i) {
+                    thrust_n[i] = state.thrust_n[i] + step_s * thrust_rate[i];
+                }
+                rotor_spin = rotor_spin_of(model, thrust_n);
+            }
+        }
+        coordinate_rates<T, n>(q, u, dq);
+        accelerations(model, q, u, thrust_n, rotor_spin, command.joint_torque_nm, surroundings, du);
+        const T w(weight[stage]);
+        for (int i = 0; i < coordinates; ++i) {
+            q_sum[i] = q_sum[i] + w * dq[i];
+        }
+        for (int i = 0; i < speeds; ++i) {
+            u_sum[i] = u_sum[i] + w * du[i];
+        }
+        for (int i = 0; i < n; ++i) {
+            power_sum = power_sum + w * lane::abs(command.joint_torque_nm[i] * u[6 + i]);
+        }
+        if (has_lag) {
+            power_sum = power_sum + w * rotor_power(model, thrust_n);
+            for (int i = 0; i < rotors; ++i) {
+                thrust_rate[i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
+                thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
+            }
+        }
+    }
+    const T sixth_s = dt_s * T(1.0 / 6.0);
+    SpaceState<T, n> next;
+    for (int i = 0; i < coordinates; ++i) {
+        next.q[i] = state.q[i] + sixth_s * q_sum[i];
+    }
+    normalise_attitude(next.q);
+    for (int i = 0; i < speeds; ++i) {
+        next.u[i] = state.u[i] + sixth_s * u_sum[i];
+    }
+    next.energy_j = state.energy_j + sixth_s * power_sum;
+    if (!has_lag) {
+        next.energy_j = next.energy_j + dt_s * rotor_power(model, command.thrust_n);
+    }
+    for (int i = 0; i < max_rotors; ++i) {
+        next.thrust_n[i] = i >= rotors ? state.thrust_n[i]
+                           : has_lag   ? state.thrust_n[i] + sixth_s * thrust_sum[i]
+                                       : command.thrust_n[i];
+    }
+    return next;
+}
+
+}  // namespace downwash::dynamics
