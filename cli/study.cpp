@@ -4,6 +4,7 @@
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/studies/ceiling_contact.hpp"
 #include "downwash/studies/ceiling_envelope.hpp"
 #include "downwash/studies/partial_ground_effect.hpp"
 
@@ -45,9 +46,13 @@ void add_thesis_studies(CLI::App& study, Action& action) {
     add_thesis_study(study, action, "ceiling-envelope",
                      "Compare the rotors of a pitched vehicle under a ceiling (thesis 4.6, figure 4.9)",
                      studies::ceiling_envelope);
-    add_thesis_study(study, action, "partial-ground-effect",
-                     "Fly a quadrotor over the edge of a plate under three controllers, with every ground model (thesis 3.4)",
-                     studies::partial_ground_effect);
+    add_thesis_study(study, action, "ceiling-contact",
+                     "Touch a ceiling and leave it under the Lyapunov laws and under a PID (thesis 4.6, 4.7)",
+                     studies::ceiling_contact);
+    add_thesis_study(
+        study, action, "partial-ground-effect",
+        "Fly a quadrotor over the edge of a plate under three controllers, with every ground model (thesis 3.4)",
+        studies::partial_ground_effect);
 }
 
 }  // namespace downwash::cli

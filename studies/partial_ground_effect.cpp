@@ -73,15 +73,18 @@ std::vector<PlanarExperiment> experiments(const PlanarExperiment& base) {
     PlanarExperiment& noisy = at(noisy_beside_2, beside_m, 2);
     noisy.speed_m_s = 1;
     noisy.gyro_noise_rad_s = 0.015;
-    for (const auto& [which, target_m, z_over_r] :
-         {std::tuple{observer_over_3, over_m, 3.0}, {observer_over_2, over_m, 2.0}, {observer_beside_3, beside_m, 3.0},
-          {observer_beside_2, beside_m, 2.0}}) {
+    for (const auto& [which, target_m, z_over_r] : {std::tuple{observer_over_3, over_m, 3.0},
+                                                    {observer_over_2, over_m, 2.0},
+                                                    {observer_beside_3, beside_m, 3.0},
+                                                    {observer_beside_2, beside_m, 2.0}}) {
         at(which, target_m, z_over_r).control.observer_gain_1_s = observer_gain_1_s;
     }
-    for (const auto& [which, target_m, z_over_r, offset_m] :
-         {std::tuple{forward_over_3, over_m, 3.0, 0.0}, {forward_over_2, over_m, 2.0, 0.0},
-          {forward_beside_3, beside_m, 3.0, 0.0}, {forward_beside_2, beside_m, 2.0, 0.0},
-          {offset_5, beside_m, 2.0, 0.05}, {offset_15, beside_m, 2.0, 0.15}}) {
+    for (const auto& [which, target_m, z_over_r, offset_m] : {std::tuple{forward_over_3, over_m, 3.0, 0.0},
+                                                              {forward_over_2, over_m, 2.0, 0.0},
+                                                              {forward_beside_3, beside_m, 3.0, 0.0},
+                                                              {forward_beside_2, beside_m, 2.0, 0.0},
+                                                              {offset_5, beside_m, 2.0, 0.05},
+                                                              {offset_15, beside_m, 2.0, 0.15}}) {
         at(which, target_m, z_over_r).control.map_offset_m = offset_m;
     }
     return all;
@@ -91,7 +94,9 @@ std::vector<PlanarExperiment> experiments(const PlanarExperiment& base) {
 struct End {
     double final_x_m, swing_m, pitch_deg;
     bool is_lost;
-    [[nodiscard]] bool is_at(double x_m) const { return !is_lost && std::abs(final_x_m - x_m) < 0.05 && swing_m < 0.05; }
+    [[nodiscard]] bool is_at(double x_m) const {
+        return !is_lost && std::abs(final_x_m - x_m) < 0.05 && swing_m < 0.05;
+    }
     [[nodiscard]] bool is_swinging() const { return is_lost || (swing_m > 0.02 && pitch_deg > 0.5); }
     [[nodiscard]] std::string text() const {
         if (is_lost) {
@@ -105,8 +110,8 @@ struct End {
 
 End end_of(const PlanarFlight& flight) {
     const auto range = flight.over_last(settled_s);
-    return {0.5 * (range.least_x_m + range.greatest_x_m), range.greatest_x_m - range.least_x_m, range.greatest_pitch_deg,
-            flight.is_lost};
+    return {0.5 * (range.least_x_m + range.greatest_x_m), range.greatest_x_m - range.least_x_m,
+            range.greatest_pitch_deg, flight.is_lost};
 }
 
 /// When a flight first comes within 5 cm of x [s]; infinite if never.
@@ -143,18 +148,20 @@ std::vector<Finding> findings_of(const Story& story) {
     all.push_back(finding("S1: PID, 0.2 m/s over the plate, z/R 2", "pushed away, never crosses",
                           end(pid_over_2).text(), !end(pid_over_2).is_at(over_m)));
     all.push_back(finding("S1: the same at z/R 3", "only slowed",
-                          std::isfinite(slowed_s) ? fmt::format("arrives after {:.1f} s, without a plate {:.1f} s", slowed_s, free_s)
-                                                  : end(pid_over_3).text(),
+                          std::isfinite(slowed_s)
+                              ? fmt::format("arrives after {:.1f} s, without a plate {:.1f} s", slowed_s, free_s)
+                              : end(pid_over_3).text(),
                           std::isfinite(slowed_s) && slowed_s >= free_s));
     all.push_back(finding("S2: PID, hover with one rotor over the plate, z/R 2", "sustained oscillation", pid.text(),
                           pid.is_swinging()));
-    all.push_back(finding("S3: PID, 1 m/s over the plate, z/R 2", "passes by inertia",
-                          fmt::format("{}; pitch up to {:.1f} deg", end(fast_over_2).text(),
-                                      peak_pitch_deg(story.flights[fast_over_2])),
-                          end(fast_over_2).is_at(over_m)));
+    all.push_back(finding(
+        "S3: PID, 1 m/s over the plate, z/R 2", "passes by inertia",
+        fmt::format("{}; pitch up to {:.1f} deg", end(fast_over_2).text(), peak_pitch_deg(story.flights[fast_over_2])),
+        end(fast_over_2).is_at(over_m)));
     all.push_back(finding("S3: PID, 1 m/s to one rotor over the plate", "oscillates", end(fast_beside_2).text(),
                           end(fast_beside_2).is_swinging()));
-    all.push_back(finding("S4: the same with gyro noise of 0.015 rad/s", "larger oscillation", end(noisy_beside_2).text(),
+    all.push_back(finding("S4: the same with gyro noise of 0.015 rad/s", "larger oscillation",
+                          end(noisy_beside_2).text(),
                           end(noisy_beside_2).pitch_deg > end(fast_beside_2).pitch_deg &&
                               end(noisy_beside_2).swing_m > end(fast_beside_2).swing_m));
     all.push_back(finding("S5: observer, over the plate, z/R 2", "reaches x = 7 m", end(observer_over_2).text(),
@@ -173,7 +180,8 @@ std::vector<Finding> findings_of(const Story& story) {
     return all;
 }
 
-PlanarExperiment base_with(const SurfaceEffect& ground, const PlanarControl& control = {}, RotorLayout layout = RotorLayout::plus) {
+PlanarExperiment base_with(const SurfaceEffect& ground, const PlanarControl& control = {},
+                           RotorLayout layout = RotorLayout::plus) {
     PlanarExperiment base;
     base.vehicle.layout = layout;
     base.control = control;
@@ -261,7 +269,8 @@ std::vector<Figure> figures_of(const Story& story) {
                {{"no plate", free_over}, {"z/R 3", pid_over_3}, {"z/R 2", pid_over_2}}, over_m),
         figure("figure_3_5", "Thesis figure 3.5: PID, hover with one rotor over the plate",
                {{"no plate", free_beside}, {"z/R 3", pid_beside_3}, {"z/R 2", pid_beside_2}}, beside_m),
-        figure("figure_3_6_over", "Thesis figure 3.6: PID over the plate at 1 m/s, z/R 2", {{"1 m/s", fast_over_2}}, over_m),
+        figure("figure_3_6_over", "Thesis figure 3.6: PID over the plate at 1 m/s, z/R 2", {{"1 m/s", fast_over_2}},
+               over_m),
         figure("figure_3_7", "Thesis figures 3.6 and 3.7: PID, hover at the end of 1 m/s, with and without gyro noise",
                {{"noise 0.015 rad/s", noisy_beside_2}, {"no noise", fast_beside_2}}, beside_m),
         figure("figure_3_9", "Thesis figure 3.9: observer over the plate",
@@ -298,10 +307,11 @@ Table table_of_settings(const std::vector<Setting>& all, const std::vector<Story
 
 /// S9: the moment that rights a tilted vehicle over wide ground.
 Finding righting_moment(const PlanarExperiment& base, Table& table) {
-    table = {"righting_moment",
-             "S9: pitch torque over wide ground [N m] (negative: back to level), and beside the controller's at that pitch",
-             {"z/R", "5 deg", "10 deg", "share of the controller's at 10 deg"},
-             {}};
+    table = {
+        "righting_moment",
+        "S9: pitch torque over wide ground [N m] (negative: back to level), and beside the controller's at that pitch",
+        {"z/R", "5 deg", "10 deg", "share of the controller's at 10 deg"},
+        {}};
     const double stiffness_nm =
         base.control.pitch_kp * base.control.rate_kp * base.vehicle.pitch_inertia_kg_m2;  // per radian
     double share_at_2 = 0;
@@ -329,11 +339,16 @@ Study partial_ground_effect() {
     study.name = "partial-ground-effect";
     study.title = "A quadrotor over the edge of a plate under three controllers (thesis chapter 3)";
     study.setting = {
-        "The thesis gives neither masses nor sizes nor gains. Here a planar quadrotor of 1.5 kg, 0.02 kg m2 and rotors of 0.12 m "
-        "radius 0.25 m out flies a cascade without integrators: position 0.8 1/s, velocity 1.5 1/s, pitch 4 1/s, pitch rate 8 1/s, "
-        "at 100 Hz. The reference is a step whose commanded speed is clipped. Every rotor takes (2.17) of the whole vehicle, as "
-        "far as its disc is over the plate: with the single rotor's (2.9) the disturbance is small. The observer has L = 10 1/s.",
-        "The table of settings flies everything again with other ground models, another layout and other gains. A claim counts as reproduced by the "
+        "The thesis gives neither masses nor sizes nor gains. Here a planar quadrotor of 1.5 kg, 0.02 kg m2 and rotors "
+        "of 0.12 m "
+        "radius 0.25 m out flies a cascade without integrators: position 0.8 1/s, velocity 1.5 1/s, pitch 4 1/s, pitch "
+        "rate 8 1/s, "
+        "at 100 Hz. The reference is a step whose commanded speed is clipped. Every rotor takes (2.17) of the whole "
+        "vehicle, as "
+        "far as its disc is over the plate: with the single rotor's (2.9) the disturbance is small. The observer has L "
+        "= 10 1/s.",
+        "The table of settings flies everything again with other ground models, another layout and other gains. A "
+        "claim counts as reproduced by the "
         "same rules everywhere; nothing was tuned."};
     study.findings = findings_of(stories.front());
     for (std::size_t i = 0; i < study.findings.size(); ++i) {

@@ -30,7 +30,8 @@ RotorParameters rotors_of(const PlanarVehicle& vehicle) {
     return rotors;
 }
 
-/// The manipulator without its arm: what is left of that is a millionth of a kilogram in the centre that no torque turns.
+/// The manipulator without its arm: what is left of that is a millionth of a kilogram in the centre that no torque
+/// turns.
 Robot robot_of(const PlanarVehicle& vehicle, const PlanarControl& control) {
     constexpr double nothing = 1e-6;
     Robot robot;
@@ -115,8 +116,8 @@ PlanarFlight fly(const PlanarExperiment& e) {
                 flight.is_lost = true;
                 break;
             }
-            // A step of the reference, whose commanded speed is clipped: the position loop never sees more than it takes
-            // to ask for that speed.
+            // A step of the reference, whose commanded speed is clipped: the position loop never sees more than it
+            // takes to ask for that speed.
             const double ahead_m = e.speed_m_s / e.control.position_kp;
             const double next_m = q[0] + std::clamp(e.target_m - q[0], -ahead_m, ahead_m);
             double noise[simulation::noise_count] = {};
@@ -141,8 +142,7 @@ SurfaceEffect effect_on_each_rotor(const SurfaceEffect& model, const PlanarVehic
         factors.push_back(std::clamp(formula_factor(model, zeta, neighbours), 1.0, max_factor));
     }
     SurfaceEffect effect(EffectModel::table);
-    effect.table =
-        std::make_shared<const EffectTable>(std::move(z_over_r), std::vector<double>(), std::move(factors));
+    effect.table = std::make_shared<const EffectTable>(std::move(z_over_r), std::vector<double>(), std::move(factors));
     return effect;
 }
 

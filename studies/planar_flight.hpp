@@ -40,13 +40,13 @@ struct PlanarControl {
 struct PlanarExperiment {
     PlanarVehicle vehicle;
     PlanarControl control;
-    SurfaceEffect ground;          ///< of each rotor
-    double z_over_r = 2;           ///< height of the rotors over the plate
-    bool has_plate = true;         ///< false: out of ground effect
+    SurfaceEffect ground;   ///< of each rotor
+    double z_over_r = 2;    ///< height of the rotors over the plate
+    bool has_plate = true;  ///< false: out of ground effect
     double plate_from_m = 3, plate_to_m = 5;
-    double target_m = 7;           ///< the flight begins at x = 0
-    double speed_m_s = 0.2;        ///< most that the position loop may ask for
-    double gyro_noise_rad_s = 0;   ///< standard deviation of every tick
+    double target_m = 7;          ///< the flight begins at x = 0
+    double speed_m_s = 0.2;       ///< most that the position loop may ask for
+    double gyro_noise_rad_s = 0;  ///< standard deviation of every tick
     double duration_s = 80;
 };
 

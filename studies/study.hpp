@@ -11,11 +11,11 @@ namespace downwash::studies {
 
 /// A claim of the thesis beside what was measured here.
 struct Finding {
-    std::string name;      ///< "C1: difference between rotors at 10 deg, 0.1 m"
-    std::string thesis;    ///< what the thesis says
-    std::string measured;  ///< the same quantity here
+    std::string name = {};      ///< "C1: difference between rotors at 10 deg, 0.1 m"
+    std::string thesis = {};    ///< what the thesis says
+    std::string measured = {};  ///< the same quantity here
     bool is_reproduced = false;
-    std::string note;  ///< over which range, or why not; may be empty
+    std::string note = {};  ///< over which range, or why not; may be empty
 };
 
 /// A picture, as diagrams one below the other.
