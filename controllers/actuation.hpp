@@ -69,15 +69,16 @@ dynamics::RotorWrench<T> expected_wrench(const PlantModel& nominal, const dynami
     return wrench;
 }
 
-/// The commands for a demand: allocated to the rotors, clipped to their limits and to that of the joint.
-/// @param seen state as the controller knows it   @param motion nominal motion of that state
+/// The commands of the rotors for a thrust [N] and a pitch torque [N m]: allocated, and clipped to their limits.
+/// @param seen state as the controller knows it
 /// @param rotor_lead how much more a rotor is asked for than it lacks, so that its lag shrinks by 1 / (1 + lead); see
 /// docs/model.md 5.2
+/// @param[out] given the rotors' commands and their saturation   @return what the rotors will give: expected_wrench()
 template <class T>
-void actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
-             const Demand<T>& demand, double tick_s, Actuation<T>& given, double rotor_lead = 0) {
+dynamics::RotorWrench<T> command_rotors(const PlantModel& nominal, const dynamics::PlantState<T>& seen, T thrust_n,
+                                        T pitch_torque_nm, double tick_s, Actuation<T>& given, double rotor_lead = 0) {
     T demand_n[max_rotors];
-    dynamics::allocate(nominal, demand.thrust_n, demand.pitch_torque_nm, demand_n);
+    dynamics::allocate(nominal, thrust_n, pitch_torque_nm, demand_n);
     given.saturation = thrust_saturation(nominal, demand_n);
     for (int i = 0; i < nominal.rotor_count; ++i) {
         if (nominal.has_rotor_lag && rotor_lead > 0) {
@@ -85,11 +86,31 @@ void actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen, con
         }
         given.command.thrust_n[i] = lane::clamp(demand_n[i], T(nominal.min_thrust_n), T(nominal.max_thrust_n));
     }
-    const dynamics::RotorWrench<T> wrench = expected_wrench(nominal, seen, given.command.thrust_n, tick_s);
-    const T torque_nm = joint_torque(nominal, motion, demand.arm_acceleration, wrench.thrust_n, wrench.pitch_torque_nm);
+    return expected_wrench(nominal, seen, given.command.thrust_n, tick_s);
+}
+
+/// The command of the joint, clipped to its limit. @pre command_rotors() came before
+/// @param[in,out] given gets the joint's command, and its saturation if that is the greater one
+template <class T>
+void command_joint(const PlantModel& nominal, T torque_nm, Actuation<T>& given) {
     const T max_torque_nm(nominal.max_joint_torque_nm);
     given.saturation = lane::max(given.saturation, lane::abs(torque_nm) / max_torque_nm);
     given.command.joint_torque_nm = lane::clamp(torque_nm, -max_torque_nm, max_torque_nm);
+}
+
+/// The commands for a demand.
+/// @param seen,rotor_lead see command_rotors()   @param motion nominal motion of that state
+/// @return what the rotors will give: expected_wrench()
+template <class T>
+dynamics::RotorWrench<T> actuate(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
+                                 const dynamics::Motion<T>& motion, const Demand<T>& demand, double tick_s,
+                                 Actuation<T>& given, double rotor_lead = 0) {
+    const dynamics::RotorWrench<T> wrench =
+        command_rotors(nominal, seen, demand.thrust_n, demand.pitch_torque_nm, tick_s, given, rotor_lead);
+    command_joint(nominal,
+                  joint_torque(nominal, motion, demand.arm_acceleration, wrench.thrust_n, wrench.pitch_torque_nm),
+                  given);
+    return wrench;
 }
 
 }  // namespace downwash::controllers

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <variant>
 
+#include "downwash/controllers/cascaded_pid.hpp"
 #include "downwash/controllers/model_inversion.hpp"
 
 // The control laws that a robot can be flown by. docs/extending/controller.md says what a law consists of.
@@ -11,7 +12,7 @@
 namespace downwash {
 
 /// One of the laws, with its gains. The first is that of a robot file without `controller.type`.
-using ControlLaw = std::variant<ModelInversion>;
+using ControlLaw = std::variant<ModelInversion, CascadedPid>;
 
 /// The controller of a robot.
 struct Controller {

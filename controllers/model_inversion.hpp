@@ -77,6 +77,12 @@ struct ModelInversion {
         return {{T(0), T(0)}, T(0), T(0), pitch_rad, T(0), T(0)};
     }
 
+    /// The memory with which a flight starts in a state.
+    template <class T>
+    [[nodiscard]] Memory<T> rested(const PlantModel& /*nominal*/, const dynamics::PlantState<T>& state) const {
+        return rested(state.q[2]);
+    }
+
     /// One control step: a pure function. See docs/extending/controller.md for what every law has.
     /// @param nominal plant as the law knows it   @param seen state as the law knows it
     /// @param motion nominal motion of that state   @param tick_s control period [s], > 0

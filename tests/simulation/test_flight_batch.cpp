@@ -100,6 +100,18 @@ TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, arm 
     CHECK(rejections_of_equal_flights(plain, false, rules, 30).count(Rejection::none) == 1);
 }
 
+TEST_CASE("edges fly side by side as one by one with a cascaded PID") {
+    Problem problem = cluttered_problem();
+    problem.robot.rotors.time_constant_s = 0.012;
+    CascadedPid law;
+    law.rotor_lead = 1;
+    law.pitch_rate_kd = 0.01;
+    problem.robot.controller.law = law;
+    const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 200);
+    CHECK(aware.count(Rejection::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), 200).count(Rejection::none) == 1);
+}
+
 TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as one by one") {
     Problem problem = cluttered_problem();
     problem.robot.rotors.max_thrust_n = 13;
