@@ -5,6 +5,7 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/controllers/actuation.hpp"
+#include "downwash/controllers/aids.hpp"
 #include "downwash/controllers/pid.hpp"
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/controllers/rest.hpp"
@@ -40,7 +41,9 @@ struct CascadedPid {
     double joint_ki = 5.3;   ///< integral of the arm error [N m/s]
     double joint_integral_limit_nm = 6.0;
 
-    double rotor_lead = 0;  ///< see controllers::command_rotors()
+    double rotor_lead = 0;  ///< see controllers::limit_rotors()
+
+    controllers::Aids aids;  ///< observer, which uses the whole model, and feed-forward
 
     double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
     double min_vertical_force_ratio = 0.2;     ///< least vertical force over the weight
@@ -82,10 +85,11 @@ struct CascadedPid {
     }
 
     /// One control step: a pure function. See docs/extending/controller.md for what every law has.
-    template <class T>
+    /// @param aid see controllers::Unaided
+    template <class T, class Aid = controllers::Unaided>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
-                      controllers::Actuation<T>& given) const {
+                      controllers::Actuation<T>& given, Aid&& aid = {}) const {
         const T* q = seen.q;
         const T* u = seen.u;
         const dynamics::Attitude<T>& a = motion.attitude;
@@ -103,7 +107,7 @@ struct CascadedPid {
             if (gains.velocity_kd > 0) {
                 acceleration = acceleration - T(gains.velocity_kd / tick_s) * (u[i] - memory.previous_velocity[i]);
             }
-            force[i] = T(nominal.total_mass_kg) * acceleration;
+            force[i] = T(nominal.total_mass_kg) * acceleration - aid.template force<T>(i);
         }
         force[1] = force[1] + T(nominal.weight_n);
 
@@ -127,8 +131,9 @@ struct CascadedPid {
             T(joint_kp) * arm_error + T(joint_kd) * (reference.velocity[2] - u[3]) +
             controllers::integral_action(joint_ki, joint_integral_limit_nm, memory.joint_integral);
 
-        controllers::command_rotors(nominal, seen, thrust_n, pitch_torque_nm, tick_s, given, rotor_lead);
-        controllers::command_joint(nominal, joint_torque_nm, given);
+        aid.command_rotors(nominal, seen, thrust_n, pitch_torque_nm - aid.template force<T>(2), tick_s, rotor_lead,
+                           given);
+        controllers::command_joint(nominal, joint_torque_nm - aid.template force<T>(3), given);
 
         // Integrators stand still where something was clipped (anti-windup).
         const auto is_clipped = given.saturation > T(1);
@@ -158,17 +163,18 @@ struct CascadedPid {
                                                  const dynamics::EquationsOfMotion<double>& equations,
                                                  const controllers::RestingCommand& command) const {
         const double thrust_n = command.wrench.thrust_n;
-        const auto rate = controllers::settled_pid(command.wrench.pitch_torque_nm, pitch_rate_kp, pitch_rate_ki,
-                                                   pitch_integral_limit_nm);
+        const double* known = command.known_force;
+        const auto rate = controllers::settled_pid(command.wrench.pitch_torque_nm + known[2], pitch_rate_kp,
+                                                   pitch_rate_ki, pitch_integral_limit_nm);
         const auto joint =
-            controllers::settled_pid(command.joint_torque_nm, joint_kp, joint_ki, joint_integral_limit_nm);
+            controllers::settled_pid(command.joint_torque_nm + known[3], joint_kp, joint_ki, joint_integral_limit_nm);
         controllers::Rest<Memory> rest;
         rest.pitch_reference_rad = controllers::error_for(rate.error, pitch_angle_kp);
         double sine = 0;
         double cosine = 1;
         lane::sin_cos(rest.pitch_reference_rad, sine, cosine);
-        const double acceleration[2] = {sine / cosine * thrust_n / nominal.total_mass_kg,
-                                        (thrust_n - nominal.weight_n) / nominal.total_mass_kg};
+        const double acceleration[2] = {(sine / cosine * thrust_n + known[0]) / nominal.total_mass_kg,
+                                        (thrust_n + known[1] - nominal.weight_n) / nominal.total_mass_kg};
         for (int i = 0; i < 2; ++i) {
             const AxisGains gains = axis_gains(i);
             const auto velocity = controllers::settled_pid(acceleration[i], gains.velocity_kp, gains.velocity_ki,
@@ -245,6 +251,7 @@ struct CascadedPid {
                              &Law::min_vertical_force_ratio)
                      .at_least(1e-3)
                      .at_most(1));
+        rows.add_aids();
     }
 };
 

@@ -1,29 +1,25 @@
 #pragma once
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/controllers/aids.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/dynamics/momentum.hpp"
 
-// An observer of what the model does not know, in momentum form (docs/model.md 5.6; thesis (3.9)). One template over the
-// lane type.
+// An observer of what the model does not know, in momentum form (docs/model.md 5.6; thesis (3.9)). One template over
+// the lane type.
 
 namespace downwash::controllers {
 
-/// How a law observes disturbances.
-struct DisturbanceObserver {
-    double gain_1_s = 10;  ///< L: an estimate comes with a time constant of 1 / L
-};
-
-/// The share of its error that an estimate loses in a tick, 1 - e^-x with x = L h. e^x is summed up to x^4 / 24: the time
-/// constant is 1 / L to 1 % while x < 1.6, and the share stays below 1 whatever the gain.
+/// The share of its error that an estimate loses in a tick, 1 - e^-x with x = L h. e^x is summed up to x^4 / 24: the
+/// time constant is 1 / L to 1 % while x < 1.6, and the share stays below 1 whatever the gain.
 [[nodiscard, gnu::always_inline]] inline double observed_share(double gain_1_s, double tick_s) {
     const double x = gain_1_s * tick_s;
     return 1 - 1 / (1 + x * (1 + x * (1.0 / 2 + x * (1.0 / 6 + x * (1.0 / 24)))));
 }
 
 /// The observer in one tick. With p = M u, b = dM/dt u - c, the forces Q that the controller believes to act and the
-/// estimate D, the model expects dp/dt = Q + b + D. D grows by the share of what p misses a tick later over the tick. The
-/// only memory is D - share p / h, less what the model expects: as long as D is right nothing has to be added up.
+/// estimate D, the model expects dp/dt = Q + b + D. D grows by the share of what p misses a tick later over the tick.
+/// The only memory is D - share p / h, less what the model expects: as long as D is right nothing has to be added up.
 template <class T>
 class Observation {
  public:

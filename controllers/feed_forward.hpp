@@ -1,18 +1,13 @@
 #pragma once
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/controllers/aids.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 
-// Rotor commands divided by the thrust ratios K that a controller reads from a map (docs/model.md 5.7; thesis 3.4.4). The
-// map is a function here. One template over the lane type.
+// Rotor commands divided by the thrust ratios K that a controller reads from a map (docs/model.md 5.7; thesis 3.4.4).
+// The map is a function here. One template over the lane type.
 
 namespace downwash::controllers {
-
-/// The map that a law reads.
-struct FeedForward {
-    double offset_x_m = 0;  ///< where the map has the surfaces, from where the simulation's own source has them
-    double offset_z_m = 0;
-};
 
 /// What a law has read for one tick.
 template <class T>

@@ -101,8 +101,13 @@ FlightState FlightModel::state_at(const PlanarPose& pose, const double (&u)[4]) 
     for (int i = 0; i < plant.rotor_count; ++i) {
         state.plant.thrust_n[i] = plant.force_share[i] * plant.total_mass_kg * standard_gravity_m_s2;
     }
-    state.memory =
-        std::visit([&](const auto& law) { return controllers::remembered(law.rested(plant, state.plant)); }, tick_.law);
+    state.memory = controllers::visit_flown(tick_.law, [&]<class Flown>(const Flown& law) {
+        if constexpr (controllers::is_aided<Flown>) {
+            return controllers::remembered(law.rested(plant, state.plant, tick_.tick_s));
+        } else {
+            return controllers::remembered(law.rested(plant, state.plant));
+        }
+    });
     state.world = memory_at_start(nominal_world_, state.plant);
     return state;
 }
