@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <variant>
 
+#include "downwash/controllers/aided_law.hpp"
+#include "downwash/controllers/cascaded_pid.hpp"
 #include "downwash/controllers/model_inversion.hpp"
 
 // The control laws that a robot can be flown by. docs/extending/controller.md says what a law consists of.
@@ -11,7 +14,7 @@
 namespace downwash {
 
 /// One of the laws, with its gains. The first is that of a robot file without `controller.type`.
-using ControlLaw = std::variant<ModelInversion>;
+using ControlLaw = std::variant<ModelInversion, CascadedPid>;
 
 /// The controller of a robot.
 struct Controller {
@@ -22,10 +25,48 @@ struct Controller {
 
 namespace controllers {
 
-/// The numbers of the largest memory among laws.
+/// Calls `fly` with the law as what flies: the law itself, or Aided with what it has beside its loops.
+template <class Fly>
+decltype(auto) visit_flown(const ControlLaw& law, const Fly& fly) {
+    return std::visit(
+        [&]<class Law>(const Law& own) {
+            if constexpr (can_be_aided<Law>) {
+                if (own.aids.are_any()) {
+                    return fly(Aided<Law>{own});
+                }
+            }
+            return fly(own);
+        },
+        law);
+}
+
+/// What the law has beside its loops.
+[[nodiscard]] inline Aids aids_of(const ControlLaw& law) {
+    return std::visit(
+        []<class Law>(const Law& own) {
+            if constexpr (can_be_aided<Law>) {
+                return own.aids;
+            } else {
+                return Aids{};
+            }
+        },
+        law);
+}
+
+/// The numbers of the largest memory of a law.
+template <class Law>
+constexpr int max_memory_of() {
+    if constexpr (can_be_aided<Law>) {
+        return static_cast<int>(sizeof(typename Aided<Law>::template Memory<double>) / sizeof(double));
+    } else {
+        return static_cast<int>(sizeof(typename Law::template Memory<double>) / sizeof(double));
+    }
+}
+
+/// The same among laws.
 template <class... Laws>
 constexpr int max_memory(const std::variant<Laws...>* /*laws*/) {
-    return std::max({static_cast<int>(sizeof(typename Laws::template Memory<double>) / sizeof(double))...});
+    return std::max({max_memory_of<Laws>()...});
 }
 
 /// What the law of a flight remembers, whichever it is: the numbers of its memory, then zeros.

@@ -6,6 +6,7 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/controllers/actuation.hpp"
+#include "downwash/controllers/aids.hpp"
 #include "downwash/controllers/pid.hpp"
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/controllers/rest.hpp"
@@ -37,7 +38,9 @@ struct ModelInversion {
     double arm_ki = 0;  ///< [1/s3]
     double arm_integral_limit_rad_s2 = 5.0;
 
-    double rotor_lead = 0;  ///< see controllers::actuate()
+    double rotor_lead = 0;  ///< see controllers::limit_rotors()
+
+    controllers::Aids aids;  ///< observer and feed-forward
 
     double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
     double min_vertical_force_ratio = 0.2;     ///< f_min of the inversion as a share of the weight
@@ -77,16 +80,23 @@ struct ModelInversion {
         return {{T(0), T(0)}, T(0), T(0), pitch_rad, T(0), T(0)};
     }
 
+    /// The memory with which a flight starts in a state of the nominal plant.
+    template <class T>
+    [[nodiscard]] Memory<T> rested(const PlantModel& /*nominal*/, const dynamics::PlantState<T>& state) const {
+        return rested(state.q[2]);
+    }
+
     /// One control step: a pure function. See docs/extending/controller.md for what every law has.
     /// @param nominal plant as the law knows it   @param seen state as the law knows it
     /// @param motion nominal motion of that state   @param tick_s control period [s], > 0
-    /// @param[out] given the commands   @return the memory at the end of the tick
-    template <class T>
+    /// @param[out] given the commands   @param aid see controllers::Unaided   @return the memory at the end of the tick
+    template <class T, class Aid = controllers::Unaided>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
-                      controllers::Actuation<T>& given) const {
-        const Step<T> step = demanded(nominal, seen, motion, memory, reference, T(tick_s));
-        controllers::actuate(nominal, seen, motion, step.demand, tick_s, given, rotor_lead);
+                      controllers::Actuation<T>& given, Aid&& aid = {}) const {
+        const dynamics::Motion<T>& explained = aid.explained(motion);
+        const Step<T> step = demanded(nominal, seen, explained, memory, reference, T(tick_s));
+        controllers::actuate(nominal, seen, explained, step.demand, tick_s, given, rotor_lead, aid);
         return select_each(given.saturation > T(1), step.frozen, step.integrated);
     }
 
@@ -170,10 +180,14 @@ struct ModelInversion {
 
     /// How the law asks for the same commands for ever, worked out from the last block of figure C.2 to the first. It
     /// knows nothing of surfaces, and asks for accelerations that never come.
-    /// @param equations of the level vehicle at rest
+    /// @param balance equations of the level vehicle at rest
     [[nodiscard]] controllers::Rest<Memory> rest(const PlantModel& nominal,
-                                                 const dynamics::EquationsOfMotion<double>& equations,
+                                                 const dynamics::EquationsOfMotion<double>& balance,
                                                  const controllers::RestingCommand& command) const {
+        dynamics::EquationsOfMotion<double> equations = balance;
+        for (int i = 0; i < 4; ++i) {
+            equations.bias[i] -= command.known_force[i];
+        }
         const double thrust_n = command.wrench.thrust_n;
         const double force[3] = {0, thrust_n, command.wrench.pitch_torque_nm};
         const double torque_at_rest_nm = dynamics::joint_torque_for(nominal, equations, force, 0.0);
@@ -205,7 +219,7 @@ struct ModelInversion {
         rest.pitch_gain_1_s2 = attitude_kp * attitude_rate_kp;
         if (!(std::abs(rest.pitch_reference_rad) < max_tilt_rad)) {
             rest.limit = HoldLimit::tilt;
-        } else if (!(thrust_n > min_vertical_force_ratio * equations.bias[1])) {
+        } else if (!(thrust_n > min_vertical_force_ratio * nominal.weight_n)) {
             rest.limit = HoldLimit::vertical;
         } else if (!std::isfinite(x.error + z.error + arm.error)) {
             rest.limit = HoldLimit::gain;
@@ -260,6 +274,7 @@ struct ModelInversion {
                              &Law::min_vertical_force_ratio)
                      .at_least(1e-3)
                      .at_most(1));
+        rows.add_aids();
     }
 };
 

@@ -23,8 +23,10 @@ namespace controllers {
 
 /// The commands that balance a level vehicle at rest.
 struct RestingCommand {
-    dynamics::RotorWrench<double> wrench;
+    dynamics::RotorWrench<double>
+        wrench;  ///< that acts by what the law knows: with a feed-forward not that in free air
     double joint_torque_nm;
+    double known_force[4] = {};  ///< what else acts by what the law knows [N, N, N m, N m]: see Unaided::force()
 };
 
 /// A control law that asks for these commands for ever.

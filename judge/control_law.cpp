@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <variant>
 
 #include "downwash/dynamics/plant_model.hpp"
 
@@ -21,6 +23,24 @@ double action(double ki, double limit, double integral) {
 /// The integral a tick later; it never grows beyond what its limit can use. Without a gain it stays.
 double integrated_by(double ki, double limit, double integral, double error, double tick_s) {
     return ki > 0 ? std::clamp(integral + error * tick_s, -limit / ki, limit / ki) : integral;
+}
+
+/// 0 without an observer.
+double observer_gain_1_s(const Robot& robot) {
+    const auto observer = controllers::aids_of(robot.controller.law).observer;
+    return observer ? observer->gain_1_s : 0;
+}
+
+double rotor_lead_of(const Robot& robot) {
+    return std::visit(
+        [](const auto& gain) {
+            if constexpr (requires { gain.rotor_lead; }) {
+                return gain.rotor_lead;
+            } else {
+                return 0.0;
+            }
+        },
+        robot.controller.law);
 }
 
 }  // namespace
@@ -51,12 +71,32 @@ struct ControlLaw::Inversion {
     }
 };
 
+/// Of the joint a law demands an acceleration, or a torque.
 struct ControlLaw::Demand {
-    double thrust_n, pitch_torque_nm, arm_acceleration;
+    double thrust_n, pitch_torque_nm;
+    std::optional<double> arm_acceleration, joint_torque_nm;
+};
+
+/// What the controller's map says: K of every rotor, K_body - 1 of the fountain.
+struct ControlLaw::Read {
+    std::array<double, max_rotors> ratio;
+    double fountain = 0;
+};
+
+/// What the controller believes of its rotors in mid-tick.
+struct ControlLaw::Rotors {
+    double thrust_n = 0, pitch_torque_nm = 0;
+    bool are_clipped = false;
 };
 
 ControlLaw::ControlLaw(const Robot& robot)
-    : robot_(robot), believed_(vehicle_in({}, robot)), tick_s_(1 / robot.controller.rate_hz) {
+    : robot_(robot),
+      believed_(vehicle_in({}, robot)),
+      tick_s_(1 / robot.controller.rate_hz),
+      rotor_lead_(rotor_lead_of(robot)),
+      feed_forward_(controllers::aids_of(robot.controller.law).feed_forward),
+      has_observer_(observer_gain_1_s(robot) > 0),
+      observer_(believed_, observer_gain_1_s(robot), tick_s_) {
     Eigen::MatrixXd rows(2, believed_.rotor_count);
     for (int i = 0; i < believed_.rotor_count; ++i) {
         rows(0, i) = 1;
@@ -76,9 +116,81 @@ std::array<double, max_rotors> ControlLaw::resting_thrust_n() const noexcept {
     return thrust_n;
 }
 
-ControlLaw::Demand ControlLaw::demanded(const Inversion& inversion, const Motion& seen, const ReferencePoint& reference,
+ControlMemory ControlLaw::memory_at_start(const Motion& motion) const {
+    ControlMemory memory;
+    memory.pitch_reference_rad = motion.pitch_rad;
+    memory.observed = observer_.at_start(motion);
+    if (const auto* gain = std::get_if<CascadedPid>(&robot_.controller.law)) {
+        // As after a long hover with the arm at this angle: both integrals carry its weight.
+        Motion still = motion;
+        still.velocity_m_s = {};
+        still.pitch_rate_rad_s = 0;
+        still.arm_rate_rad_s = 0;
+        const Four weight = free_momentum_rate(believed_, still);
+        const auto carrying = [](double ki, double limit, double torque) {
+            return ki > 0 ? std::clamp(torque, -limit, limit) / ki : 0;
+        };
+        memory.pitch_rate_integral = carrying(gain->pitch_rate_ki, gain->pitch_integral_limit_nm, -weight[2]);
+        memory.joint_integral = carrying(gain->joint_ki, gain->joint_integral_limit_nm, -weight[3]);
+        memory.velocity_before = motion.velocity_m_s;
+        memory.rate_before = motion.pitch_rate_rad_s;
+    }
+    return memory;
+}
+
+/// docs/model.md 5.5.
+ControlLaw::Demand ControlLaw::cascaded(const CascadedPid& gain, const Motion& seen, const ReferencePoint& reference,
                                         ControlMemory& kept, ControlMemory& integrated) const {
-    const ModelInversion& gain = std::get<ModelInversion>(robot_.controller.law);
+    const double dt = tick_s_;
+    const Four& other = kept.observed.estimate;  // zero without an observer
+    const double m = believed_.mass_kg();
+    const auto velocity_error = [&](int axis, double kp, double place, double speed) {
+        return reference.velocity[axis] + kp * (reference.position[axis] - place) - speed;
+    };
+    const Planar error{velocity_error(0, gain.horizontal_position_kp, seen.position_m.x, seen.velocity_m_s.x),
+                       velocity_error(1, gain.vertical_position_kp, seen.position_m.z, seen.velocity_m_s.z)};
+    const Planar change = (1 / dt) * (seen.velocity_m_s - kept.velocity_before);
+    const double ax =
+        reference.acceleration[0] + gain.horizontal_velocity_kp * error.x +
+        action(gain.horizontal_velocity_ki, gain.horizontal_integral_limit_m_s2, kept.velocity_integral.x) -
+        gain.horizontal_velocity_kd * change.x;
+    const double az = reference.acceleration[1] + gain.vertical_velocity_kp * error.z +
+                      action(gain.vertical_velocity_ki, gain.vertical_integral_limit_m_s2, kept.velocity_integral.z) -
+                      gain.vertical_velocity_kd * change.z;
+    const Planar force{m * ax - other[0], m * (az + standard_gravity_m_s2) - other[1]};
+    const double min_force_z = gain.min_vertical_force_ratio * m * standard_gravity_m_s2;
+    const double tilt = std::atan2(force.x, std::max(force.z, min_force_z));
+    const double pitch_reference = std::clamp(tilt, -gain.max_tilt_rad, gain.max_tilt_rad);
+    const bool is_tilt_clipped = std::abs(tilt) > gain.max_tilt_rad || force.z < min_force_z;
+    const Planar up = from_body({0, 1}, seen.pitch_rad);
+
+    const double rate_error = gain.pitch_angle_kp * (pitch_reference - seen.pitch_rad) - seen.pitch_rate_rad_s;
+    const double torque = gain.pitch_rate_kp * rate_error +
+                          action(gain.pitch_rate_ki, gain.pitch_integral_limit_nm, kept.pitch_rate_integral) -
+                          gain.pitch_rate_kd * (seen.pitch_rate_rad_s - kept.rate_before) / dt - other[2];
+    const double arm_error = reference.position[2] - seen.arm_rad;
+    const double joint = gain.joint_kp * arm_error + gain.joint_kd * (reference.velocity[2] - seen.arm_rate_rad_s) +
+                         action(gain.joint_ki, gain.joint_integral_limit_nm, kept.joint_integral) - other[3];
+
+    kept.velocity_before = seen.velocity_m_s;
+    kept.rate_before = seen.pitch_rate_rad_s;
+    integrated = kept;
+    if (!is_tilt_clipped) {
+        integrated.velocity_integral = {integrated_by(gain.horizontal_velocity_ki, gain.horizontal_integral_limit_m_s2,
+                                                      kept.velocity_integral.x, error.x, dt),
+                                        integrated_by(gain.vertical_velocity_ki, gain.vertical_integral_limit_m_s2,
+                                                      kept.velocity_integral.z, error.z, dt)};
+    }
+    integrated.pitch_rate_integral =
+        integrated_by(gain.pitch_rate_ki, gain.pitch_integral_limit_nm, kept.pitch_rate_integral, rate_error, dt);
+    integrated.joint_integral =
+        integrated_by(gain.joint_ki, gain.joint_integral_limit_nm, kept.joint_integral, arm_error, dt);
+    return {force.x * up.x + force.z * up.z, torque, std::nullopt, joint};
+}
+
+ControlLaw::Demand ControlLaw::inverted(const ModelInversion& gain, const Inversion& inversion, const Motion& seen,
+                                        const ReferencePoint& reference, ControlMemory& kept,
+                                        ControlMemory& integrated) const {
     const double dt = tick_s_;
     // 5.1: acceleration of x and z, and 5.2: of the arm.
     const Planar error{reference.position[0] - seen.position_m.x, reference.position[1] - seen.position_m.z};
@@ -134,47 +246,99 @@ ControlLaw::Demand ControlLaw::demanded(const Inversion& inversion, const Motion
                                                    kept.pitch_rate_integral, rate_error, dt);
     integrated.arm_integral =
         integrated_by(gain.arm_ki, gain.arm_integral_limit_rad_s2, kept.arm_integral, arm_error, dt);
-    return {thrust, torque, v7};
+    return {thrust, torque, v7, std::nullopt};
 }
 
-/// Allocates and clips. @return whether anything was clipped
-bool ControlLaw::limit(const Inversion& inversion, const Demand& demand, const std::array<double, max_rotors>& rotor_n,
-                       Command& command) const {
+/// docs/model.md 5.7: in free air, and without a feed-forward, K = 1.
+ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& believed) const {
+    Read read;
+    read.ratio.fill(1);
+    if (feed_forward_) {
+        const Planar from = seen.position_m - Planar{feed_forward_->offset_x_m, feed_forward_->offset_z_m};
+        for (int i = 0; i < believed_.rotor_count; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const Planar hub = from + from_body(believed_.hub_m[k], seen.pitch_rad);
+            read.ratio[k] = std::max(believed.thrust_ratio(i, hub, seen.pitch_rad), 0.1);
+        }
+        const Planar center = from + from_body(believed_.hub_center_m, seen.pitch_rad);
+        read.fountain = believed.fountain(believed_.rotor_count, center, seen.pitch_rad);
+    }
+    return read;
+}
+
+/// Allocates and clips.
+ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
+                                     const std::array<double, max_rotors>& rotor_n, Command& command) const {
+    const auto count = static_cast<std::size_t>(believed_.rotor_count);
+    // What a thrust and a torque, shared out and divided by K, would act as: their multiples have to act as demanded.
+    const auto acting = [&](const auto& free_air_n) {
+        Eigen::Vector2d sum(0, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double at_rotor_n = read.ratio[i] * free_air_n(i);
+            const double at_body_n = read.fountain * free_air_n(i);
+            sum += Eigen::Vector2d(at_rotor_n + at_body_n,
+                                   -(believed_.hub_m[i].x * at_rotor_n + believed_.hub_center_m.x * at_body_n));
+        }
+        return sum;
+    };
+    Eigen::Matrix2d per_share;
+    per_share.col(0) = acting([&](std::size_t i) { return share_[i][0] / read.ratio[i]; });
+    per_share.col(1) = acting([&](std::size_t i) { return share_[i][1] / read.ratio[i]; });
+    const Eigen::Vector2d shares =
+        per_share.partialPivLu().solve(Eigen::Vector2d(demand.thrust_n, demand.pitch_torque_nm));
+
     const double low_n = robot_.rotors.min_thrust_n;
     const double high_n = robot_.rotors.max_thrust_n;
     const double lag_s = believed_.rotor_time_constant_s;
     const double reached = 0.5 * tick_s_ / (0.5 * tick_s_ + lag_s);  // of the way, in mid-tick
-    bool is_clipped = false;
-    double thrust_n = 0;
-    double torque_nm = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(believed_.rotor_count); ++i) {
-        const double wanted_n = share_[i][0] * demand.thrust_n + share_[i][1] * demand.pitch_torque_nm;
-        is_clipped = is_clipped || wanted_n > high_n || wanted_n < low_n;
-        const double lead = lag_s > 0 ? std::get<ModelInversion>(robot_.controller.law).rotor_lead : 0;
+    const double lead = lag_s > 0 ? rotor_lead_ : 0;
+    Rotors rotors;
+    std::array<double, max_rotors> expected_n{};
+    for (std::size_t i = 0; i < count; ++i) {
+        const double wanted_n = (share_[i][0] * shares(0) + share_[i][1] * shares(1)) / read.ratio[i];
+        rotors.are_clipped = rotors.are_clipped || wanted_n > high_n || wanted_n < low_n;
         command.thrust_n[i] = std::clamp(wanted_n + lead * (wanted_n - rotor_n[i]), low_n, high_n);
         const double now_n = lag_s > 0 ? rotor_n[i] : command.thrust_n[i];
-        const double expected_n = now_n + reached * (command.thrust_n[i] - now_n);
-        thrust_n += expected_n;
-        torque_nm -= believed_.hub_m[i].x * expected_n;
+        expected_n[i] = now_n + reached * (command.thrust_n[i] - now_n);
     }
-    // The four rows for du1, du3, du5 and the joint torque, with du7 given.
-    Matrix4 m = inversion.mass;
-    m.col(3) << 0, 0, 0, -1;
-    const Vector4 load(thrust_n * inversion.sine, thrust_n * inversion.cosine, torque_nm, 0);
-    const Vector4 x = m.partialPivLu().solve(load - inversion.bias - demand.arm_acceleration * inversion.mass.col(3));
-    const double most_nm = robot_.arm.max_torque_nm;
-    command.joint_torque_nm = std::clamp(x(3), -most_nm, most_nm);
-    return is_clipped || std::abs(x(3)) > most_nm;
+    const Eigen::Vector2d believed = acting([&](std::size_t i) { return expected_n[i]; });
+    rotors.thrust_n = believed(0);
+    rotors.pitch_torque_nm = believed(1);
+    return rotors;
 }
 
 Command ControlLaw::command(const Motion& seen, const std::array<double, max_rotors>& rotor_n,
-                            const ReferencePoint& reference, ControlMemory& memory) const {
-    const Inversion inversion(believed_, seen);
+                            const ReferencePoint& reference, const Surroundings& believed,
+                            ControlMemory& memory) const {
+    Inversion inversion(believed_, seen);
     ControlMemory kept = memory;
+    if (has_observer_) {
+        observer_.look(seen, kept.observed);
+        const Four& other = kept.observed.estimate;
+        inversion.bias -= Vector4(other[0], other[1], other[2], other[3]);
+    }
     ControlMemory integrated;
-    const Demand demand = demanded(inversion, seen, reference, kept, integrated);
+    const auto* cascade = std::get_if<CascadedPid>(&robot_.controller.law);
+    const Demand demand = cascade != nullptr ? cascaded(*cascade, seen, reference, kept, integrated)
+                                             : inverted(std::get<ModelInversion>(robot_.controller.law), inversion,
+                                                        seen, reference, kept, integrated);
     Command command;
-    memory = limit(inversion, demand, rotor_n, command) ? kept : integrated;
+    const Rotors rotors = limit(demand, read(seen, believed), rotor_n, command);
+    double joint_nm = 0;
+    if (demand.joint_torque_nm) {
+        joint_nm = *demand.joint_torque_nm;
+    } else {
+        // The four rows for du1, du3, du5 and the joint torque, with du7 given.
+        Matrix4 m = inversion.mass;
+        m.col(3) << 0, 0, 0, -1;
+        const Vector4 load(rotors.thrust_n * inversion.sine, rotors.thrust_n * inversion.cosine, rotors.pitch_torque_nm,
+                           0);
+        joint_nm = m.partialPivLu().solve(load - inversion.bias - *demand.arm_acceleration * inversion.mass.col(3))(3);
+    }
+    const double most_nm = robot_.arm.max_torque_nm;
+    command.joint_torque_nm = std::clamp(joint_nm, -most_nm, most_nm);
+    memory = rotors.are_clipped || std::abs(joint_nm) > most_nm ? kept : integrated;
+    observer_.expect(seen, rotors.thrust_n, rotors.pitch_torque_nm, command.joint_torque_nm, memory.observed);
     return command;
 }
 

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "downwash/controllers/reference_point.hpp"
+#include "downwash/judge/observer.hpp"
 #include "downwash/judge/plant.hpp"
 
 // The controller of docs/model.md 5, from its equations. Private: not installed.
 
 namespace downwash::judge {
 
-/// What the controller keeps between ticks.
+/// What a controller keeps between ticks.
 struct ControlMemory {
     Planar position_integral;         ///< of the position error [m s]
     double pitch_rate_integral = 0;   ///< of the pitch rate error [rad]
@@ -17,9 +19,17 @@ struct ControlMemory {
     double pitch_reference_rad = 0;   ///< q5_ref of the tick before
     double pitch_reference_rate = 0;  ///< its filtered derivative [rad/s]
     double rate_reference = 0;        ///< u5_ref of the tick before [rad/s]
+
+    // Of the cascade.
+    Planar velocity_integral;   ///< of the velocity error [m]
+    double joint_integral = 0;  ///< of the arm error [rad s]
+    Planar velocity_before;     ///< seen at the tick before [m/s]
+    double rate_before = 0;     ///< pitch rate seen then [rad/s]
+
+    ObserverMemory observed;
 };
 
-/// The model-inversion controller of a robot.
+/// The controller of a robot.
 class ControlLaw {
  public:
     /// @pre robot_errors(robot) is empty
@@ -30,24 +40,38 @@ class ControlLaw {
     /// The thrusts that carry the weight of the vehicle as it is believed, without a pitch torque [N].
     [[nodiscard]] std::array<double, max_rotors> resting_thrust_n() const noexcept;
 
+    /// The memory at the start of a flight. @param motion of the point that the robot file calls the centre of mass
+    [[nodiscard]] DOWNWASH_EXPORT ControlMemory memory_at_start(const Motion& motion) const;
+
     /// One tick. @param seen what the sensors tell, about the point that the robot file calls the centre of mass
     /// @param rotor_n thrusts that the rotors' lag has reached [N]
+    /// @param believed surfaces as the controller's map has them, where it is right
     /// @param[in,out] memory that of the tick before, then that of this one
     [[nodiscard]] DOWNWASH_EXPORT Command command(const Motion& seen, const std::array<double, max_rotors>& rotor_n,
-                                                  const ReferencePoint& reference, ControlMemory& memory) const;
+                                                  const ReferencePoint& reference, const Surroundings& believed,
+                                                  ControlMemory& memory) const;
 
  private:
     struct Inversion;
     struct Demand;
+    struct Read;
+    struct Rotors;
 
-    Demand demanded(const Inversion& inversion, const Motion& seen, const ReferencePoint& reference,
-                    ControlMemory& kept, ControlMemory& integrated) const;
-    bool limit(const Inversion& inversion, const Demand& demand, const std::array<double, max_rotors>& rotor_n,
-               Command& command) const;
+    Demand inverted(const ModelInversion& gain, const Inversion& inversion, const Motion& seen,
+                    const ReferencePoint& reference, ControlMemory& kept, ControlMemory& integrated) const;
+    Demand cascaded(const CascadedPid& gain, const Motion& seen, const ReferencePoint& reference, ControlMemory& kept,
+                    ControlMemory& integrated) const;
+    Read read(const Motion& seen, const Surroundings& believed) const;
+    Rotors limit(const Demand& demand, const Read& ratios, const std::array<double, max_rotors>& rotor_n,
+                 Command& command) const;
 
     Robot robot_;
     Vehicle believed_;
     double tick_s_;
+    double rotor_lead_;
+    std::optional<controllers::FeedForward> feed_forward_;
+    bool has_observer_;
+    Observer observer_;
     std::array<std::array<double, 2>, max_rotors> share_{};  ///< of thrust and of pitch torque, pseudo-inverse
 };
 

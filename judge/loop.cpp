@@ -21,9 +21,10 @@ Motion of_true_point(const Vehicle& vehicle, Motion motion) {
 
 }  // namespace
 
-Loop::Loop(const ControlLaw& law, const Plant& plant, const World& world, const Robot& robot, const PlantState& state,
-           const ControlMemory& memory)
+Loop::Loop(const ControlLaw& law, const Surroundings& believed, const Plant& plant, const World& world,
+           const Robot& robot, const PlantState& state, const ControlMemory& memory)
     : law_(law),
+      believed_(believed),
       plant_(plant),
       world_(world),
       sensors_(world, robot, of_file_point(plant.vehicle(), state.motion)),
@@ -39,7 +40,7 @@ void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
     const Tape tape = tape_at(world_, tick);
     const Motion now = motion();
     before_ = state_;
-    command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, memory_);
+    command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, believed_, memory_);
     wind_ = gusts_.wind();
     state_ = plant_.after(state_, command_, wind_, law_.tick_s());
     sensors_.remember(now);
@@ -50,10 +51,13 @@ Motion Loop::motion_within(double since_s) const {
     return of_file_point(plant_.vehicle(), plant_.after(before_, command_, wind_, since_s).motion);
 }
 
+Motion motion_of(const Start& s) {
+    return {{s.x_m, s.z_m}, {s.vx_m_s, s.vz_m_s}, s.pitch_rad, s.pitch_rate_rad_s, s.arm_rad, s.arm_rate_rad_s};
+}
+
 PlantState start_of(const Start& s, const ControlLaw& law, const Vehicle& vehicle) {
     PlantState state;
-    state.motion = of_true_point(
-        vehicle, {{s.x_m, s.z_m}, {s.vx_m_s, s.vz_m_s}, s.pitch_rad, s.pitch_rate_rad_s, s.arm_rad, s.arm_rate_rad_s});
+    state.motion = of_true_point(vehicle, motion_of(s));
     state.thrust_n = law.resting_thrust_n();
     return state;
 }

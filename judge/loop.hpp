@@ -11,8 +11,9 @@ namespace downwash::judge {
 /// A vehicle in closed loop, tick by tick.
 class Loop {
  public:
-    Loop(const ControlLaw& law, const Plant& plant, const World& world, const Robot& robot, const PlantState& state,
-         const ControlMemory& memory);
+    /// @param believed surfaces as the controller's map has them
+    Loop(const ControlLaw& law, const Surroundings& believed, const Plant& plant, const World& world,
+         const Robot& robot, const PlantState& state, const ControlMemory& memory);
 
     [[nodiscard]] const PlantState& state() const noexcept { return state_; }
     [[nodiscard]] const ControlMemory& memory() const noexcept { return memory_; }
@@ -27,6 +28,7 @@ class Loop {
 
  private:
     const ControlLaw& law_;
+    const Surroundings& believed_;
     const Plant& plant_;
     const World& world_;
     Sensors sensors_;
@@ -36,6 +38,9 @@ class Loop {
     Command command_;
     Planar wind_;
 };
+
+/// How the point of the robot file moves at the start of a problem.
+[[nodiscard]] Motion motion_of(const Start& start);
 
 /// The vehicle at the start of a problem, its rotors carrying the weight.
 [[nodiscard]] PlantState start_of(const Start& start, const ControlLaw& law, const Vehicle& vehicle);

@@ -60,17 +60,18 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
     const SurfaceEffects* effects = conditions.aero && problem.aero.enabled ? &setting.effects : nullptr;
     const Vehicle vehicle = vehicle_in(world, problem.robot);
     const Surroundings surroundings(effects, world);
+    const World nominal;
+    const Surroundings believed(effects, nominal);
     const Plant plant(vehicle, surroundings);
     PlantState state = start_of(problem.start, setting.law, vehicle);
-    ControlMemory memory;
-    memory.pitch_reference_rad = problem.start.pitch_rad;
+    ControlMemory memory = setting.law.memory_at_start(motion_of(problem.start));
     JudgedFlight flight;
 
     // In a world a vehicle at rest has hovered at its start, in calm air and with quiet sensors.
     if (conditions.world && is_at_rest(problem.start)) {
         const World quiet = without_noise(world);
         const ReferencePoint here = at_rest(problem.start.configuration());
-        Loop hover(setting.law, plant, quiet, problem.robot, state, memory);
+        Loop hover(setting.law, believed, plant, quiet, problem.robot, state, memory);
         const std::int64_t ticks = std::llround(hover_before_start_s / setting.law.tick_s());
         for (std::int64_t tick = 0; tick < ticks; ++tick) {
             hover.next(tick, here);
@@ -86,7 +87,7 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         }
     }
 
-    Loop loop(setting.law, plant, world, problem.robot, state, memory);
+    Loop loop(setting.law, believed, plant, world, problem.robot, state, memory);
     Umpire umpire(problem, effects, setting.obstacles, world, flight);
     Reference reference(plan);
     const std::vector<Goal> goals = goals_of(problem);

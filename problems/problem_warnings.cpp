@@ -95,28 +95,50 @@ std::vector<KeyError> unbalanced_roll(const Robot& robot) {
              "motion; expected y that cancel at the front and at the back"}};
 }
 
+/// A gain without which nothing holds what it controls.
+struct HoldingGain {
+    const char* key;
+    double value;
+    bool is_inherited = false;  ///< it is that of another key
+};
+
+std::vector<HoldingGain> holding_gains(const ModelInversion& law) {
+    const ModelInversion::AxisGains height = law.axis_gains(1);
+    return {{"controller.position.kp", law.position_kp},
+            {"controller.position.kd", law.position_kd},
+            {"controller.height.kp", height.kp, height.kp == law.position_kp},
+            {"controller.height.kd", height.kd, height.kd == law.position_kd},
+            {"controller.attitude.kp", law.attitude_kp},
+            {"controller.attitude.rate_kp", law.attitude_rate_kp},
+            {"controller.arm.kp", law.arm_kp},
+            {"controller.arm.kd", law.arm_kd}};
+}
+
+std::vector<HoldingGain> holding_gains(const CascadedPid& law) {
+    return {{"controller.horizontal.position_kp", law.horizontal_position_kp},
+            {"controller.horizontal.velocity_kp", law.horizontal_velocity_kp},
+            {"controller.vertical.position_kp", law.vertical_position_kp},
+            {"controller.vertical.velocity_kp", law.vertical_velocity_kp},
+            {"controller.pitch.angle_kp", law.pitch_angle_kp},
+            {"controller.pitch.rate_kp", law.pitch_rate_kp},
+            {"controller.joint.kp", law.joint_kp},
+            {"controller.joint.kd", law.joint_kd}};
+}
+
+/// Of other laws nothing is known.
+template <class Law>
+std::vector<HoldingGain> holding_gains(const Law& /*law*/) {
+    return {};
+}
+
 std::vector<KeyError> gains_of_zero(const Robot& robot) {
     std::vector<KeyError> warnings;
-    std::visit(
-        [&warnings](const auto& law) {
-            const std::pair<const char*, double> gains[] = {{"controller.position.kp", law.position_kp},
-                                                            {"controller.position.kd", law.position_kd},
-                                                            {"controller.height.kp", law.axis_gains(1).kp},
-                                                            {"controller.height.kd", law.axis_gains(1).kd},
-                                                            {"controller.attitude.kp", law.attitude_kp},
-                                                            {"controller.attitude.rate_kp", law.attitude_rate_kp},
-                                                            {"controller.arm.kp", law.arm_kp},
-                                                            {"controller.arm.kd", law.arm_kd}};
-            for (const auto& [key, gain] : gains) {
-                const bool is_inherited =
-                    std::string_view(key).find(".height.") != std::string_view::npos &&
-                    gain == (std::string_view(key).ends_with("kp") ? law.position_kp : law.position_kd);
-                if (gain == 0 && !is_inherited) {
-                    warnings.push_back({key, "is 0: nothing holds what it controls in place"});
-                }
-            }
-        },
-        robot.controller.law);
+    for (const HoldingGain& gain :
+         std::visit([](const auto& law) { return holding_gains(law); }, robot.controller.law)) {
+        if (gain.value == 0 && !gain.is_inherited) {
+            warnings.push_back({gain.key, "is 0: nothing holds what it controls in place"});
+        }
+    }
     return warnings;
 }
 

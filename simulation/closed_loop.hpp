@@ -6,6 +6,7 @@
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/effects/sided_factor.hpp"
+#include "downwash/simulation/read_effect.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
 // One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
@@ -41,8 +42,26 @@ struct State : VehicleState<T> {
 #define DOWNWASH_IN_ONE_PIECE [[gnu::flatten]]
 #endif
 
+/// The controller's part of a tick. @param seen what it sees   @return what the law remembers
+template <class T, class Law, class Effect>
+[[gnu::always_inline]] inline controllers::LawMemory<T> controlled(const TickModel& model, const Law& law,
+                                                                   const dynamics::PlantState<T>& seen,
+                                                                   const dynamics::Motion<T>& motion,
+                                                                   const controllers::LawMemory<T>& memory,
+                                                                   const BasicReferencePoint<T>& reference,
+                                                                   Effect& effect, controllers::Actuation<T>& given) {
+    const auto own = controllers::recalled<Law>(memory);
+    if constexpr (controllers::is_aided<Law>) {
+        const ReadEffect<T, Effect> map(effect, model.tilt_loss);
+        return controllers::remembered(
+            law.control(model.plant, seen, motion, own, reference, model.tick_s, given, map));
+    } else {
+        return controllers::remembered(law.control(model.plant, seen, motion, own, reference, model.tick_s, given));
+    }
+}
+
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
-/// @param law that of the model, as its own type: what runs tick by tick visits model.law once
+/// @param law that of the model, as what flies: what runs tick by tick calls controllers::visit_flown() once
 /// @param motion that of the state
 /// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane. That of a tilted rotor is
 /// less if the factor tells the sides apart (see WorldSurroundings); otherwise it is taken as it is
@@ -55,8 +74,7 @@ DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& la
                                            Factor&& factor, controllers::Actuation<T>& given,
                                            const Integrate& integrate = {}) {
     VehicleState<T> next;
-    next.memory = controllers::remembered(law.control(
-        model.plant, state.plant, motion, controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
+    next.memory = controlled(model, law, state.plant, motion, state.memory, reference, factor, given);
     if constexpr (requires { factor.sided(0, state.plant.q[0], state.plant.q[1]); }) {
         const TiltedEffect<T, std::remove_reference_t<Factor>> effect(factor, model.tilt_loss);
         next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), effect);
@@ -76,9 +94,8 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
                                              controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
-    next.memory =
-        controllers::remembered(law.control(model.plant, seen, dynamics::motion_at(model.plant, seen.q, seen.u),
-                                            controllers::recalled<Law>(state.memory), reference, model.tick_s, given));
+    next.memory = controlled(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory,
+                             reference, effect, given);
     BasicPlantModel<T> plant;
     static_cast<PlantStructure&>(plant) = model.plant;
     static_cast<PlantNumbers<T>&>(plant) = world.plant;
@@ -108,12 +125,10 @@ template <class Factor, class Integrate = dynamics::OneStep>
 State<double> tick(const TickModel& model, const State<double>& state, const ReferencePoint& reference, Factor&& factor,
                    controllers::Actuation<double>& given, const Integrate& integrate = {}) {
     const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
-    return std::visit(
-        [&](const auto& law) {
-            const VehicleState<double>& vehicle = state;
-            return State<double>{tick(model, law, vehicle, motion, reference, factor, given, integrate), state.world};
-        },
-        model.law);
+    return controllers::visit_flown(model.law, [&](const auto& law) {
+        const VehicleState<double>& vehicle = state;
+        return State<double>{tick(model, law, vehicle, motion, reference, factor, given, integrate), state.world};
+    });
 }
 
 }  // namespace downwash::simulation

@@ -34,18 +34,20 @@ struct Kernels {
 
 constexpr int few_lanes = lane_count / 2;
 
-Kernels kernels_for(Instructions instructions, std::size_t law) {
+Kernels kernels_for(Instructions instructions, const ControlLaw& flown) {
+    const std::size_t law = flown.index();
+    const bool is_aided = controllers::aids_of(flown).are_any();
 #ifdef DOWNWASH_HAS_AVX_KERNELS
     if (instructions == Instructions::avx2) {
-        return {simulation::avx2_kernel(law), simulation::avx2_kernel(law)};
+        return {simulation::avx2_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
     }
     if (instructions == Instructions::avx512) {
-        return {simulation::avx512_kernel(law), simulation::avx2_kernel(law)};
+        return {simulation::avx512_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
     }
 #endif
     assert(instructions == Instructions::baseline);
     static_cast<void>(instructions);
-    return {simulation::baseline_kernel(law), simulation::baseline_kernel(law)};
+    return {simulation::baseline_kernel(law, is_aided), simulation::baseline_kernel(law, is_aided)};
 }
 
 FlightKernelModel make_kernel_model(const FlightSetting& setting) {
@@ -94,7 +96,7 @@ struct FlightPool::Impl {
         : rules(std::move(the_rules)),
           setting{model, map, rules, goal},
           kernel_model(make_kernel_model(setting)),
-          kernels(kernels_for(instructions, model.tick().law.index())) {}
+          kernels(kernels_for(instructions, model.tick().law)) {}
 
     /// Flies jobs until none is left. Several threads may call it at once.
     void work() {

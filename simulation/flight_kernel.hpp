@@ -53,7 +53,7 @@ struct alignas(64) FlightLanes {
 /// What a lane's flight does not change.
 struct FlightKernelModel {
     const TickModel* tick;
-    const void* law;  ///< that of the tick, as its own type: which one is known to the kernel
+    const void* law;  ///< that of the tick, as its own type: which one, and whether it flies Aided, knows the kernel
     RuleLimits limits;
     MotionReach reach;  ///< with hubs as part of the body
     bool has_map;
@@ -67,11 +67,11 @@ struct FlightKernelModel {
 /// until so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks);
 
-// For each set of instructions the kernel of a control law, by its number in ControlLaw.
-[[nodiscard]] FlightKernel baseline_kernel(std::size_t law);
+// For each set of instructions the kernel of a control law, by its number in ControlLaw, and whether it flies Aided.
+[[nodiscard]] FlightKernel baseline_kernel(std::size_t law, bool is_aided);
 #ifdef DOWNWASH_HAS_AVX_KERNELS
-[[nodiscard]] FlightKernel avx2_kernel(std::size_t law);
-[[nodiscard]] FlightKernel avx512_kernel(std::size_t law);
+[[nodiscard]] FlightKernel avx2_kernel(std::size_t law, bool is_aided);
+[[nodiscard]] FlightKernel avx512_kernel(std::size_t law, bool is_aided);
 #endif
 
 }  // namespace downwash::simulation

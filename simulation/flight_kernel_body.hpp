@@ -96,7 +96,18 @@ inline void draw_noises(const FlightKernelModel& model, const LaneGroup& group, 
     }
 }
 
-/// @tparam is_in_worlds whether some flights are
+/// A law as what flies. @param law the law itself
+template <class Law>
+[[gnu::always_inline]] inline const Law& flown(const void* law) {
+    return *static_cast<const Law*>(law);
+}
+template <class Flown>
+requires controllers::is_aided<Flown>
+[[gnu::always_inline]] inline Flown flown(const void* law) {
+    return {*static_cast<std::remove_reference_t<decltype(Flown::law)>*>(law)};
+}
+
+/// @tparam Law as what flies   @tparam is_in_worlds whether some flights are
 template <class Law, bool is_in_worlds, class Effect>
 void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect) {
     FlightLanes& lanes = group.lanes;
@@ -104,7 +115,7 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     if (!any(is_active)) {
         return;
     }
-    const Law& law = *static_cast<const Law*>(model.law);
+    const auto& law = flown<Law>(model.law);
     const PlantModel& plant = model.tick->plant;
     std::conditional_t<is_in_worlds, State<Pack>, VehicleState<Pack>> state;
     static_cast<VehicleState<Pack>&>(state) = group.load<VehicleState<Pack>>(lanes.state);
@@ -205,15 +216,26 @@ fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
     }
 }
 
+/// The kernel of a law with its aids; of a law that has none, its own.
+template <class Law>
+constexpr FlightKernel aided_kernel() {
+    if constexpr (controllers::can_be_aided<Law>) {
+        return fly_lanes<controllers::Aided<Law>>;
+    } else {
+        return fly_lanes<Law>;
+    }
+}
+
 template <class... Laws>
-FlightKernel kernel_among(std::size_t law, const std::variant<Laws...>* /*all*/) {
+FlightKernel kernel_among(std::size_t law, bool is_aided, const std::variant<Laws...>* /*all*/) {
     static constexpr FlightKernel of_law[] = {fly_lanes<Laws>...};
-    return of_law[law];
+    static constexpr FlightKernel of_aided_law[] = {aided_kernel<Laws>()...};
+    return is_aided ? of_aided_law[law] : of_law[law];
 }
 
 /// The kernel of a law, by its number in ControlLaw.
-inline FlightKernel kernel_of(std::size_t law) {
-    return kernel_among(law, static_cast<const ControlLaw*>(nullptr));
+inline FlightKernel kernel_of(std::size_t law, bool is_aided) {
+    return kernel_among(law, is_aided, static_cast<const ControlLaw*>(nullptr));
 }
 
 }  // namespace

@@ -58,12 +58,9 @@ FlightState quiet_tick(const FlightModel& model, const FlightState& state, const
         return tick(model.tick(), state, reference, factor, given, integrate);
     }
     const double no_noise[noise_count] = {};
-    return std::visit(
-        [&](const auto& law) {
-            return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, given,
-                                 integrate);
-        },
-        model.tick().law);
+    return controllers::visit_flown(model.tick().law, [&](const auto& law) {
+        return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, given, integrate);
+    });
 }
 
 /// Moves a vehicle along a segment until `after` finds a reason to end the flight.
@@ -90,19 +87,17 @@ template <class Effect, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_t first_tick,
                     const ReferenceSegment& segment, Effect&& effect, const Integrate& integrate, FlightState& state,
                     After&& after) {
-    return std::visit(
-        [&](const auto& law) {
-            double noise[noise_count] = {};
-            const auto step = [&](std::int64_t t, const FlightState& from, const ReferencePoint& reference,
-                                  controllers::Actuation<double>& given) {
-                if (world.has_noise) {
-                    draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
-                }
-                return tick_in_world(model, law, world.numbers, noise, from, reference, effect, given, integrate);
-            };
-            return fly_steps(segment, state, step, after);
-        },
-        model.law);
+    return controllers::visit_flown(model.law, [&](const auto& law) {
+        double noise[noise_count] = {};
+        const auto step = [&](std::int64_t t, const FlightState& from, const ReferencePoint& reference,
+                              controllers::Actuation<double>& given) {
+            if (world.has_noise) {
+                draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
+            }
+            return tick_in_world(model, law, world.numbers, noise, from, reference, effect, given, integrate);
+        };
+        return fly_steps(segment, state, step, after);
+    });
 }
 
 /// Flies a segment by the plain tick.
@@ -110,17 +105,15 @@ Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_
 template <class Factor, class Integrate, class After>
 Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, Factor&& factor,
                     const Integrate& integrate, FlightState& state, After&& after) {
-    return std::visit(
-        [&](const auto& law) {
-            const auto step = [&](std::int64_t, const FlightState& from, const ReferencePoint& reference,
-                                  controllers::Actuation<double>& given) {
-                const VehicleState<double>& vehicle = from;
-                const auto motion = dynamics::motion_at(model.plant, vehicle.plant.q, vehicle.plant.u);
-                return FlightState{tick(model, law, vehicle, motion, reference, factor, given, integrate), from.world};
-            };
-            return fly_steps(segment, state, step, after);
-        },
-        model.law);
+    return controllers::visit_flown(model.law, [&](const auto& law) {
+        const auto step = [&](std::int64_t, const FlightState& from, const ReferencePoint& reference,
+                              controllers::Actuation<double>& given) {
+            const VehicleState<double>& vehicle = from;
+            const auto motion = dynamics::motion_at(model.plant, vehicle.plant.q, vehicle.plant.u);
+            return FlightState{tick(model, law, vehicle, motion, reference, factor, given, integrate), from.world};
+        };
+        return fly_steps(segment, state, step, after);
+    });
 }
 
 }  // namespace downwash::simulation

@@ -117,13 +117,18 @@ FlightState FlightModel::state_at(const PlanarPose& pose, const double (&u)[4]) 
     FlightState state{};
     std::copy(q, q + 4, state.plant.q);
     std::copy(u, u + 4, state.plant.u);
-    state.memory =
-        std::visit([&](const auto& law) { return controllers::remembered(law.rested(pose.pitch_rad)); }, tick_.law);
     // Rotors that lag begin with the thrust that carries the weight.
     const PlantModel& plant = tick_.plant;
     for (int i = 0; i < plant.rotor_count; ++i) {
         state.plant.thrust_n[i] = plant.force_share[i] * plant.total_mass_kg * standard_gravity_m_s2;
     }
+    state.memory = controllers::visit_flown(tick_.law, [&]<class Flown>(const Flown& law) {
+        if constexpr (controllers::is_aided<Flown>) {
+            return controllers::remembered(law.rested(plant, state.plant, tick_.tick_s));
+        } else {
+            return controllers::remembered(law.rested(plant, state.plant));
+        }
+    });
     state.world = memory_at_start(nominal_world_, state.plant);
     return state;
 }

@@ -106,9 +106,9 @@ void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearE
         (wrench(q[1], step, command_n).pitch_torque_nm - wrench(q[1], -step, command_n).pitch_torque_nm) / (2 * step);
 
     double unit_n[max_rotors];
-    dynamics::allocate(plant, 1.0, 0.0, unit_n);
+    simulation::command_rotors_at_rest(model, effect, trim.state.plant, 1.0, 0.0, unit_n);
     stability.force_gain_n_m = plant.total_mass_kg * trim.height_gain_1_s2 * wrench(q[1], 0, unit_n).thrust_n;
-    dynamics::allocate(plant, 0.0, 1.0, unit_n);
+    simulation::command_rotors_at_rest(model, effect, trim.state.plant, 0.0, 1.0, unit_n);
     const auto equations =
         dynamics::equations_of_motion(plant, dynamics::attitude(plant, 0.0, q[3]), trim.state.plant.u);
     const double nothing[3] = {};
@@ -167,7 +167,8 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
     }
     const TickModel& tick = model.tick();
     const auto attitude = dynamics::attitude(tick.plant, 0.0, arm_rad);
-    const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model});
+    const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model},
+                              controllers::aids_of(tick.law).feed_forward);
     analysis.trim = simulation::hover_trim(model.robot(), tick, effect, model.state_at(pose));
     analysis.verdict = HoldVerdict::no_equilibrium;
     if (analysis.trim.limit != HoldLimit::none) {

@@ -11,13 +11,14 @@ using dynamics::Attitude;
 using dynamics::EquationsOfMotion;
 using dynamics::RotorWrench;
 
-/// The wrench to command so that the wrench in effect is `wanted`: the effect is linear in the commands.
-RotorWrench<double> command_for(const PlantModel& plant, const FlightState& at, const LinearEffect& effect,
-                                const RotorWrench<double>& wanted) {
+/// The wrench to demand so that the wrench in effect is `wanted`: the effect is linear in the demand.
+RotorWrench<double> demand_for(const TickModel& model, const FlightState& at, const LinearEffect& effect,
+                               const RotorWrench<double>& wanted) {
+    const PlantModel& plant = model.plant;
     const auto attitude = dynamics::attitude(plant, at.plant.q[2], at.plant.q[3]);
     const auto acting = [&](double thrust_n, double pitch_torque_nm) {
         double command_n[max_rotors];
-        dynamics::allocate(plant, thrust_n, pitch_torque_nm, command_n);
+        command_rotors_at_rest(model, effect, at.plant, thrust_n, pitch_torque_nm, command_n);
         return dynamics::rotor_wrench(plant, attitude, at.plant.q[0], at.plant.q[1], command_n, effect);
     };
     const RotorWrench<double> a = acting(1, 0);
@@ -29,6 +30,19 @@ RotorWrench<double> command_for(const PlantModel& plant, const FlightState& at, 
 
 }  // namespace
 
+void command_rotors_at_rest(const TickModel& model, const LinearEffect& effect, const dynamics::PlantState<double>& at,
+                            double thrust_n, double pitch_torque_nm, double (&command_n)[max_rotors]) {
+    const std::optional<controllers::FeedForward> feed_forward = controllers::aids_of(model.law).feed_forward;
+    if (!feed_forward) {
+        dynamics::allocate(model.plant, thrust_n, pitch_torque_nm, command_n);
+        return;
+    }
+    const ReadEffect<double, const LinearEffect> map(effect, model.tilt_loss);
+    const auto attitude = dynamics::attitude(model.plant, at.q[2], at.q[3]);
+    const auto ratios = controllers::read_ratios(*feed_forward, model.plant, at, attitude, map);
+    controllers::allocate_against(model.plant, ratios, thrust_n, pitch_torque_nm, command_n);
+}
+
 HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEffect& effect,
                      const FlightState& resting) {
     const PlantModel& plant = model.plant;
@@ -39,8 +53,8 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
     const EquationsOfMotion<double> e = dynamics::equations_of_motion(plant, a, resting.plant.u);
 
     // The plant's side. Row 1 leaves no other pitch than level; rows 2 to 4 with du = 0 give thrust, torque, joint.
-    const RotorWrench<double> command = command_for(plant, resting, effect, {e.bias[1], e.bias[2]});
-    dynamics::allocate(plant, command.thrust_n, command.pitch_torque_nm, trim.rotor_command_n);
+    const RotorWrench<double> demand = demand_for(model, resting, effect, {e.bias[1], e.bias[2]});
+    command_rotors_at_rest(model, effect, resting.plant, demand.thrust_n, demand.pitch_torque_nm, trim.rotor_command_n);
     trim.joint_torque_nm = e.bias[3];
     for (bool& is_used : trim.feeds_back.plant.q) {
         is_used = true;
@@ -59,20 +73,18 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
     }
 
     // The controller's side.
-    std::visit(
-        [&](const auto& law) {
-            const auto rest = law.rest(plant, e, {command, trim.joint_torque_nm});
-            trim.state.memory = controllers::remembered(rest.memory);
-            trim.feeds_back.memory = controllers::remembered(rest.feeds_back);
-            trim.reference.position[0] = resting.plant.q[0] + rest.error[0];
-            trim.reference.position[1] = resting.plant.q[1] + rest.error[1];
-            trim.reference.position[2] = arm_rad + rest.error[2];
-            trim.pitch_reference_rad = rest.pitch_reference_rad;
-            trim.height_gain_1_s2 = rest.height_gain_1_s2;
-            trim.pitch_gain_1_s2 = rest.pitch_gain_1_s2;
-            trim.limit = rest.limit;
-        },
-        model.law);
+    controllers::visit_flown(model.law, [&](const auto& law) {
+        const auto rest = law.rest(plant, e, {demand, trim.joint_torque_nm});
+        trim.state.memory = controllers::remembered(rest.memory);
+        trim.feeds_back.memory = controllers::remembered(rest.feeds_back);
+        trim.reference.position[0] = resting.plant.q[0] + rest.error[0];
+        trim.reference.position[1] = resting.plant.q[1] + rest.error[1];
+        trim.reference.position[2] = arm_rad + rest.error[2];
+        trim.pitch_reference_rad = rest.pitch_reference_rad;
+        trim.height_gain_1_s2 = rest.height_gain_1_s2;
+        trim.pitch_gain_1_s2 = rest.pitch_gain_1_s2;
+        trim.limit = rest.limit;
+    });
 
     // The plant's limits come first.
     const double joint_saturation = std::abs(trim.joint_torque_nm) / plant.max_joint_torque_nm;
@@ -80,7 +92,7 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEff
     trim.saturation = lane::max(joint_saturation, rotor_saturation);
     if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {
         trim.limit = HoldLimit::arm_angle;
-    } else if (!(rotor_saturation < 1) || !std::isfinite(command.thrust_n + command.pitch_torque_nm)) {
+    } else if (!(rotor_saturation < 1) || !std::isfinite(demand.thrust_n + demand.pitch_torque_nm)) {
         trim.limit = HoldLimit::rotor_thrust;
     } else if (!(joint_saturation < 1)) {
         trim.limit = HoldLimit::joint_torque;

@@ -11,4 +11,9 @@ namespace downwash::simulation {
 [[nodiscard]] HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEffect& effect,
                                    const FlightState& resting);
 
+/// The rotors' commands [N] of the law for a thrust [N] and a pitch torque [N m] that the vehicle at rest should have
+/// by what the law knows: allocated and, with a feed-forward, divided by what it reads. Linear in both.
+void command_rotors_at_rest(const TickModel& model, const LinearEffect& effect, const dynamics::PlantState<double>& at,
+                            double thrust_n, double pitch_torque_nm, double (&command_n)[max_rotors]);
+
 }  // namespace downwash::simulation

@@ -218,6 +218,36 @@ class LawRows {
     Parameter<Robot> number(std::string_view path, std::string_view description, Number Law::*member) const {
         return parameters::number<Robot>(below(path), description, place(member));
     }
+    /// The keys of what a law has beside its loops.
+    void add_aids() {
+        const auto observer = [](auto& robot) -> auto& {
+            return std::get<Law>(robot.controller.law).aids.observer;
+        };
+        const auto feed_forward = [](auto& robot) -> auto& {
+            return std::get<Law>(robot.controller.law).aids.feed_forward;
+        };
+        add(parameters::optional_group<Robot>(
+            below("observer"), "observes forces and torques that the model does not explain, and counters them",
+            observer));
+        add(parameters::number<Robot>(
+                below("observer.gain_1_s"), "1 / time constant of the estimates",
+                [observer](auto& robot) -> auto& { return part_of(observer(robot)).gain_1_s; })
+                .at_least(1e-3)
+                .at_most(1e4));
+        add(parameters::optional_group<Robot>(
+            below("feed_forward"), "divides rotor commands by the thrust ratios that a map has at the rotors",
+            feed_forward));
+        add(parameters::number<Robot>(
+                below("feed_forward.offset_x_m"), "where the map has the surfaces, from where they are believed to be",
+                [feed_forward](auto& robot) -> auto& { return part_of(feed_forward(robot)).offset_x_m; })
+                .at_least(-100)
+                .at_most(100));
+        add(parameters::number<Robot>(
+                below("feed_forward.offset_z_m"), "the same along z",
+                [feed_forward](auto& robot) -> auto& { return part_of(feed_forward(robot)).offset_z_m; })
+                .at_least(-100)
+                .at_most(100));
+    }
     Parameter<Robot> flag(std::string_view path, std::string_view description, bool Law::*member) const {
         return parameters::flag<Robot>(below(path), description, place(member));
     }
@@ -225,6 +255,7 @@ class LawRows {
  private:
     static Parameter<Robot> shared(const Parameter<Robot>& other, const Parameter<Robot>& own) {
         Parameter<Robot> both = own;
+        both.required = own.required && other.required;
         both.condition = other.condition + " or " + Law::name;
         both.applies = [other, own](const Robot& robot, std::size_t i) {
             return other.applies(robot, i) || own.applies(robot, i);
@@ -237,7 +268,25 @@ class LawRows {
                 (own.applies(robot, i) ? own : other).set(robot, i, value);
             };
         }
+        if (own.count) {
+            both.count = [other, own](const Robot& robot, std::size_t i) {
+                return (own.applies(robot, i) ? own : other).count(robot, i);
+            };
+            both.resize = [other, own](Robot& robot, std::size_t i, std::size_t count) {
+                (own.applies(robot, i) ? own : other).resize(robot, i, count);
+            };
+        }
         return both;
+    }
+    /// What a part says; the defaults where there is none.
+    template <class Part>
+    static const Part& part_of(const std::optional<Part>& part) {
+        static const Part usual;
+        return part ? *part : usual;
+    }
+    template <class Part>
+    static Part& part_of(std::optional<Part>& part) {
+        return part ? *part : part.emplace();
     }
     static std::string below(std::string_view path) { return "controller." + std::string(path); }
     static bool is_flown(const Robot& robot, std::size_t /*index*/) {
@@ -285,7 +334,7 @@ void add_laws(Rows& rows, const std::variant<Laws...>* laws) {
 }
 
 void add_controller(Rows& rows) {
-    rows.push_back(group("controller", "the model-inversion controllers of multirotor and arm"));
+    rows.push_back(group("controller", "the controllers of multirotor and arm"));
     rows.push_back(
         number(
             "controller.rate_hz", "control ticks per second", [](auto& r) -> auto& { return r.controller.rate_hz; })

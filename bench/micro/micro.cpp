@@ -110,26 +110,62 @@ BENCHMARK(clearance);
 /// What the planner's own model knows.
 enum class Model : std::uint8_t { dynamics, aerodynamics, worlds };
 
+/// Control laws for the bridge's vehicle; the first is that of its file.
+struct Flown {
+    const char* name;
+    bool is_cascaded, observes, reads;
+};
+constexpr Flown laws[] = {{"of_the_file", false, false, false},
+                          {"observer", false, true, false},
+                          {"feed_forward", false, false, true},
+                          {"observer_and_feed_forward", false, true, true},
+                          {"cascaded", true, false, false},
+                          {"cascaded_observer", true, true, false},
+                          {"cascaded_feed_forward", true, false, true},
+                          {"cascaded_both", true, true, true}};
+
+/// The vehicle with such a law.
+std::shared_ptr<const FlightModel> model_with(const Flown& flown) {
+    Problem problem = Bridge::get().problem;
+    if (flown.is_cascaded) {
+        CascadedPid law;
+        law.rotor_lead = 1;
+        problem.robot.controller.law = law;
+    }
+    std::visit(
+        [&](auto& law) {
+            if (flown.observes) {
+                law.aids.observer.emplace();
+            }
+            if (flown.reads) {
+                law.aids.feed_forward.emplace();
+            }
+        },
+        problem.robot.controller.law);
+    return make_flight_model(problem);
+}
+
 /// Random edges all over the bridge under all rules, side by side; those in worlds each in one of its own, with noise
 /// and gusts.
-void batch(benchmark::State& state, Model model, Instructions instructions, int threads) {
+void batch(benchmark::State& state, Model model, Instructions instructions, int threads, const Flown& flown) {
     const Bridge& bridge = Bridge::get();
+    const std::shared_ptr<const FlightModel> vehicle = model_with(flown);
     FlightRules rules;
     rules.bounds = bridge.problem.bounds;
     const AeroMap* const map = model == Model::dynamics ? nullptr : bridge.map.get();
-    FlightPool pool(*bridge.model, map, rules, nullptr, threads, instructions);
+    FlightPool pool(*vehicle, map, rules, nullptr, threads, instructions);
     std::vector<FlownWorld> worlds;
     for (std::uint64_t i = 1; i <= 512; ++i) {
         worlds.push_back(make_world(bridge.problem.robot, draw_world(Uncertainty{}, bridge.problem.robot, 1, i)));
     }
-    const double tick_s = bridge.model->tick().tick_s;
+    const double tick_s = vehicle->tick().tick_s;
     std::vector<FlightJob> edges;
     const std::vector<PlanarPose> from = random_queries(bridge.problem.bounds);
     for (std::size_t i = 0; edges.size() < 512; ++i) {
         const Configuration at{from[i].x_m, from[i].z_m, from[i].arm_rad};
-        if (!bridge.model->collisions().is_nearer_than(level_at(at), rules.margin_m)) {
+        if (!vehicle->collisions().is_nearer_than(level_at(at), rules.margin_m)) {
             const Configuration to{at.x_m + 20 * from[i].pitch_rad, at.z_m, at.arm_rad + 0.5};
-            edges.push_back({bridge.model->state_at(level_at(at)), {{{at_rest(at), at_rest(to), 800, tick_s}}}});
+            edges.push_back({vehicle->state_at(level_at(at)), {{{at_rest(at), at_rest(to), 800, tick_s}}}});
             if (model == Model::worlds) {
                 FlightJob& edge = edges.back();
                 edge.world = &worlds[edges.size() - 1];
@@ -157,11 +193,15 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
                                                                    : "in_worlds";
         for (const Instructions instructions : known_instructions()) {
             const std::string name = "batch/" + variant + '_' + names[static_cast<int>(instructions)];
-            benchmark::RegisterBenchmark(name.c_str(), batch, model, instructions, 1);
+            benchmark::RegisterBenchmark(name.c_str(), batch, model, instructions, 1, laws[0]);
         }
         benchmark::RegisterBenchmark(("batch/" + variant + "_two_threads").c_str(), batch, model, best_instructions(),
-                                     2)
+                                     2, laws[0])
             ->UseRealTime();
+    }
+    for (const Flown& flown : laws) {
+        benchmark::RegisterBenchmark((std::string("law/") + flown.name).c_str(), batch, Model::aerodynamics,
+                                     best_instructions(), 1, flown);
     }
     return true;
 }();

@@ -149,6 +149,73 @@ TEST_CASE("Walls push and turn the vehicle in a world as the planner says") {
     CHECK(std::abs(without.energy_j - beside.energy_j) > 1e-5 * without.energy_j);  // or nothing was compared
 }
 
+TEST_CASE("Other control laws fly as the planner says, with an observer, with a feed-forward and in worlds") {
+    struct Kind {
+        bool is_cascaded, observes, reads;
+    };
+    for (const char* name : {"bridge_inspection", "box_girder_bay"}) {
+        Problem problem = shipped(name);
+        const Plan plan = plan_of(problem, 100);
+        problem.aero.ground = EffectModel::multirotor_body;
+        for (const Kind& kind : {Kind{true, false, false}, Kind{false, true, false}, Kind{false, false, true},
+                                 Kind{false, true, true}, Kind{true, true, true}}) {
+            if (kind.is_cascaded) {
+                CascadedPid law;
+                law.rotor_lead = 1;
+                law.vertical_velocity_kd = 0.05;
+                law.pitch_rate_kd = 0.01;
+                problem.robot.controller.law = law;
+            } else {
+                problem.robot.controller.law = shipped(name).robot.controller.law;
+            }
+            std::visit(
+                [&](auto& law) {
+                    if (kind.observes) {
+                        law.aids.observer = controllers::DisturbanceObserver{8};
+                    }
+                    if (kind.reads) {
+                        law.aids.feed_forward = controllers::FeedForward{-0.02, 0.03};
+                    }
+                },
+                problem.robot.controller.law);
+            problem.uncertainty.reset();
+            CAPTURE(name, kind.is_cascaded, kind.observes, kind.reads);
+            const judge::PlanJudge judge(problem);
+            compare(judge.fly(plan, {true, std::nullopt}), *executed(problem, plan, true, std::nullopt));
+            compare(judge.fly(plan, {false, std::nullopt}), *executed(problem, plan, false, std::nullopt));
+            for (std::uint64_t index = 1; index < 4; ++index) {
+                CAPTURE(index);
+                const World world = draw_world(Uncertainty{}, problem.robot, 5, index);
+                const auto theirs = executed(problem, plan, true, world);
+                const judge::JudgedFlight mine = judge.fly(plan, {true, world});
+                if (theirs) {
+                    compare(mine, *theirs);
+                } else {
+                    CHECK(mine.outcome == judge::Outcome::unstable);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("A start in motion means the same to a law that observes") {
+    Problem problem = shipped("bridge_inspection");
+    const Plan plan = plan_of(problem, 100);
+    problem.start.vx_m_s = 0.3;
+    problem.start.arm_rate_rad_s = 0.2;
+    for (const bool is_cascaded : {false, true}) {
+        CAPTURE(is_cascaded);
+        if (is_cascaded) {
+            CascadedPid law;
+            law.rotor_lead = 1;
+            problem.robot.controller.law = law;
+        }
+        std::visit([](auto& law) { law.aids.observer.emplace(); }, problem.robot.controller.law);
+        compare(judge::PlanJudge(problem).fly(plan, {true, std::nullopt}),
+                *executed(problem, plan, true, std::nullopt));
+    }
+}
+
 TEST_CASE("Straight plans that end in trouble end the same way") {
     Problem problem = ceiling_problem();
     Plan plan;

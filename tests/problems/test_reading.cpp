@@ -104,6 +104,45 @@ TEST_CASE("keys are read by their former names, which are reported") {
           (folder / "robot.yaml").string() + ":16:21: controller.attitude.ku5 is now called rate_kp: rename it");
 }
 
+constexpr std::string_view inversion_gains =
+    "  position: {kp: 2, kd: 2.6}\n  attitude: {kp: 8, rate_kp: 20}\n  arm: {kp: 30, kd: 11}\n";
+
+TEST_CASE("a robot file chooses its control law, with defaults, an observer and a feed-forward") {
+    const TestFolder folder;
+    const Problem cascaded = folder.read(
+        good_problem, edited(good_robot, inversion_gains,
+                             "  type: cascaded-pid\n  pitch: {rate_kp: 3}\n  feed_forward: {offset_z_m: 0.03}\n"));
+    const auto& cascade = std::get<CascadedPid>(cascaded.robot.controller.law);
+    CHECK(cascade.pitch_rate_kp == 3);
+    CHECK(cascade.vertical_velocity_kp == CascadedPid{}.vertical_velocity_kp);
+    CHECK_FALSE(cascade.aids.observer);
+    REQUIRE(cascade.aids.feed_forward);
+    CHECK(cascade.aids.feed_forward->offset_x_m == 0);
+    CHECK(cascade.aids.feed_forward->offset_z_m == 0.03);
+
+    const Problem inverting =
+        folder.read(good_problem, edited(good_robot, "controller:\n", "controller:\n  observer: {gain_1_s: 5}\n"));
+    const ModelInversion& gains = test::gains_of(inverting.robot);
+    REQUIRE(gains.aids.observer);
+    CHECK(gains.aids.observer->gain_1_s == 5);
+    CHECK_FALSE(gains.aids.feed_forward);
+}
+
+TEST_CASE("what a control law has beside its loops survives being written and read") {
+    const TestFolder folder;
+    const Problem problem = folder.read(
+        good_problem, edited(good_robot, inversion_gains,
+                             "  type: cascaded-pid\n  observer: {gain_1_s: 7}\n  feed_forward: {offset_x_m: -0.05}\n"));
+    folder.write("written.yaml", effective_yaml(problem, (folder / "written.yaml").parent_path()));
+    const Problem read = read_problem(folder / "written.yaml");
+    const auto& law = std::get<CascadedPid>(read.robot.controller.law);
+    REQUIRE(law.aids.observer);
+    CHECK(law.aids.observer->gain_1_s == 7);
+    REQUIRE(law.aids.feed_forward);
+    CHECK(law.aids.feed_forward->offset_x_m == -0.05);
+    CHECK(problem_sha256(read) == problem_sha256(problem));
+}
+
 TEST_CASE("errors of several kinds and files are reported in one run, in the order of the files") {
     const TestFolder folder;
     CHECK(folder.errors_of(edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"),

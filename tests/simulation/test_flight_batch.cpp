@@ -101,6 +101,39 @@ TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, wall
     CHECK(rejections_of_equal_flights(plain, false, rules, 30).count(Rejection::none) == 1);
 }
 
+TEST_CASE("edges fly side by side as one by one with a cascaded PID") {
+    Problem problem = cluttered_problem();
+    problem.robot.rotors.time_constant_s = 0.012;
+    CascadedPid law;
+    law.rotor_lead = 1;
+    law.pitch_rate_kd = 0.01;
+    problem.robot.controller.law = law;
+    const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 200);
+    CHECK(aware.count(Rejection::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), 200).count(Rejection::none) == 1);
+}
+
+TEST_CASE("edges fly side by side as one by one with an observer and a feed-forward, in a world and in none") {
+    for (const double delay_s : {0.0, 0.006}) {
+        for (const bool is_cascaded : {false, true}) {
+            Problem problem = cluttered_problem();
+            problem.robot.rotors.time_constant_s = 0.012;
+            problem.robot.controller.delay_s = delay_s;
+            problem.aero.ground = EffectModel::multirotor_body;
+            const auto equip = [](auto& law) {
+                law.aids.observer.emplace();
+                law.aids.feed_forward = controllers::FeedForward{0.02, -0.03};
+            };
+            if (is_cascaded) {
+                problem.robot.controller.law = CascadedPid{};
+            }
+            std::visit(equip, problem.robot.controller.law);
+            const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 100);
+            CHECK(aware.count(Rejection::none) == 1);
+        }
+    }
+}
+
 TEST_CASE("edges of unstable vehicles and saturated rotors end side by side as one by one") {
     Problem problem = cluttered_problem();
     problem.robot.rotors.max_thrust_n = 13;

@@ -116,6 +116,36 @@ bool grows(const FlightModel& model, const HoverTrim& trim, int ticks, Random& r
     return in_the_end > before && in_the_end > 1e-9;
 }
 
+/// The cluttered problem with a cascaded PID.
+Problem cascaded_problem(bool has_memory) {
+    Problem problem = cluttered_problem();
+    CascadedPid law;
+    if (has_memory) {
+        problem.robot.rotors.time_constant_s = 0.02;
+        law.vertical_velocity_kd = 0.1;
+        law.pitch_rate_kd = 0.05;
+        law.horizontal_velocity_ki = 0;
+        law.joint_integral_limit_nm = 1;
+    }
+    problem.robot.controller.law = law;
+    return problem;
+}
+
+/// A problem whose law observes, reads a map that is somewhat wrong, or both.
+Problem equipped(Problem problem, bool observes, bool reads) {
+    std::visit(
+        [&](auto& law) {
+            if (observes) {
+                law.aids.observer.emplace();
+            }
+            if (reads) {
+                law.aids.feed_forward = controllers::FeedForward{0.02, -0.01};
+            }
+        },
+        problem.robot.controller.law);
+    return problem;
+}
+
 /// The cluttered problem with a fountain and every kind of memory that a controller may have.
 Problem problem_with_memory() {
     Problem problem = cluttered_problem();
@@ -157,8 +187,12 @@ TEST_CASE("in free air a vehicle hovers where its reference is and carries its o
 TEST_CASE("the trim is a fixed point of the tick, whatever the controller remembers") {
     Random random(11);
     int found = 0;
-    for (int kind = 0; kind < 3; ++kind) {
-        Problem problem = kind > 0 ? problem_with_memory() : cluttered_problem();
+    for (int kind = 0; kind < 9; ++kind) {
+        Problem problem = kind >= 5
+                              ? equipped(kind < 7 ? problem_with_memory() : cascaded_problem(true), true, kind % 2 == 0)
+                          : kind >= 3 ? cascaded_problem(kind == 4)
+                          : kind > 0  ? problem_with_memory()
+                                      : cluttered_problem();
         if (kind == 2) {  // without integrators, and with limits that are soon reached
             gains_of(problem.robot).position_ki = 0;
             gains_of(problem.robot).arm_integral_limit_rad_s2 = 0.1;
@@ -187,7 +221,7 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
             }
         }
     }
-    CHECK(found > 300);
+    CHECK(found > 900);
 }
 
 TEST_CASE("under a wide ceiling the slowest mode is that of the sampled height loop written by hand") {
@@ -261,8 +295,11 @@ TEST_CASE("flights grow where hover is called unstable and decay where it is cal
     Random random(5);
     int flights = 0;
     int unstable = 0;
-    for (const bool has_memory : {false, true}) {
-        const auto model = make_flight_model(has_memory ? problem_with_memory() : cluttered_problem());
+    for (const Problem& problem :
+         {cluttered_problem(), problem_with_memory(), cascaded_problem(false),
+          equipped(cluttered_problem(), true, false), equipped(problem_with_memory(), false, true),
+          equipped(problem_with_memory(), true, true), equipped(cascaded_problem(false), true, true)}) {
+        const auto model = make_flight_model(problem);
         for (int tried = 0; tried < 400; ++tried) {
             const HoverAnalysis a = random_hover(*model, random);
             const bool is_unstable = a.verdict == HoldVerdict::unstable;

@@ -67,3 +67,19 @@ TEST_CASE("A loop loses its margin with rotor lag and delay, and has none where 
     robot.rotors.time_constant_s = 0.2;
     CHECK_THAT(error_of([&] { static_cast<void>(loop_margins(robot, 0.0)); }), Catch::Contains("unstable"));
 }
+
+TEST_CASE(
+    "the cascaded PID keeps 6 dB and 45 degrees with its default gains, with lag and delay and the arm anywhere") {
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = 0.05;
+    robot.controller.delay_s = 0.01;
+    CascadedPid law;
+    law.rotor_lead = 1;
+    robot.controller.law = law;
+    for (const double arm_rad : {-quarter_turn, 0.0, quarter_turn}) {
+        for (const LoopMargins& margins : loop_margins(robot, arm_rad)) {
+            CHECK(margins.gain_margin_db > 6);
+            CHECK(margins.phase_margin_rad > quarter_turn / 2);
+        }
+    }
+}

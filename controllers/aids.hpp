@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+
+namespace downwash::controllers {
+
+/// How a law observes what its model does not know.
+struct DisturbanceObserver {
+    double gain_1_s = 10;  ///< L: an estimate comes with a time constant of 1 / L
+};
+
+/// The map whose thrust ratios a law divides its rotor commands by.
+struct FeedForward {
+    double offset_x_m = 0;  ///< where the map has the surfaces, from where they are believed to be
+    double offset_z_m = 0;
+};
+
+/// What a law has beside its loops.
+struct Aids {
+    std::optional<DisturbanceObserver> observer;  ///< empty: the law takes its model at its word
+    std::optional<FeedForward> feed_forward;      ///< empty: it knows no surfaces
+
+    [[nodiscard]] bool are_any() const noexcept { return observer || feed_forward; }
+};
+
+}  // namespace downwash::controllers

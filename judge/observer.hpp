@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include "downwash/judge/equations_of_motion.hpp"
+
+// The disturbance observer of docs/model.md 5.6, from the momenta of the two bodies. Private: not installed.
+
+namespace downwash::judge {
+
+/// Of x, z, pitch and arm.
+using Four = std::array<double, 4>;
+
+/// What an observer keeps between ticks.
+struct ObserverMemory {
+    Four estimate{};           ///< forces and torques that the model does not explain
+    Four expected_momentum{};  ///< at the next tick, if the estimate is right
+};
+
+/// The momenta of both bodies, as they belong to the coordinates x, z, pitch and arm.
+[[nodiscard]] DOWNWASH_EXPORT Four momentum_of(const Vehicle& vehicle, const Motion& motion);
+
+/// How these change where nothing acts but weight.
+[[nodiscard]] DOWNWASH_EXPORT Four free_momentum_rate(const Vehicle& vehicle, const Motion& motion);
+
+/// An observer of a vehicle as it is believed.
+class Observer {
+ public:
+    /// @param gain_1_s see DisturbanceObserver; 0: there is none, and estimates are zero
+    Observer(const Vehicle& believed, double gain_1_s, double tick_s);
+
+    /// At the start of a flight, with nothing estimated.
+    [[nodiscard]] ObserverMemory at_start(const Motion& motion) const;
+    /// Compares the momentum with what was expected.
+    void look(const Motion& seen, ObserverMemory& memory) const;
+    /// Says what to expect a tick later.
+    /// @param thrust_n,pitch_torque_nm that are believed to act in mid-tick
+    void expect(const Motion& seen, double thrust_n, double pitch_torque_nm, double joint_torque_nm,
+                ObserverMemory& memory) const;
+
+ private:
+    Vehicle believed_;
+    double share_, tick_s_;
+};
+
+}  // namespace downwash::judge
