@@ -32,7 +32,7 @@ struct PlanarControl {
     double rate_kp = 8;        ///< [1/s]
     /// L of the disturbance observer [1/s].
     std::optional<double> observer_gain_1_s;
-    /// Feed-forward through a map that lies this far off along x [m].
+    /// Feed-forward through a map that lies this far off along x [m]; negative: its plate begins sooner.
     std::optional<double> map_offset_m;
 };
 
