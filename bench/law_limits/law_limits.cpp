@@ -130,7 +130,8 @@ double distance(const FlightState& a, const FlightState& b) {
 
 /// Whether a millimetre beside a hover grows in a flight with direct evaluation: it leaves 5 cm, or is farther away in
 /// the last quarter than in the one before.
-bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random) {
+/// @param[out] end_m how far away it is in the end
+bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random, double& end_m) {
     FlightState state = trim.state;
     for (int i = 0; i < 4; ++i) {
         state.plant.q[i] += random.uniform(-1e-3, 1e-3);
@@ -143,6 +144,7 @@ bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random
         controllers::Actuation<double> given{};
         state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
         const double d = distance(state, trim.state);
+        end_m = d;
         if (!(d < 0.05)) {
             return true;
         }
@@ -165,23 +167,25 @@ struct Trials {
         const HoverAnalysis outside = place.hover(limit_m + beside_m);
         if (outside.verdict == HoldVerdict::stable) {
             ++held;
-            const bool grew = grows(place.model(), outside.trim, random);
+            double end_m = 0;
+            const bool grew = grows(place.model(), outside.trim, random, end_m);
             held_decayed += grew ? 0 : 1;
-            note(grew, of, "stable, grew", outside);
+            note(grew, of, "stable, grew", outside, end_m);
         }
         const HoverAnalysis inside = place.hover(limit_m - beside_m);
         if (inside.verdict == HoldVerdict::unstable) {
             ++lost;
-            const bool grew = grows(place.model(), inside.trim, random);
+            double end_m = 0;
+            const bool grew = grows(place.model(), inside.trim, random, end_m);
             lost_grew += grew ? 1 : 0;
-            note(!grew, of, "unstable, decayed", inside);
+            note(!grew, of, "unstable, did not grow", inside, end_m);
         }
     }
 
-    void note(bool disagrees, const std::string& of, const char* how, const HoverAnalysis& hover) {
+    void note(bool disagrees, const std::string& of, const char* how, const HoverAnalysis& hover, double end_m) {
         if (disagrees) {
-            disagreements.push_back(
-                fmt::format("{}: called {}; growth rate {:.4f} 1/s", of, how, hover.stability.growth_rate_1_s));
+            disagreements.push_back(fmt::format("{}: called {}; growth rate {:.4f} 1/s, {:.4f} m away after the flight",
+                                                of, how, hover.stability.growth_rate_1_s, end_m));
         }
     }
 };
@@ -250,10 +254,10 @@ void print_all(const std::string& file, const std::vector<std::string>& robots) 
     fmt::print(
         "\nEach limit was tried by flights of {:.0f} s with direct aerodynamics, disturbed by up to 1 mm, 1 mm/s, 1 "
         "mrad and 1 "
-        "mrad/s: {:.0f} cm farther away {} of {} decayed,\n{:.0f} cm nearer {} of {} grew.\n",
+        "mrad/s: {:.0f} cm farther away {} of {} decayed,\n{:.0f} cm nearer {} of {} grew.\n\n",
         flight_s, 100 * beside_m, trials.held_decayed, trials.held, 100 * beside_m, trials.lost_grew, trials.lost);
     for (const std::string& disagreement : trials.disagreements) {
-        fmt::print("\n- {}\n", disagreement);
+        fmt::print("- {}\n", disagreement);
     }
 }
 
