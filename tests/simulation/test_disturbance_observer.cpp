@@ -76,14 +76,13 @@ class Pushed {
         Rates rate{};
         double thrust_n = 0;
         double torque_nm = 0;
-        for (int i = 0; i < 4; ++i) {
+        for (std::size_t i = 0; i < 4; ++i) {
             const double now_n = plant_.has_rotor_lag ? at.thrust_n[i] : given.command.thrust_n[i];
             thrust_n += now_n;
             torque_nm -= plant_.rotor_x_m[i] * now_n;
-            rate[static_cast<std::size_t>(i)] = at.u[i];
+            rate[i] = at.u[i];
             if (plant_.has_rotor_lag) {
-                rate[static_cast<std::size_t>(8 + i)] =
-                    (given.command.thrust_n[i] - at.thrust_n[i]) / plant_.rotor_time_constant_s;
+                rate[8 + i] = (given.command.thrust_n[i] - at.thrust_n[i]) / plant_.rotor_time_constant_s;
             }
         }
         const double force[4] = {thrust_n * std::sin(at.q[2]) + push[0], thrust_n * std::cos(at.q[2]) + push[1],
@@ -94,10 +93,10 @@ class Pushed {
 
     [[nodiscard]] dynamics::PlantState<double> moved(const Rates& rate, double dt_s) const {
         dynamics::PlantState<double> to = state;
-        for (int i = 0; i < 4; ++i) {
-            to.q[i] += dt_s * rate[static_cast<std::size_t>(i)];
-            to.u[i] += dt_s * rate[static_cast<std::size_t>(4 + i)];
-            to.thrust_n[i] += dt_s * rate[static_cast<std::size_t>(8 + i)];
+        for (std::size_t i = 0; i < 4; ++i) {
+            to.q[i] += dt_s * rate[i];
+            to.u[i] += dt_s * rate[4 + i];
+            to.thrust_n[i] += dt_s * rate[8 + i];
         }
         return to;
     }

@@ -83,7 +83,8 @@ TEST_CASE("the rotors act as demanded at any pose and tilt if the map is right, 
             const double thrust_n = random.uniform(40, 60);
             const double torque_nm = random.uniform(-2, 2);
             const double observed[4] = {};
-            controllers::Aid aid(gains_of(problem.robot).aids, plant, state.plant, motion, observed, 0.01, map);
+            controllers::Aid<double, decltype(map)> aid(gains_of(problem.robot).aids, plant, state.plant, motion,
+                                                        observed, 0.01, map);
             const auto believed = aid.command_rotors(plant, state.plant, thrust_n, torque_nm, 0.01, 0, given);
             REQUIRE(given.saturation < 1);
             const auto wrench =
