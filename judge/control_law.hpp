@@ -62,7 +62,7 @@ class ControlLaw {
     Demand cascaded(const CascadedPid& gain, const Motion& seen, const ReferencePoint& reference, ControlMemory& kept,
                     ControlMemory& integrated) const;
     Read read(const Motion& seen, const Surroundings& believed) const;
-    Rotors limit(const Demand& demand, const Read& ratios, const std::array<double, max_rotors>& rotor_n,
+    Rotors limit(const Demand& demand, const Read& read, const std::array<double, max_rotors>& rotor_n,
                  Command& command) const;
 
     Robot robot_;

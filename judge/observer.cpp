@@ -12,6 +12,17 @@ double dot(Planar a, Planar b) {
     return a.x * b.x + a.z * b.z;
 }
 
+/// e^x as docs/model.md 5.6 sums it up.
+double growth_of(double x) {
+    double term = 1;
+    double sum = 1;
+    for (int i = 1; i <= 4; ++i) {
+        term *= x / i;
+        sum += term;
+    }
+    return sum;
+}
+
 /// The two bodies of a moving vehicle.
 struct Bodies {
     Planar joint, arm;                            ///< from the multirotor to the joint, from there to the arm's centre
@@ -53,15 +64,7 @@ Four free_momentum_rate(const Vehicle& v, const Motion& m) {
 }
 
 Observer::Observer(const Vehicle& believed, double gain_1_s, double tick_s)
-    : believed_(believed), share_(0), tick_s_(tick_s) {
-    double term = 1;
-    double sum = 1;
-    for (int i = 1; i <= 4; ++i) {
-        term *= gain_1_s * tick_s / i;
-        sum += term;
-    }
-    share_ = 1 - 1 / sum;
-}
+    : believed_(believed), tick_s_(tick_s), share_(1 - 1 / growth_of(gain_1_s * tick_s)) {}
 
 ObserverMemory Observer::at_start(const Motion& motion) const {
     return {{}, momentum_of(believed_, motion)};

@@ -40,7 +40,8 @@ class Observer {
 
  private:
     Vehicle believed_;
-    double share_, tick_s_;
+    double tick_s_;
+    double share_;
 };
 
 }  // namespace downwash::judge

@@ -88,7 +88,7 @@ class SchemaWriter {
         for (const KeyReference* key : children(path)) {
             const std::string name(last_name(key->info.path));
             properties[name] = property(*key);
-            if (key->info.required) {
+            if (key->info.required && key->info.condition.empty()) {
                 required.push_back(name);
             } else if (key->info.exclusive) {
                 alternatives.push_back({{"required", {name}}});

@@ -1,5 +1,6 @@
 #include "downwash/problems/problem_writer.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <string_view>
 #include <system_error>
@@ -45,9 +46,9 @@ using FileText = std::function<std::string(const Parameter<Problem>& row, std::s
 /// Writes the groups below a key path, two spaces a level.
 class Writer {
  public:
-    /// @param left_out path of a group that is not written
-    Writer(const Problem& problem, FileText file_text, std::string_view left_out = "")
-        : problem_(problem), file_text_(std::move(file_text)), left_out_(left_out) {}
+    /// @param left_out paths that are not written
+    Writer(const Problem& problem, FileText file_text, std::vector<std::string_view> left_out = {})
+        : problem_(problem), file_text_(std::move(file_text)), left_out_(std::move(left_out)) {}
 
     [[nodiscard]] std::string written() {
         write_keys("", 0, "");
@@ -62,7 +63,8 @@ class Writer {
                     const std::string& first_indent) {
         std::string before = first_indent;
         for (const Row* row : problem_parameters().children(path)) {
-            const bool applies = row->path != left_out_ && (!row->applies || row->applies(problem_, index));
+            const bool is_left_out = std::find(left_out_.begin(), left_out_.end(), row->path) != left_out_.end();
+            const bool applies = !is_left_out && (!row->applies || row->applies(problem_, index));
             if (applies && (row->get || is_written(*row, index))) {
                 out_ += before + std::string(last_name(row->path)) + ":";
                 write_content(*row, index, indent);
@@ -152,7 +154,7 @@ class Writer {
 
     const Problem& problem_;
     FileText file_text_;
-    std::string_view left_out_;
+    std::vector<std::string_view> left_out_;
     std::string out_;
 };
 
@@ -198,7 +200,12 @@ void require_readable_again(const Problem& problem, const std::filesystem::path&
 std::string problem_sha256(const Problem& problem) {
     const auto digest = [&](const Parameter<Problem>& row, std::size_t index) { return row.digest(problem, index); };
     // A default, which the problem has taken over where it has an uncertainty: no flight depends on it.
-    return sha256_hex(Writer(problem, digest, "robot.uncertainty").written());
+    std::vector<std::string_view> left_out{"robot.uncertainty"};
+    // The law of files that name none: plans from before there was a choice are still of their problem.
+    if (problem.robot.controller.law.index() == 0) {
+        left_out.emplace_back("robot.controller.type");
+    }
+    return sha256_hex(Writer(problem, digest, left_out).written());
 }
 
 }  // namespace downwash

@@ -102,7 +102,8 @@ void TreeReader<Model>::read_keys(Group group) {
         const std::string name(last_name(parameter->path));
         if (group.entries.contains(name)) {
             read_parameter(group, *parameter);
-        } else if (parameter->required && std::count(group.meant.begin(), group.meant.end(), name) == 0) {
+        } else if (parameter->required && (!parameter->applies || parameter->applies(model_, group.index)) &&
+                   std::count(group.meant.begin(), group.meant.end(), name) == 0) {
             report(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
         }
     }

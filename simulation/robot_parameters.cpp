@@ -193,7 +193,7 @@ class LawRows {
     /// A key that another law has, too, is one row that serves whichever law flies the robot.
     void add(Parameter<Robot> row) {
         if constexpr (std::variant_size_v < ControlLaw >> 1) {
-            row.condition = std::string("controller.type is ") + Law::name;
+            row.condition = std::string("with controller.type ") + Law::name;
             row.applies = is_flown;
             const auto known =
                 std::find_if(rows_.begin(), rows_.end(), [&](const auto& other) { return other.path == row.path; });
@@ -221,10 +221,10 @@ class LawRows {
     /// The keys of what a law has beside its loops.
     void add_aids() {
         const auto observer = [](auto& robot) -> auto& {
-            return std::get<Law>(robot.controller.law).aids.observer;
+            return law_of(robot).aids.observer;
         };
         const auto feed_forward = [](auto& robot) -> auto& {
-            return std::get<Law>(robot.controller.law).aids.feed_forward;
+            return law_of(robot).aids.feed_forward;
         };
         add(parameters::optional_group<Robot>(
             below("observer"), "observes forces and torques that the model does not explain, and counters them",
@@ -292,10 +292,17 @@ class LawRows {
     static bool is_flown(const Robot& robot, std::size_t /*index*/) {
         return std::holds_alternative<Law>(robot.controller.law);
     }
+    /// The law's numbers; its defaults where another law flies.
+    static const Law& law_of(const Robot& robot) {
+        static const Law usual;
+        const Law* law = std::get_if<Law>(&robot.controller.law);
+        return law != nullptr ? *law : usual;
+    }
+    static Law& law_of(Robot& robot) { return std::get<Law>(robot.controller.law); }
     template <class Number>
     static auto place(Number Law::*member) {
         return [member](auto& robot) -> auto& {
-            return std::get<Law>(robot.controller.law).*member;
+            return law_of(robot).*member;
         };
     }
 
@@ -331,6 +338,18 @@ void add_laws(Rows& rows, const std::variant<Laws...>* laws) {
         Law::describe(of_law);
     };
     (describe(static_cast<const Laws*>(nullptr)), ...);
+    // What every law has needs no condition.
+    for (Parameter<Robot>& row : rows) {
+        Robot robot;
+        const auto applies_to = [&](const ControlLaw& law) {
+            robot.controller.law = law;
+            return row.applies(robot, 0);
+        };
+        if (row.path.starts_with("controller.") && row.applies && (applies_to(Laws{}) && ...)) {
+            row.condition.clear();
+            row.applies = {};
+        }
+    }
 }
 
 void add_controller(Rows& rows) {

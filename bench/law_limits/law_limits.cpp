@@ -130,7 +130,8 @@ double distance(const FlightState& a, const FlightState& b) {
 
 /// Whether a millimetre beside a hover grows in a flight with direct evaluation: it leaves 5 cm, or is farther away in
 /// the last quarter than in the one before.
-bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random) {
+/// @param[out] end_m how far away it is in the end
+bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random, double& end_m) {
     FlightState state = trim.state;
     for (int i = 0; i < 4; ++i) {
         state.plant.q[i] += random.uniform(-1e-3, 1e-3);
@@ -143,6 +144,7 @@ bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random
         controllers::Actuation<double> given{};
         state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
         const double d = distance(state, trim.state);
+        end_m = d;
         if (!(d < 0.05)) {
             return true;
         }
@@ -159,28 +161,42 @@ bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random
 struct Trials {
     test::Random random{1};
     int held = 0, held_decayed = 0, lost = 0, lost_grew = 0;
+    std::vector<std::string> disagreements;
 
-    void fly(const Place& place, double limit_m) {
+    void fly(const Place& place, double limit_m, const std::string& of) {
         const HoverAnalysis outside = place.hover(limit_m + beside_m);
         if (outside.verdict == HoldVerdict::stable) {
             ++held;
-            held_decayed += grows(place.model(), outside.trim, random) ? 0 : 1;
+            double end_m = 0;
+            const bool grew = grows(place.model(), outside.trim, random, end_m);
+            held_decayed += grew ? 0 : 1;
+            note(grew, of, "stable, grew", outside, end_m);
         }
         const HoverAnalysis inside = place.hover(limit_m - beside_m);
         if (inside.verdict == HoldVerdict::unstable) {
             ++lost;
-            lost_grew += grows(place.model(), inside.trim, random) ? 1 : 0;
+            double end_m = 0;
+            const bool grew = grows(place.model(), inside.trim, random, end_m);
+            lost_grew += grew ? 1 : 0;
+            note(!grew, of, "unstable, did not grow", inside, end_m);
+        }
+    }
+
+    void note(bool disagrees, const std::string& of, const char* how, const HoverAnalysis& hover, double end_m) {
+        if (disagrees) {
+            disagreements.push_back(fmt::format("{}: called {}; growth rate {:.4f} 1/s, {:.4f} m away after the flight",
+                                                of, how, hover.stability.growth_rate_1_s, end_m));
         }
     }
 };
 
 /// "0.154", or what ends it there: the map's edge (m) or nothing stable at all (-).
-std::string limit_text(const Place& place, Trials& trials) {
+std::string limit_text(const Place& place, const std::string& of, Trials& trials) {
     const std::optional<double> limit_m = place.limit_m();
     if (!limit_m) {
         return "-";
     }
-    trials.fly(place, *limit_m);
+    trials.fly(place, *limit_m, of);
     const HoldVerdict next = place.hover(*limit_m - step_m).verdict;
     const char* mark = next == HoldVerdict::unstable         ? ""
                        : next == HoldVerdict::no_equilibrium ? " e"
@@ -202,8 +218,10 @@ void print_table(const Problem& problem, Robot robot, const Surface& surface, do
                 continue;
             }
             const double offset_z_m = surface.is_above ? offset_m : -offset_m;
+            const std::string of =
+                fmt::format("{}, {}, lag {} s, {}, offset {} m", robot.name, surface.name, lag_s, kind.name, offset_m);
             const Place place(problem, equipped(robot, kind, offset_z_m), surface);
-            fmt::print(" {} |", limit_text(place, trials));
+            fmt::print(" {} |", limit_text(place, of, trials));
         }
         fmt::print("\n");
     }
@@ -236,8 +254,11 @@ void print_all(const std::string& file, const std::vector<std::string>& robots) 
     fmt::print(
         "\nEach limit was tried by flights of {:.0f} s with direct aerodynamics, disturbed by up to 1 mm, 1 mm/s, 1 "
         "mrad and 1 "
-        "mrad/s: {:.0f} cm farther away {} of {} decayed,\n{:.0f} cm nearer {} of {} grew.\n",
+        "mrad/s: {:.0f} cm farther away {} of {} decayed,\n{:.0f} cm nearer {} of {} grew.\n\n",
         flight_s, 100 * beside_m, trials.held_decayed, trials.held, 100 * beside_m, trials.lost_grew, trials.lost);
+    for (const std::string& disagreement : trials.disagreements) {
+        fmt::print("- {}\n", disagreement);
+    }
 }
 
 }  // namespace

@@ -76,14 +76,13 @@ class Pushed {
         Rates rate{};
         double thrust_n = 0;
         double torque_nm = 0;
-        for (int i = 0; i < 4; ++i) {
+        for (std::size_t i = 0; i < 4; ++i) {
             const double now_n = plant_.has_rotor_lag ? at.thrust_n[i] : given.command.thrust_n[i];
             thrust_n += now_n;
             torque_nm -= plant_.rotor_x_m[i] * now_n;
-            rate[static_cast<std::size_t>(i)] = at.u[i];
+            rate[i] = at.u[i];
             if (plant_.has_rotor_lag) {
-                rate[static_cast<std::size_t>(8 + i)] =
-                    (given.command.thrust_n[i] - at.thrust_n[i]) / plant_.rotor_time_constant_s;
+                rate[8 + i] = (given.command.thrust_n[i] - at.thrust_n[i]) / plant_.rotor_time_constant_s;
             }
         }
         const double force[4] = {thrust_n * std::sin(at.q[2]) + push[0], thrust_n * std::cos(at.q[2]) + push[1],
@@ -94,10 +93,10 @@ class Pushed {
 
     [[nodiscard]] dynamics::PlantState<double> moved(const Rates& rate, double dt_s) const {
         dynamics::PlantState<double> to = state;
-        for (int i = 0; i < 4; ++i) {
-            to.q[i] += dt_s * rate[static_cast<std::size_t>(i)];
-            to.u[i] += dt_s * rate[static_cast<std::size_t>(4 + i)];
-            to.thrust_n[i] += dt_s * rate[static_cast<std::size_t>(8 + i)];
+        for (std::size_t i = 0; i < 4; ++i) {
+            to.q[i] += dt_s * rate[i];
+            to.u[i] += dt_s * rate[4 + i];
+            to.thrust_n[i] += dt_s * rate[8 + i];
         }
         return to;
     }
@@ -250,5 +249,93 @@ TEST_CASE("a vehicle that starts in motion observes nothing at its start") {
                 }
             }
         });
+    }
+}
+
+namespace {
+
+using Matrix4 = std::array<Four, 4>;
+
+/// Gelfand's formula, by squaring: |M^n|^(1/n) with n = 2^40.
+double spectral_radius(Matrix4 m) {
+    double log_norm = 0;
+    double power = 1;
+    for (int squaring = 0; squaring < 40; ++squaring) {
+        double norm = 0;
+        for (const Four& row : m) {
+            for (const double entry : row) {
+                norm = std::max(norm, std::abs(entry));
+            }
+        }
+        log_norm += std::log(norm) / power;
+        Matrix4 squared{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                for (std::size_t k = 0; k < 4; ++k) {
+                    squared[i][j] += m[i][k] / norm * (m[k][j] / norm);
+                }
+            }
+        }
+        m = squared;
+        power *= 2;
+    }
+    return std::exp(log_norm);
+}
+
+/// Height, its rate, its integral and the observer's memory o over one tick, by hand: between ticks the ceiling pushes
+/// like a negative spring, d'' = (g K'/K) d + K f / m, with the thrust f = m (-kp d - kd d' + ki i) - D held and D =
+/// share m d'/h + o. The observer takes f for what acts: o becomes D - share m d'/h - share (f + D).
+Matrix4 sampled_height(double gap_m, double share) {
+    const double h = tick_s;
+    const double r = radius_m / (gap_m + 0.3168 * radius_m);
+    const double factor = 1 / (1 - r * r / 6.924);
+    const double slope_1_m = 2 * factor * factor * r * r / 6.924 / (gap_m + 0.3168 * radius_m);
+    const double w = std::sqrt(gravity * slope_1_m / factor);
+    const double c = std::cosh(w * h);
+    const double s = std::sinh(w * h);
+    const Four estimate{0, share * mass_kg / h, 0, 1};
+    Matrix4 m{{{c, s / w, 0, 0}, {w * s, c, 0, 0}, {-h, 0, 1, 0}, {0, -share * mass_kg / h, 0, 0}}};
+    for (std::size_t j = 0; j < 4; ++j) {
+        const Four loop{-2.0, -2.6, 0.4, 0};
+        const double thrust_n = mass_kg * loop[j] - estimate[j];
+        m[0][j] += factor * (c - 1) / (w * w) * thrust_n / mass_kg;
+        m[1][j] += factor * s / w * thrust_n / mass_kg;
+        m[3][j] += estimate[j] - share * (thrust_n + estimate[j]);
+    }
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("an observer lets a vehicle hover nearer to a ceiling, as near as the sampled height loop by hand says") {
+    const auto boundary_m = [](const auto& is_stable) {
+        double low = 0.06;
+        double high = 1;
+        while (high - low > 1e-5) {
+            const double middle = 0.5 * (low + high);
+            (is_stable(middle) ? high : low) = middle;
+        }
+        return high;
+    };
+    double before_m = boundary_m([model = make_flight_model(ceiling_alone())](double gap_m) {
+        return below_ceiling(*model, gap_m).verdict == HoldVerdict::stable;
+    });
+    CHECK(before_m == Approx(0.322).margin(0.002));
+    for (const double gain_1_s : {1.0, 3.0, 10.0}) {
+        Problem problem = ceiling_alone();
+        gains_of(problem.robot).aids.observer = controllers::DisturbanceObserver{gain_1_s};
+        const auto model = make_flight_model(problem);
+        const double found_m =
+            boundary_m([&](double gap_m) { return below_ceiling(*model, gap_m).verdict == HoldVerdict::stable; });
+        const double share = 1 - std::exp(-gain_1_s * tick_s);
+        const double by_hand_m =
+            boundary_m([&](double gap_m) { return spectral_radius(sampled_height(gap_m, share)) < 1; });
+        CHECK(found_m == Approx(by_hand_m).margin(5e-4));
+        CHECK(found_m < before_m - 0.02);
+        for (const double gap_m : {found_m + 0.02, found_m + 0.1}) {
+            CHECK(below_ceiling(*model, gap_m).stability.spectral_radius ==
+                  Approx(spectral_radius(sampled_height(gap_m, share))).margin(5e-6));
+        }
+        before_m = found_m;
     }
 }

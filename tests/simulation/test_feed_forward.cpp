@@ -83,7 +83,8 @@ TEST_CASE("the rotors act as demanded at any pose and tilt if the map is right, 
             const double thrust_n = random.uniform(40, 60);
             const double torque_nm = random.uniform(-2, 2);
             const double observed[4] = {};
-            controllers::Aid aid(gains_of(problem.robot).aids, plant, state.plant, motion, observed, 0.01, map);
+            controllers::Aid<double, decltype(map)> aid(gains_of(problem.robot).aids, plant, state.plant, motion,
+                                                        observed, 0.01, map);
             const auto believed = aid.command_rotors(plant, state.plant, thrust_n, torque_nm, 0.01, 0, given);
             REQUIRE(given.saturation < 1);
             const auto wrench =
@@ -165,4 +166,39 @@ TEST_CASE("over an edge a map that is right leaves the vehicle level without a p
     CHECK(std::abs(with_rad) < 1e-9);
     CHECK(std::abs(shifted_rad) > 0.1 * std::abs(without_rad));
     CHECK(std::abs(shifted_rad) < 0.5 * std::abs(without_rad));
+}
+
+TEST_CASE("a map that is right lets a vehicle hover below a ceiling down to the flyable area, a wrong one less near") {
+    const auto boundary_m = [](const auto& is_stable) {
+        double low = 0.058;
+        double high = 1;
+        while (high - low > 1e-5) {
+            const double middle = 0.5 * (low + high);
+            (is_stable(middle) ? high : low) = middle;
+        }
+        return high;
+    };
+    const auto found_m = [&](double offset_z_m) {
+        Problem problem = ceiling_alone();
+        gains_of(problem.robot).aids.feed_forward = controllers::FeedForward{0, offset_z_m};
+        const auto model = make_flight_model(problem);
+        return boundary_m([&](double gap_m) { return below_ceiling(*model, gap_m).verdict == HoldVerdict::stable; });
+    };
+    // With R = K / K_read the loop is s^3 + R kd s^2 + (R kp - g R'/R) s + R ki, stable while R kp - g R'/R > ki / kd.
+    const auto by_hand_m = [&](double offset_m) {
+        return boundary_m([&](double gap_m) {
+            const auto ratio = [&](double at_m) { return ceiling_ratio(at_m) / ceiling_ratio(at_m + offset_m); };
+            const double slope_1_m = (ratio(gap_m - 1e-5) - ratio(gap_m + 1e-5)) / 2e-5;
+            return ratio(gap_m) * 2.0 - gravity * slope_1_m / ratio(gap_m) > 0.4 / 2.6;
+        });
+    };
+    CHECK(found_m(0) < 0.059);
+    double before_m = 0.059;
+    for (const double offset_m : {0.01, 0.03, 0.05}) {
+        const double found = found_m(offset_m);
+        CHECK(found == Approx(by_hand_m(offset_m)).margin(0.004));  // sampling costs a little
+        CHECK(found > before_m);
+        CHECK(found < 0.25);  // 0.32 m without a map
+        before_m = found;
+    }
 }
