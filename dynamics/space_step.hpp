@@ -86,8 +86,8 @@ void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinat
     forward_dynamics(model, p, e, wrench, joint_torque_nm, du);
 }
 
-/// Brings the quaternion of coordinates q to length 1. Within a step of 10 ms its length changes by less than 1e-8
-/// at 10 rad/s; nothing else depends on its length.
+/// Brings the quaternion of coordinates q to length 1. A step of 10 ms changes its length by some 1e-9 at 5 rad/s
+/// (docs/model.md 2.2), and nothing else depends on its length.
 template <class T>
 void normalise_attitude(T q[7]) {
     const T scale = T(1) / lane::sqrt(q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
