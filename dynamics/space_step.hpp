@@ -25,7 +25,8 @@ struct SpaceCommand {
 
 /// Angular momentum [N m s] of all rotors about their axes, in body axes: Jr Omega with Omega from T = C_T Omega^2.
 template <class T, int n, class P>
-LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n[max_rotors]) {
+[[gnu::always_inline]] inline LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model,
+                                                          const T thrust_n[max_rotors]) {
     LaneVector<T> spin{T(0), T(0), T(0)};
     if (!model.has_gyroscopic_term) {
         return spin;
@@ -44,8 +45,10 @@ LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n
 /// @param factor callable (rotor, x_m, y_m, z_m) -> K at the hub of that rotor in the world; it may know
 /// `same_as(rotor)` and `thrust_scale(rotor)`, see flight_step.hpp
 template <class T, int n, class P, class Factor>
-SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
-                            const LaneVector<T>& position_m, const T thrust_n[max_rotors], Factor&& factor) {
+[[gnu::always_inline]] inline SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model,
+                                                          const LaneRotation<T>& attitude,
+                                                          const LaneVector<T>& position_m, const T thrust_n[max_rotors],
+                                                          Factor&& factor) {
     SpaceWrench<T> wrench{{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
     T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
@@ -69,9 +72,10 @@ SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotati
 /// @param rotor_spin rotor_spin_of() the thrusts   @param surroundings as `factor` of rotor_wrench(); what touches the
 /// multirotor adds `load(q, u, attitude)`, a SpaceWrench
 template <class T, int n, class P, class Surroundings>
-void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>], const T u[space_speeds<n>],
-                   const T thrust_n[max_rotors], const LaneVector<T>& rotor_spin, const T joint_torque_nm[room_for<n>],
-                   Surroundings&& surroundings, T du[space_speeds<n>]) {
+[[gnu::always_inline]] inline void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>],
+                                                 const T u[space_speeds<n>], const T thrust_n[max_rotors],
+                                                 const LaneVector<T>& rotor_spin, const T joint_torque_nm[room_for<n>],
+                                                 Surroundings&& surroundings, T du[space_speeds<n>]) {
     const SpacePlaces<T, n> p = places_at(model, q);
     const SpaceEquations<T, n> e = equations_of_motion(model, p, u);
     SpaceWrench<T> wrench = rotor_wrench(model, p.attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, surroundings);
