@@ -29,12 +29,13 @@ struct SpacePlaces {
     LaneSymmetric<T> inertia_kg_m2[room_for<n>];  ///< of the links about them
 };
 
-/// The places at coordinates q.
+/// The places at coordinates q. @param attitude that of q: rotation_of(q + 3)
 template <class T, int n, class P>
 [[gnu::always_inline]] inline SpacePlaces<T, n> places_at(const BasicSpaceModel<P, n>& model,
-                                                          const T q[space_coordinates<n>]) {
+                                                          const T q[space_coordinates<n>],
+                                                          const LaneRotation<T>& attitude) {
     SpacePlaces<T, n> p;
-    p.attitude = rotation_of(q + 3);
+    p.attitude = attitude;
     LaneRotation<T> link_axes;  // of the link before, in body axes
     for (int i = 0; i < n; ++i) {
         const SpaceLinkNumbers<P>& link = model.link[i];
@@ -53,6 +54,12 @@ template <class T, int n, class P>
         p.inertia_kg_m2[i] = turned(link_axes, spread<T>(link.inertia_kg_m2));
     }
     return p;
+}
+
+/// The same.
+template <class T, int n, class P>
+SpacePlaces<T, n> places_at(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>]) {
+    return places_at(model, q, rotation_of(q + 3));
 }
 
 /// The mass matrix and the velocity products in body axes. With a the acceleration of the multirotor's centre of mass
