@@ -6,6 +6,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/studies/ceiling_contact.hpp"
 #include "downwash/studies/ceiling_envelope.hpp"
+#include "downwash/studies/disturbance_test_bench.hpp"
 #include "downwash/studies/partial_ground_effect.hpp"
 
 namespace downwash::cli {

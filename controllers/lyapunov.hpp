@@ -4,7 +4,7 @@
 #include "downwash/dynamics/space_allocation.hpp"
 #include "downwash/dynamics/space_step.hpp"
 
-// The Lyapunov laws of thesis 4.6 for a multirotor in space without an arm, mended (docs/model.md 5.5). One template
+// The Lyapunov laws of thesis 4.6 for a multirotor in space without an arm, mended (docs/model.md 5.8). One template
 // over the lane type; pure functions without memory.
 //
 // With e = x - x_d and e' = dx/dt - dx_d/dt + k e, each law makes V = (e^2 + e'^2) / 2 fall at -k e^2 - k' e'^2.

@@ -49,6 +49,10 @@ LaneSymmetric<T> operator+(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b)
     return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
 }
 template <class T>
+LaneSymmetric<T> operator-(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
+    return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
+}
+template <class T>
 LaneVector<T> operator*(const LaneSymmetric<T>& m, const LaneVector<T>& v) {
     return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
             m.xz * v.x + m.yz * v.y + m.zz * v.z};
@@ -66,6 +70,12 @@ LaneSymmetric<T> point_inertia(const T& s, const LaneVector<T>& a) {
     const T yy = a.y * b.y;
     const T zz = a.z * b.z;
     return {yy + zz, -(a.x * b.y), -(a.x * b.z), xx + zz, -(a.y * b.z), xx + yy};
+}
+
+/// a b^T, where b is a multiple of a.
+template <class T>
+LaneSymmetric<T> outer_square(const LaneVector<T>& a, const LaneVector<T>& b) {
+    return {a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.y, a.y * b.z, a.z * b.z};
 }
 
 /// A rotation by the images of the three axes of the turned frame.
@@ -91,7 +101,7 @@ LaneRotation<T> operator*(const LaneRotation<T>& a, const LaneRotation<T>& b) {
 }
 /// r m r^T: a matrix of the turned frame, in the outer one.
 template <class T>
-LaneSymmetric<T> turned(const LaneRotation<T>& r, const LaneSymmetric<T>& m) {
+[[gnu::always_inline]] inline LaneSymmetric<T> turned(const LaneRotation<T>& r, const LaneSymmetric<T>& m) {
     // The columns of m r^T, one per outer axis.
     const LaneVector<T> x = m * LaneVector<T>{r.first.x, r.second.x, r.third.x};
     const LaneVector<T> y = m * LaneVector<T>{r.first.y, r.second.y, r.third.y};
@@ -104,7 +114,7 @@ LaneSymmetric<T> turned(const LaneRotation<T>& r, const LaneSymmetric<T>& m) {
 
 /// The rotation of a quaternion (w, x, y, z) of any length but 0.
 template <class T>
-LaneRotation<T> rotation_of(const T q[4]) {
+[[gnu::always_inline]] inline LaneRotation<T> rotation_of(const T q[4]) {
     const T s = T(2) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     const T sx = s * q[1];
     const T sy = s * q[2];
@@ -125,7 +135,7 @@ LaneRotation<T> rotation_of(const T q[4]) {
 
 /// The rotation by an angle about a unit vector (Rodrigues). @pre |angle| <= 1e5 rad
 template <class T>
-LaneRotation<T> rotation_about(const LaneVector<T>& axis, const T& angle_rad) {
+[[gnu::always_inline]] inline LaneRotation<T> rotation_about(const LaneVector<T>& axis, const T& angle_rad) {
     T sine, cosine;
     lane::sin_cos(angle_rad, sine, cosine);
     const LaneVector<T> s = sine * axis;

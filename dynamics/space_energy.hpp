@@ -24,27 +24,27 @@ SpaceInvariants<T> invariants_at(const BasicSpaceModel<P, n>& model, const T q[s
     const SpacePlaces<T, n> p = places_at(model, q);
     const SpaceEquations<T, n> e = equations_of_motion(model, p, u);
     const LaneVector<T> velocity = turned_back(p.attitude, LaneVector<T>{u[0], u[1], u[2]});
-    LaneVector<T> relative = cross(LaneVector<T>{u[3], u[4], u[5]}, e.first_moment_kg_m);
+    const LaneVector<T> rate{u[3], u[4], u[5]};
+    LaneVector<T> relative = cross(rate, e.first_moment_kg_m);  // momentum less that of the common velocity
+    LaneVector<T> spin = e.inertia_kg_m2 * rate;
+    T twice_energy(0);
     for (int i = 0; i < n; ++i) {
         relative = relative + u[6 + i] * e.joint_push_kg_m[i];
-    }
-    T spin[3 + n];
-    T twice_energy(0);
-    for (int i = 0; i < 3 + n; ++i) {
-        spin[i] = T(0);
-        for (int k = 0; k < 3 + n; ++k) {
-            spin[i] = spin[i] + (k < i ? e.h[k][i] : e.h[i][k]) * u[3 + k];
+        spin = spin + u[6 + i] * e.joint_spin_kg_m2[i];
+        T joint_spin = dot(e.joint_spin_kg_m2[i], rate);
+        for (int k = 0; k < n; ++k) {
+            joint_spin = joint_spin + (k < i ? e.joint_inertia_kg_m2[k][i] : e.joint_inertia_kg_m2[i][k]) * u[6 + k];
         }
-        twice_energy = twice_energy + spin[i] * u[3 + i];
+        twice_energy = twice_energy + joint_spin * u[6 + i];
     }
+    twice_energy = twice_energy + dot(spin, rate);
     const T mass(model.total_mass_kg);
     const LaneVector<T> center = T(model.inverse_mass_1_kg) * e.first_moment_kg_m;
     const LaneVector<T> center_in_world = p.attitude * center;
     SpaceInvariants<T> all;
     all.momentum_n_s = p.attitude * (mass * velocity + relative);
     // What the common velocity adds about the multirotor's centre of mass it takes away again about the common one.
-    all.angular_momentum_nm_s =
-        p.attitude * (LaneVector<T>{spin[0], spin[1], spin[2]} - cross(center, relative) + rotor_spin);
+    all.angular_momentum_nm_s = p.attitude * (spin - cross(center, relative) + rotor_spin);
     all.center_of_mass_m = LaneVector<T>{q[0], q[1], q[2]} + center_in_world;
     all.kinetic_j = T(0.5) * (mass * dot(velocity, velocity) + twice_energy) + dot(velocity, relative);
     all.potential_j = T(standard_gravity_m_s2) * mass * all.center_of_mass_m.z;

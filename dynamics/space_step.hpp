@@ -40,12 +40,15 @@ LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n
 
 /// Wrench of all rotors. Each one pushes along its axis with K times its free-air thrust. Its drag torque follows its
 /// speed and has no K (thesis (4.13), yaw row).
+/// A function of its own always: where a look-up in a map waits for the place of a hub, it is fastest so (measured: a
+/// tick with a map by a half).
 /// @param position_m of the multirotor's centre of mass, world   @param thrust_n of every rotor in free air [N]
 /// @param factor callable (rotor, x_m, y_m, z_m) -> K at the hub of that rotor in the world; it may know
 /// `same_as(rotor)` and `thrust_scale(rotor)`, see flight_step.hpp
 template <class T, int n, class P, class Factor>
-SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
-                            const LaneVector<T>& position_m, const T thrust_n[max_rotors], Factor&& factor) {
+[[gnu::noinline]] SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
+                                              const LaneVector<T>& position_m, const T thrust_n[max_rotors],
+                                              Factor&& factor) {
     SpaceWrench<T> wrench{{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
     T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
@@ -72,22 +75,23 @@ template <class T, int n, class P, class Surroundings>
 void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>], const T u[space_speeds<n>],
                    const T thrust_n[max_rotors], const LaneVector<T>& rotor_spin, const T joint_torque_nm[room_for<n>],
                    Surroundings&& surroundings, T du[space_speeds<n>]) {
-    const SpacePlaces<T, n> p = places_at(model, q);
-    const SpaceEquations<T, n> e = equations_of_motion(model, p, u);
-    SpaceWrench<T> wrench = rotor_wrench(model, p.attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, surroundings);
+    // Surroundings first: a call out of here would send everything known by then to memory.
+    const LaneRotation<T> attitude = rotation_of(q + 3);
+    SpaceWrench<T> wrench = rotor_wrench(model, attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, surroundings);
     if (model.has_gyroscopic_term) {
         wrench.torque_nm = wrench.torque_nm - cross(LaneVector<T>{u[3], u[4], u[5]}, rotor_spin);
     }
-    if constexpr (requires { surroundings.load(q, u, p.attitude); }) {
-        const SpaceWrench<T> load = surroundings.load(q, u, p.attitude);
+    if constexpr (requires { surroundings.load(q, u, attitude); }) {
+        const SpaceWrench<T> load = surroundings.load(q, u, attitude);
         wrench.force_n = wrench.force_n + load.force_n;
         wrench.torque_nm = wrench.torque_nm + load.torque_nm;
     }
-    forward_dynamics(model, p, e, wrench, joint_torque_nm, du);
+    const SpacePlaces<T, n> p = places_at(model, q, attitude);
+    forward_dynamics(model, p, equations_of_motion(model, p, u), wrench, joint_torque_nm, du);
 }
 
-/// Brings the quaternion of coordinates q to length 1. Within a step of 10 ms its length changes by less than 1e-8
-/// at 10 rad/s; nothing else depends on its length.
+/// Brings the quaternion of coordinates q to length 1. A step of 10 ms changes its length by some 1e-9 at 5 rad/s
+/// (docs/model.md 2.2), and nothing else depends on its length.
 template <class T>
 void normalise_attitude(T q[7]) {
     const T scale = T(1) / lane::sqrt(q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);

@@ -313,13 +313,16 @@ Finding righting_moment(const PlanarExperiment& base, Table& table) {
         "S9: pitch torque over wide ground [N m] (negative: back to level), and beside the controller's at that pitch",
         {"z/R", "5 deg", "10 deg", "share of the controller's at 10 deg"},
         {}};
+    PlanarExperiment single = base;
+    single.ground = effect_on_each_rotor(EffectModel::cheeseman_bennett, base.vehicle);
+    single.z_over_r = 2;
     const double stiffness_nm =
         base.control.pitch_kp * base.control.rate_kp * base.vehicle.pitch_inertia_kg_m2;  // per radian
+    constexpr double degree = std::numbers::pi / 180;
     double share_at_2 = 0;
     for (const double z_over_r : {1.0, 1.5, 2.0, 3.0, 4.0}) {
         PlanarExperiment at = base;
         at.z_over_r = z_over_r;
-        const double degree = std::numbers::pi / 180;
         const double at_5 = torque_over_wide_plate(at, 5 * degree);
         const double at_10 = torque_over_wide_plate(at, 10 * degree);
         const double share = -at_10 / (stiffness_nm * 10 * degree);
@@ -328,7 +331,9 @@ Finding righting_moment(const PlanarExperiment& base, Table& table) {
                               fmt::format("{:.0f} %", 100 * share)});
     }
     return finding("S9: righting moment at 10 deg over wide ground, z/R 2", "negligible unless very close",
-                   fmt::format("{:.0f} % of the controller's", 100 * share_at_2), share_at_2 < 0.1);
+                   fmt::format("{:.0f} % of the controller's", 100 * share_at_2), share_at_2 < 0.1,
+                   fmt::format("with cheeseman-bennett {:.0f} %",
+                               -100 * torque_over_wide_plate(single, 10 * degree) / (stiffness_nm * 10 * degree)));
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ TEST_CASE("Under the attitude law V falls at k e^2 + k' e'^2 of each angle, wher
     CHECK(worst < 1e-6);
 }
 
-TEST_CASE("Under the altitude law with K_c V falls at k e^2 + k' e'^2; without K_c a ceiling breaks it") {
+TEST_CASE("Under the altitude law with K_c V falls at k e^2 + k' e'^2, and without K_c a ceiling breaks it") {
     const SpaceModel<0> model = sample();
     const LyapunovLaw law = uneven_law();
     Random random(3);

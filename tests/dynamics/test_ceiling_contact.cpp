@@ -140,22 +140,20 @@ TEST_CASE("A thousand random impacts gain no energy, and go no deeper than 2 mm"
     const auto model = sample();
     const CeilingContact contact = guards();
     Random random(31);
-    const Command no_command{};
-    double greatest_gain = -1;
+    double greatest_gain_j = -1;
     double deepest_m = 0;
-    int touched = 0;
-    for (int trial = 0; trial < 1000; ++trial) {
+    int impacts = 0;
+    for (int trial = 0; trial < 3000 && impacts < 1000; ++trial) {
         const State state = random_approach(contact, random);
-        const double before = energy_of(model, state);
-        const Flight flight = flown_under(model, contact, state, no_command, 20, FreeSpace{});
-        if (flight.impulse_n_s > 0) {
-            ++touched;
+        const Flight flight = flown_under(model, contact, state, Command{}, 20, FreeSpace{});
+        if (flight.impulse_n_s > 0) {  // gravity may have turned it back before
+            ++impacts;
             deepest_m = std::max(deepest_m, flight.max_depth_m);
-            greatest_gain = std::max(greatest_gain, energy_of(model, flight.state) / before - 1);
+            greatest_gain_j = std::max(greatest_gain_j, energy_of(model, flight.state) - energy_of(model, state));
         }
     }
-    CHECK(touched > 500);
-    CHECK(greatest_gain < 1e-9);
+    CHECK(impacts == 1000);
+    CHECK(greatest_gain_j < 0);
     CHECK(deepest_m < 0.002);
 }
 
@@ -207,7 +205,7 @@ TEST_CASE("Half the step changes the impulse of an impact by less than one per c
     double worst = 0;
     for (int trial = 0; trial < 100; ++trial) {
         const State start = random_approach(contact, random);
-        // As long as the first impact lasts, before small differences grow from one to the next.
+        // Over 0.6 s, which may hold several impacts.
         const Flight probe = flown_under(model, contact, start, lift(0.5 * mass_kg * 9.80665), 60, Suction{});
         if (probe.impulse_n_s == 0) {
             continue;

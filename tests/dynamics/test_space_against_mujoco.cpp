@@ -40,7 +40,7 @@ std::string inertial(const SpaceBody& body, const Vector3& center_m) {
         axes.col(2) = -axes.col(2);
     }
     const Eigen::Quaterniond turn(axes);
-    const Eigen::Vector3d moments = solver.eigenvalues();
+    const Eigen::Vector3d& moments = solver.eigenvalues();
     std::ostringstream xml;
     xml << std::setprecision(17) << "<inertial pos='" << text_of(center_m) << "' quat='" << turn.w() << ' ' << turn.x()
         << ' ' << turn.y() << ' ' << turn.z() << "' mass='" << body.mass_kg << "' diaginertia='" << moments[0] << ' '

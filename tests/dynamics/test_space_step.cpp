@@ -9,7 +9,6 @@
 
 using namespace downwash;
 using namespace downwash::test;
-using dynamics::LaneVector;
 
 namespace {
 
