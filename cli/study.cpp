@@ -54,6 +54,9 @@ void add_thesis_studies(CLI::App& study, Action& action) {
         study, action, "partial-ground-effect",
         "Fly a quadrotor over the edge of a plate under three controllers, with every ground model (thesis 3.4)",
         studies::partial_ground_effect);
+    add_thesis_study(study, action, "disturbance-test-bench",
+                     "Put a plate under one rotor of a quadrotor that can only pitch (thesis 3.5)",
+                     studies::disturbance_test_bench);
 }
 
 }  // namespace downwash::cli

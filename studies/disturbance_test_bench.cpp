@@ -5,125 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <numbers>
 
-#include "downwash/dynamics/pitch_bench.hpp"
-#include "downwash/dynamics/quadrotor.hpp"
-#include "downwash/effects/effect_curve.hpp"
-#include "downwash/studies/planar_flight.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/studies/bench_flight.hpp"
 
 namespace downwash::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double tick_s = 0.01;
-constexpr double plate_from_s = 5, plate_to_s = 20, end_s = 30;
-constexpr int rotor_over_plate = 1;  // in front: see make_quadrotor()
-constexpr double observer_gain_1_s = 10;
-
-enum class Help : std::uint8_t { none, feed_forward, observer };
-
-struct BenchExperiment {
-    PlanarVehicle vehicle;
-    PlanarControl control;
-    double rate_ki = 0;  ///< integral of the pitch rate error [1/s2]
-    SurfaceEffect ground;
-    double z_over_r = 2;  ///< of the level vehicle
-    double friction_nm_s_rad = 0.002;
-    Help help = Help::none;
-};
-
-struct BenchFlight {
-    std::vector<double> time_s, pitch_deg;
-
-    [[nodiscard]] double at(double s) const { return pitch_deg[static_cast<std::size_t>(std::lround(s / tick_s))]; }
-    [[nodiscard]] double peak(double from_s, double to_s) const {
-        double peak_deg = 0;
-        for (std::size_t i = 0; i < time_s.size(); ++i) {
-            if (time_s[i] >= from_s && time_s[i] < to_s) {
-                peak_deg = std::max(peak_deg, std::abs(pitch_deg[i]));
-            }
-        }
-        return peak_deg;
-    }
-};
-
-/// K of the rotors: only one may have a plate below.
-struct PlateUnderOne {
-    const EffectCurve* curve;
-    double plate_m, radius_m;
-    bool is_there;
-    double operator()(int rotor, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return is_there && rotor == rotor_over_plate ? (*curve)(std::max(0.0, z_m - plate_m) / radius_m) : 1.0;
-    }
-};
-
-BenchFlight fly(const BenchExperiment& e) {
-    QuadrotorParameters quadrotor;
-    quadrotor.mass_kg = e.vehicle.mass_kg;
-    quadrotor.inertia_kg_m2 = {e.vehicle.pitch_inertia_kg_m2, e.vehicle.pitch_inertia_kg_m2, 0.035};
-    quadrotor.arm_m = e.vehicle.arm_m;
-    quadrotor.drag_torque_m = 0.016;
-    quadrotor.layout = QuadrotorLayout::plus;
-    const SpaceModel<0> model = make_space_model<0>(make_quadrotor(quadrotor));
-    const SpaceAllocation allocation = make_space_allocation(model);
-    const EffectCurve curve(e.ground, 2);
-    dynamics::PitchBench bench{};
-    bench.friction_nm_s_rad = e.friction_nm_s_rad;
-    const double weight_n = e.vehicle.mass_kg * 9.80665;
-
-    dynamics::PitchBenchState<double> state{};
-    std::fill(state.thrust_n, state.thrust_n + 4, weight_n / 4);
-    BenchFlight flight;
-    double integral_rad = 0;
-    double disturbance_nm = 0;       // as the observer has it
-    double expected_momentum = 0;    // of the observer [N m s]
-    const auto ticks = static_cast<std::int64_t>(std::lround(end_s / tick_s));
-    for (std::int64_t tick = 0; tick <= ticks; ++tick) {
-        const double time_s = static_cast<double>(tick) * tick_s;
-        flight.time_s.push_back(time_s);
-        flight.pitch_deg.push_back(state.pitch_rad / degree);
-        const PlateUnderOne plate{&curve, -e.z_over_r * e.vehicle.radius_m, e.vehicle.radius_m,
-                                  time_s >= plate_from_s && time_s < plate_to_s};
-        // Momentum form of thesis (3.9): the estimate follows what the momentum has beyond the torques given.
-        const double momentum = e.vehicle.pitch_inertia_kg_m2 * state.pitch_rate_rad_s;
-        if (e.help == Help::observer) {
-            disturbance_nm = observer_gain_1_s * (momentum - expected_momentum);
-        }
-        const double rate_error = -e.control.pitch_kp * state.pitch_rad - state.pitch_rate_rad_s;
-        const double wanted_nm =
-            e.vehicle.pitch_inertia_kg_m2 * (e.control.rate_kp * rate_error + e.rate_ki * integral_rad) - disturbance_nm;
-        integral_rad += rate_error * tick_s;
-        expected_momentum += (wanted_nm + disturbance_nm) * tick_s;
-        const double demand[4] = {weight_n, 0, wanted_nm, 0};
-        double thrust_n[max_rotors];
-        dynamics::allocate(allocation, demand, thrust_n);
-        for (int i = 0; i < 4; ++i) {
-            if (e.help == Help::feed_forward) {
-                const double rise_m = i == rotor_over_plate ? -e.vehicle.arm_m * std::sin(state.pitch_rad) : 0;
-                thrust_n[i] /= plate(i, 0, 0, rise_m);
-            }
-            thrust_n[i] = std::clamp(thrust_n[i], 0.0, weight_n / 2);
-        }
-        state = dynamics::pitch_bench_step(model, bench, state, thrust_n, tick_s, plate);
-    }
-    return flight;
-}
+const double plate_from_s = BenchExperiment{}.plate_from_s;
+const double plate_to_s = BenchExperiment{}.plate_to_s;
 
 struct Shown {
     const char* name;
-    Help help;
+    BenchAid aid;
 };
-constexpr std::array shown = {Shown{"PID", Help::none}, Shown{"feed-forward", Help::feed_forward},
-                              Shown{"observer", Help::observer}};
+constexpr std::array shown = {Shown{"PID", BenchAid::none}, Shown{"feed-forward", BenchAid::feed_forward},
+                              Shown{"observer", BenchAid::observer}};
 
 /// Pitch under each controller.
 std::array<BenchFlight, 3> flights_of(const BenchExperiment& base) {
     std::array<BenchFlight, 3> flights;
     for (std::size_t i = 0; i < shown.size(); ++i) {
         BenchExperiment experiment = base;
-        experiment.help = shown[i].help;
+        experiment.aid = shown[i].aid;
         flights[i] = fly(experiment);
     }
     return flights;
@@ -131,18 +35,18 @@ std::array<BenchFlight, 3> flights_of(const BenchExperiment& base) {
 
 /// How far the pitch still is from level when the plate has been there for ten seconds.
 double steady_deg(const BenchFlight& flight) {
-    return std::abs(flight.at(plate_from_s + 10));
+    return std::abs(flight.pitch_at(plate_from_s + 10));
 }
 
 std::vector<Finding> findings_of(const std::array<BenchFlight, 3>& flights) {
     const auto& [pid, forward, observer] = flights;
-    const double pid_deg = pid.peak(plate_from_s, plate_to_s);
-    const double forward_deg = forward.peak(plate_from_s, plate_to_s);
-    const double observer_deg = observer.peak(plate_from_s, plate_to_s);
+    const double pid_deg = pid.peak_deg(plate_from_s, plate_to_s);
+    const double forward_deg = forward.peak_deg(plate_from_s, plate_to_s);
+    const double observer_deg = observer.peak_deg(plate_from_s, plate_to_s);
     return {{"S8: PID", "pitch is disturbed and hard to correct (figures 3.18, 3.19 a)",
              fmt::format("up to {:.1f} deg, {:.1f} deg after 10 s", pid_deg, steady_deg(pid)), steady_deg(pid) > 1, ""},
-            {"S8: feed-forward", "much smaller variations (figure 3.19 b)", fmt::format("up to {:.2f} deg", forward_deg),
-             forward_deg < 0.2 * pid_deg, ""},
+            {"S8: feed-forward", "much smaller variations (figure 3.19 b)",
+             fmt::format("up to {:.2f} deg", forward_deg), forward_deg < 0.2 * pid_deg, ""},
             {"S8: observer", "pitch begins to rise, then recovers (figure 3.20)",
              fmt::format("up to {:.2f} deg, {:.2f} deg after 10 s", observer_deg, steady_deg(observer)),
              observer_deg > forward_deg && steady_deg(observer) < 0.2 * observer_deg, ""}};
@@ -200,9 +104,12 @@ Study disturbance_test_bench() {
     study.name = "disturbance-test-bench";
     study.title = "A plate under one rotor of a quadrotor on a test bench (thesis 3.5)";
     study.setting = {
-        "The quadrotor of the study partial-ground-effect turns about an axle through its centre and can do nothing else. A plate is put under its "
-        "front rotor, two radii below, for 15 s. The cascade has no integral of the pitch; the bearings have friction of 0.002 N m s/rad. The thesis "
-        "shows measured curves without numbers on their controllers.",
+        "The quadrotor of the study partial-ground-effect turns about an axle through its centre and can do nothing "
+        "else. A plate is put under its "
+        "front rotor, two radii below, for 15 s. The cascade has no integral of the pitch; the bearings have friction "
+        "of 0.002 N m s/rad. The thesis "
+        "shows measured curves without numbers on their controllers. The feed-forward is told at once when the plate "
+        "comes and goes.",
         "In the table everything is flown again with other ground models and gains."};
     Table table{"settings",
                 "Greatest pitch while the plate is there, and pitch after ten seconds [deg]",
@@ -214,7 +121,7 @@ Study disturbance_test_bench() {
         by_setting.push_back(findings_of(flights));
         std::vector<std::string> row{setting.name};
         for (const BenchFlight& flight : flights) {
-            row.push_back(fmt::format("{:.2f}, {:.2f}", flight.peak(plate_from_s, plate_to_s), steady_deg(flight)));
+            row.push_back(fmt::format("{:.2f}, {:.2f}", flight.peak_deg(plate_from_s, plate_to_s), steady_deg(flight)));
         }
         table.rows.push_back(std::move(row));
     }
