@@ -12,22 +12,27 @@ struct LaneVector {
     T x, y, z;
 };
 
+/// Sum.
 template <class T>
 LaneVector<T> operator+(const LaneVector<T>& a, const LaneVector<T>& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+/// Difference.
 template <class T>
 LaneVector<T> operator-(const LaneVector<T>& a, const LaneVector<T>& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+/// Multiple.
 template <class T>
 LaneVector<T> operator*(const T& s, const LaneVector<T>& a) {
     return {s * a.x, s * a.y, s * a.z};
 }
+/// Scalar product.
 template <class T>
 T dot(const LaneVector<T>& a, const LaneVector<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// Vector product.
 template <class T>
 LaneVector<T> cross(const LaneVector<T>& a, const LaneVector<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -44,14 +49,17 @@ struct LaneSymmetric {
     T xx, xy, xz, yy, yz, zz;
 };
 
+/// Sum.
 template <class T>
 LaneSymmetric<T> operator+(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
     return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
 }
+/// Difference.
 template <class T>
 LaneSymmetric<T> operator-(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
     return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
 }
+/// Product.
 template <class T>
 LaneVector<T> operator*(const LaneSymmetric<T>& m, const LaneVector<T>& v) {
     return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,

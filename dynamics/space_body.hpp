@@ -13,9 +13,10 @@
 
 namespace downwash::dynamics {
 
-/// Coordinates and speeds of a plant with n joints.
+/// Coordinates of a plant with n joints.
 template <int n>
 inline constexpr int space_coordinates = 7 + n;
+/// Its speeds.
 template <int n>
 inline constexpr int space_speeds = 6 + n;
 

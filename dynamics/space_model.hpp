@@ -54,6 +54,7 @@ struct BasicSpaceModel : SpaceStructure, SpaceNumbers<T, n> {};
 template <int n>
 using SpaceModel = BasicSpaceModel<double, n>;
 
+/// Parts of make_space_model().
 namespace detail {
 
 /// Everything but the links.

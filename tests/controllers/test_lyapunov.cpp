@@ -357,6 +357,20 @@ TEST_CASE("All laws together bring the vehicle to a place below a ceiling, at 10
     CHECK(end(false).q[2] > 1.85);
 }
 
+TEST_CASE("A vehicle that shall fall faster than g keeps a tenth of its weight as thrust, level and upside down") {
+    const SpaceModel<0> model = sample();
+    const SpaceAllocation allocation = make_space_allocation(model);
+    const LyapunovReference<double> far_below{{5, 0, 0}, {-5, 0, 0}, {-100, 0, 0}, {0, 0, 0}};
+    for (const double roll : {0.0, 3.1}) {
+        State state{};
+        set_attitude(state, {roll, 0, 0});
+        double thrust_n[max_rotors] = {};
+        lyapunov_commands(model, allocation, LyapunovLaw{}, state, far_below, 1.0, thrust_n);
+        CHECK(thrust_n[0] + thrust_n[1] + thrust_n[2] + thrust_n[3] >= Approx(0.1 * 1.5 * 9.80665));
+        CHECK(std::isfinite(thrust_n[0]));
+    }
+}
+
 TEST_CASE("In space the allocation gives back what was demanded, with the least thrusts") {
     const SpaceModel<0> model = sample();
     const SpaceAllocation allocation = make_space_allocation(model);
