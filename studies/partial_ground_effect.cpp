@@ -236,7 +236,7 @@ std::vector<Story> stories_of(const std::vector<Setting>& all) {
 /// x and pitch over time.
 Figure figure_of(const std::string& name, const std::string& caption, const Story& story,
                  const std::vector<std::pair<const char*, Flown>>& shown, double target_m) {
-    constexpr std::size_t every = 5;
+    constexpr std::size_t every = 10;
     CurveFigure x;
     CurveFigure pitch;
     x.x_label = pitch.x_label = "time [s]";

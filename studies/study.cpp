@@ -17,10 +17,21 @@ std::string joined(const std::vector<std::string>& cells, std::string_view separ
     return line;
 }
 
+/// Cells with commas stand in quotes (RFC 4180). No cell holds a quote.
+std::string csv_row(std::vector<std::string> cells) {
+    for (std::string& cell : cells) {
+        if (cell.find(',') != std::string::npos) {
+            cell.insert(cell.begin(), '"');
+            cell.push_back('"');
+        }
+    }
+    return joined(cells, ",") + "\n";
+}
+
 std::string csv_of(const Table& table) {
-    std::string text = joined(table.columns, ",") + "\n";
+    std::string text = csv_row(table.columns);
     for (const std::vector<std::string>& row : table.rows) {
-        text += joined(row, ",") + "\n";
+        text += csv_row(row);
     }
     return text;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws every figure of README.md and docs/*.md, and writes the tables between the marks in aeromap.md.
+# Draws every figure of README.md and docs/*.md, and writes the tables between the marks in aeromap.md and control.md.
 # Usage: docs/figures/make.sh [downwash]   (./dev figures builds the program first)
 set -euo pipefail
 
@@ -63,8 +63,11 @@ run mp-arm-da 3000 3
 cp "$work/run/plots.svg" plots_mp_arm_da.svg
 run mp-arm-ada 3000 0
 
-# Tables: replaces the text between <!-- NAME --> and <!-- /NAME --> in the page.
-replace() { # NAME, new text on standard input
+# Block diagrams.
+./blocks.py blocks.txt .
+
+# Tables: replaces the text between <!-- NAME --> and <!-- /NAME --> in a page.
+replace() { # NAME PAGE, new text on standard input
     local text page
     text=$(mktemp)
     page=$(mktemp)
@@ -72,10 +75,19 @@ replace() { # NAME, new text on standard input
     awk -v name="$1" -v text="$text" '
         $0 == "<!-- /" name " -->" { inside = 0 }
         !inside { print }
-        $0 == "<!-- " name " -->" { inside = 1; while ((getline line < text) > 0) print line }' ../aeromap.md >"$page"
-    cat "$page" >../aeromap.md
+        $0 == "<!-- " name " -->" { inside = 1; while ((getline line < text) > 0) print line }' "../$2" >"$page"
+    cat "$page" >"../$2"
     rm -f "$text" "$page"
 }
-"$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison
-{ echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt
-{ echo "\`\`\`"; "$downwash" aeromap fit "$walls" --walls; echo "\`\`\`"; } | replace walls
+
+# The thesis' experiments: findings, and some of the figures.
+for study in partial-ground-effect disturbance-test-bench ceiling-envelope ceiling-contact; do
+    "$downwash" study "$study" --quiet --out "$work/$study"
+    awk '/^\| \| thesis/ { inside = 1 } /^$/ { inside = 0 } inside' "$work/$study/study.md" | replace "$study" control.md
+done
+cp "$work"/partial-ground-effect/figure_3_1[56].svg "$work"/disturbance-test-bench/figure_3_18_to_3_20.svg \
+    "$work"/ceiling-envelope/figure_4_9.svg "$work"/ceiling-contact/figure_4_15.svg .
+
+"$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison aeromap.md
+{ echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt aeromap.md
+{ echo "\`\`\`"; "$downwash" aeromap fit "$walls" --walls; echo "\`\`\`"; } | replace walls aeromap.md

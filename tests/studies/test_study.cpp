@@ -15,7 +15,7 @@ Study example() {
     study.findings = {{"S1", "crosses", "1 < 2", true, ""}, {"S2", "falls", "stays", false, "gains > 3"}};
     study.figures = {{"one", "A line.", {CurveFigure{}}}};
     study.figures[0].diagrams[0].curves = {{"line", {{0, 0}, {1, 1}}}};
-    study.tables = {{"numbers", "Numbers.", {"a", "b [m]"}, {{"x", "1"}, {"y", "2"}}}};
+    study.tables = {{"numbers", "Numbers.", {"a", "b [m]"}, {{"x", "1"}, {"y, z", "2"}}}};
     return study;
 }
 
@@ -33,7 +33,7 @@ std::string content(const Study& study, const std::string& name) {
 
 TEST_CASE("A study is written as JSON, Markdown, CSV, pictures and one page") {
     const Study study = example();
-    CHECK(content(study, "numbers.csv") == "a,b [m]\nx,1\ny,2\n");
+    CHECK(content(study, "numbers.csv") == "a,b [m]\nx,1\n\"y, z\",2\n");
     CHECK_THAT(content(study, "study.json"), Catch::Contains("\"reproduced\": false"));
     CHECK_THAT(content(study, "study.md"), Catch::Contains("| S2 | falls | stays (gains > 3) | no |"));
     CHECK_THAT(content(study, "one.svg"), Catch::Contains("<svg"));
