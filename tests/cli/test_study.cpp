@@ -32,3 +32,20 @@ TEST_CASE("A study says which problems it cannot use") {
     CHECK(sure.code == 2);
     CHECK_THAT(sure.err, Contains("has no uncertainty to study"));
 }
+
+TEST_CASE("A study of the thesis' experiments writes findings, numbers, pictures and a page") {
+    const Workspace work;
+    const Result result = work.succeed("study ceiling-envelope --out out");
+    CHECK_THAT(result.out, StartsWith("# Which pitch a vehicle under a ceiling may have"));
+    CHECK(work.text("out/study.md") == result.out);
+    CHECK_THAT(work.text("out/ceiling_models.csv"), StartsWith("model,10 deg at 0.10 m,"));
+    CHECK_THAT(work.text("out/figure_4_9.svg"), Contains("<svg"));
+    CHECK_THAT(work.text("out/study.html"), Contains("<svg") && Contains("Findings"));
+    const auto json = work.json("study ceiling-envelope --out out");
+    CHECK(json.at("study") == "ceiling-envelope");
+    for (const auto& finding : json.at("findings")) {
+        CHECK(finding.at("reproduced").is_boolean());
+        CHECK(!finding.at("thesis").get<std::string>().empty());
+        CHECK(!finding.at("measured").get<std::string>().empty());
+    }
+}

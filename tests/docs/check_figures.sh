@@ -55,6 +55,16 @@ quotes docs/aeromap.md "the force is at most $force % of the thrust"
 quotes docs/aeromap.md "$pulls % on average in one and +$pushes % in the other"
 quotes docs/aeromap.md "the moment is at most $moment_touching T R with a disc that touches the wall, and $moment T R from"
 
+# How near each law can hover under a ceiling: the shipped robot with its lag.
+limit() { # ROW, N: a cell of that table, without marks
+    awk -F'|' -v row="| $1 |" -v n="$2" '
+        /^## / { is_wanted = /^## ars_lrm, ceiling, .*lag 50 ms/ }
+        is_wanted && index($0, row) == 1 { gsub(/[ *]/, "", $(n + 1)); print $(n + 1); exit }' bench/results/law_limits.md
+}
+quotes docs/control.md "the model inversion needs $(limit model-inversion 2) m. An observer of 10 1/s takes it to $(limit '+ observer, 10 1/s' 2) m"
+quotes docs/control.md "to the limit of the flyable area, $(limit '+ feed-forward' 2) m"
+quotes docs/control.md "3 cm wrong the feed-forward needs $(limit '+ feed-forward' 4) m, with one that is 5 cm wrong $(limit '+ feed-forward' 8) m"
+
 # Power near surfaces, in both readings.
 power() { cell power_readings.md "$1" "$2"; }
 quotes docs/model.md "where K is $(power mp-arm-ada 2):"
