@@ -63,6 +63,18 @@ SpacePlaces<T, n> places_at(const BasicSpaceModel<P, n>& model, const T q[space_
     return places_at(model, q, rotation_of(q + 3));
 }
 
+/// Where a point of a link is in the world [m], such as the end effector on the last one.
+/// @param link 0 <= link < n   @param point_m from the link's joint, in its own axes
+template <class T, int n, class P>
+LaneVector<T> link_point(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>], int link,
+                         const LaneVector<T>& point_m) {
+    LaneVector<T> at = point_m;
+    for (int i = link; i >= 0; --i) {
+        at = spread<T>(model.link[i].joint_m) + rotation_about(spread<T>(model.link[i].axis), q[7 + i]) * at;
+    }
+    return LaneVector<T>{q[0], q[1], q[2]} + rotation_of(q + 3) * at;
+}
+
 /// The mass matrix and the velocity products in body axes. With a the acceleration of the multirotor's centre of mass
 /// less gravity, w' the angular acceleration and y_i those of the joints:
 ///   m a + w' x first_moment + sum joint_push_i y_i + bias_force = force,

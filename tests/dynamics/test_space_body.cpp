@@ -170,6 +170,25 @@ TEST_CASE("Energies of a plant in space are those of its bodies one by one") {
     }
 }
 
+TEST_CASE("The end effector of an arm of two links is where plane geometry puts it") {
+    // Both joints turn about y, 0.1 m below the centre of mass and 0.5 m out along the first link.
+    SpacePlant plant;
+    const Matrix3 inertia{{{0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}}};
+    plant.multirotor = {1, inertia};
+    plant.links.push_back({{0.1, inertia}, {0, 0, -0.1}, {0, 2, 0}, {0.2, 0, 0}});
+    plant.links.push_back({{0.1, inertia}, {0.5, 0, 0}, {0, 1, 0}, {0.2, 0, 0}});
+    const auto model = make_space_model<2>(plant);
+    // Yawed by a quarter turn: body x is world y.
+    const double q[9] = {1, 2, 3, std::sqrt(0.5), 0, 0, std::sqrt(0.5), 0.3, 0.4};
+    const auto tip = dynamics::link_point(model, q, 1, LaneVector<double>{0.4, 0, 0});
+    CHECK(tip.x == Approx(1));
+    CHECK(tip.y == Approx(2 + 0.5 * std::cos(0.3) + 0.4 * std::cos(0.7)));
+    CHECK(tip.z == Approx(3 - 0.1 - 0.5 * std::sin(0.3) - 0.4 * std::sin(0.7)));
+    const auto elbow = dynamics::link_point(model, q, 0, LaneVector<double>{0.5, 0, 0});
+    CHECK(elbow.y == Approx(2 + 0.5 * std::cos(0.3)));
+    CHECK(elbow.z == Approx(3 - 0.1 - 0.5 * std::sin(0.3)));
+}
+
 TEST_CASE("A fast spin about the axis of the middle inertia turns over, as the racket of Dzhanibekov does") {
     SpacePlant plant;
     plant.multirotor = {1, {{{0.01, 0, 0}, {0, 0.02, 0}, {0, 0, 0.028}}}};
