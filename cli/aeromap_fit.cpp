@@ -227,7 +227,7 @@ ExitCode fit_tilt(const FitArguments& given) {
     return ExitCode::done;
 }
 
-Json wall_json(const WallFit& fit) {
+Json wall_json(const WallShares& fit) {
     const auto share = [](const WallShare& of) {
         return Json{{"value", of.value},
                     {"standard_error", json_of(of.standard_error)},

@@ -46,8 +46,8 @@ WallShare share_of(const Points& points, Component component, double decay_radii
     return share;
 }
 
-WallFit fit_with_decay(const Points& points, double decay_radii) {
-    WallFit fit;
+WallShares fit_with_decay(const Points& points, double decay_radii) {
+    WallShares fit;
     fit.points = points.size();
     fit.force = share_of(points, &WallMeasurement::force_over_thrust, decay_radii);
     fit.moment = share_of(points, &WallMeasurement::moment_over_thrust_radius, decay_radii);
@@ -82,7 +82,7 @@ WallFit fit_walls(const std::vector<WallMeasurement>& measurements) {
         throw_input_error("a wall effect needs measurements at two distances or more: these have " +
                           std::to_string(distances.size()));
     }
-    WallFit fit = fit_with_decay(measurements, best_decay_radii(measurements));
+    WallFit fit{fit_with_decay(measurements, best_decay_radii(measurements)), {}};
     for (const std::string& facility : facilities) {
         Points own;
         std::ranges::copy_if(measurements, std::back_inserter(own),

@@ -20,13 +20,17 @@ struct WallShare {
     double largest = 0;                    ///< the largest measured size
 };
 
-/// Fitted walls.
-struct WallFit {
+/// Both shares of some measurements.
+struct WallShares {
     WallEffect effect;
     WallShare force, moment;
     std::size_t points = 0;
-    /// The same fitted to each facility alone, with the decay of all; empty with one facility.
-    std::vector<std::pair<std::string, WallFit>> by_facility;
+};
+
+/// Fitted walls.
+struct WallFit : WallShares {
+    /// The same of each facility alone, with the decay of all; empty with one facility.
+    std::vector<std::pair<std::string, WallShares>> by_facility;
 };
 
 /// Fits the wall effect by least squares: the decay to the moments, both shares with that decay.
