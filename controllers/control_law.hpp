@@ -86,13 +86,23 @@ template <class Law, class T>
     return own;
 }
 
-/// The reverse.
+/// The reverse, number by number in place: in a tick a copy of the whole costs some percent.
 template <class T, template <class> class Memory>
-[[nodiscard, gnu::always_inline]] inline LawMemory<T> remembered(const Memory<T>& memory) {
-    LawMemory<T> all{};
-    for (int i = 0; i < number_count<T, Memory<T>>; ++i) {
+[[gnu::always_inline]] inline void remember(const Memory<T>& memory, LawMemory<T>& all) {
+    constexpr int own = number_count<T, Memory<T>>;
+    for (int i = 0; i < own; ++i) {
         all.number[i] = number_at<T>(memory, i);
     }
+    for (int i = own; i < number_count<T, LawMemory<T>>; ++i) {
+        all.number[i] = T(0);
+    }
+}
+
+/// The reverse as a value.
+template <class T, template <class> class Memory>
+[[nodiscard, gnu::always_inline]] inline LawMemory<T> remembered(const Memory<T>& memory) {
+    LawMemory<T> all;
+    remember(memory, all);
     return all;
 }
 

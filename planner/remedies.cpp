@@ -72,9 +72,10 @@ void slow_down(Problem& problem) {
     motion.max_arm_acceleration_rad_s2 /= 4;
 }
 
-/// Time of the position loop scaled by 1 / 1.15.
+/// Time of the position loop is scaled by one over this.
+constexpr double faster = 1.15;
+
 void stiffen(ModelInversion& law) {
-    constexpr double faster = 1.15;
     const auto stiffen_loop = [](double& kp, double& kd, double& ki) {
         kp *= faster * faster;
         kd *= faster;
@@ -88,11 +89,21 @@ void stiffen(ModelInversion& law) {
     law.height_ki = height.ki;
 }
 
-/// Of another law there is nothing to say.
-void stiffen_if_known(Problem& problem) {
-    if (auto* law = std::get_if<ModelInversion>(&problem.robot.controller.law)) {
-        stiffen(*law);
+void stiffen(CascadedPid& law) {
+    for (double* per_time : {&law.horizontal_position_kp, &law.horizontal_velocity_kp, &law.vertical_position_kp,
+                             &law.vertical_velocity_kp}) {
+        *per_time *= faster;
     }
+    law.horizontal_velocity_ki *= faster * faster;
+    law.vertical_velocity_ki *= faster * faster;
+}
+
+/// Of another law there is nothing to say.
+template <class Law>
+void stiffen(Law& /*law*/) {}
+
+void stiffen_law(Problem& problem) {
+    std::visit([](auto& law) { stiffen(law); }, problem.robot.controller.law);
 }
 
 /// All spreads half as wide, around what is believed.
@@ -133,7 +144,7 @@ constexpr Change changes[] = {
     {"1.5 times the goal's tolerance", widen_tolerances, "1.5 times the tolerance of all goals"},
     {"0.1 m more margin", [](Problem& problem) { problem.planner.safety_margin_m += 0.1; }},
     {"half the speed", slow_down},
-    {"a position loop that is 15 % faster", stiffen_if_known},
+    {"a position loop that is 15 % faster", stiffen_law},
     {"all that is uncertain known twice as well", know_better},
 };
 

@@ -42,21 +42,18 @@ struct State : VehicleState<T> {
 #define DOWNWASH_IN_ONE_PIECE [[gnu::flatten]]
 #endif
 
-/// The controller's part of a tick. @param seen what it sees   @return what the law remembers
+/// The controller's part of a tick. @param seen what it sees   @param[out] next what the law remembers
 template <class T, class Law, class Effect>
-[[gnu::always_inline]] inline controllers::LawMemory<T> controlled(const TickModel& model, const Law& law,
-                                                                   const dynamics::PlantState<T>& seen,
-                                                                   const dynamics::Motion<T>& motion,
-                                                                   const controllers::LawMemory<T>& memory,
-                                                                   const BasicReferencePoint<T>& reference,
-                                                                   Effect& effect, controllers::Actuation<T>& given) {
+[[gnu::always_inline]] inline void control(const TickModel& model, const Law& law, const dynamics::PlantState<T>& seen,
+                                           const dynamics::Motion<T>& motion, const controllers::LawMemory<T>& memory,
+                                           const BasicReferencePoint<T>& reference, Effect& effect,
+                                           controllers::Actuation<T>& given, controllers::LawMemory<T>& next) {
     const auto own = controllers::recalled<Law>(memory);
     if constexpr (controllers::is_aided<Law>) {
         const ReadEffect<T, Effect> map(effect, model.tilt_loss);
-        return controllers::remembered(
-            law.control(model.plant, seen, motion, own, reference, model.tick_s, given, map));
+        controllers::remember(law.control(model.plant, seen, motion, own, reference, model.tick_s, given, map), next);
     } else {
-        return controllers::remembered(law.control(model.plant, seen, motion, own, reference, model.tick_s, given));
+        controllers::remember(law.control(model.plant, seen, motion, own, reference, model.tick_s, given), next);
     }
 }
 
@@ -74,7 +71,7 @@ DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& la
                                            Factor&& factor, controllers::Actuation<T>& given,
                                            const Integrate& integrate = {}) {
     VehicleState<T> next;
-    next.memory = controlled(model, law, state.plant, motion, state.memory, reference, factor, given);
+    control(model, law, state.plant, motion, state.memory, reference, factor, given, next.memory);
     if constexpr (requires { factor.sided(0, state.plant.q[0], state.plant.q[1]); }) {
         const TiltedEffect<T, std::remove_reference_t<Factor>> effect(factor, model.tilt_loss);
         next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), effect);
@@ -94,8 +91,8 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
                                              controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
-    next.memory = controlled(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory,
-                             reference, effect, given);
+    control(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory, reference, effect, given,
+            next.memory);
     BasicPlantModel<T> plant;
     static_cast<PlantStructure&>(plant) = model.plant;
     static_cast<PlantNumbers<T>&>(plant) = world.plant;
