@@ -5,7 +5,6 @@
 using namespace downwash;
 using namespace downwash::controllers;
 using namespace downwash::test;
-using dynamics::LaneVector;
 using State = SpaceVehicle;
 using Command = SpaceThrusts;
 
