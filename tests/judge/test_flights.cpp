@@ -168,16 +168,14 @@ TEST_CASE("Other control laws fly as the planner says, with an observer, with a 
             } else {
                 problem.robot.controller.law = shipped(name).robot.controller.law;
             }
-            std::visit(
-                [&](auto& law) {
-                    if (kind.observes) {
-                        law.aids.observer = controllers::DisturbanceObserver{8};
-                    }
-                    if (kind.reads) {
-                        law.aids.feed_forward = controllers::FeedForward{-0.02, 0.03};
-                    }
-                },
-                problem.robot.controller.law);
+            controllers::Aids aids;
+            if (kind.observes) {
+                aids.observer = controllers::DisturbanceObserver{8};
+            }
+            if (kind.reads) {
+                aids.feed_forward = controllers::FeedForward{-0.02, 0.03};
+            }
+            give_aids(problem.robot.controller.law, aids);
             problem.uncertainty.reset();
             CAPTURE(name, kind.is_cascaded, kind.observes, kind.reads);
             const judge::PlanJudge judge(problem);
@@ -210,7 +208,7 @@ TEST_CASE("A start in motion means the same to a law that observes") {
             law.rotor_lead = 1;
             problem.robot.controller.law = law;
         }
-        std::visit([](auto& law) { law.aids.observer.emplace(); }, problem.robot.controller.law);
+        give_aids(problem.robot.controller.law, {controllers::DisturbanceObserver{}, std::nullopt});
         compare(judge::PlanJudge(problem).fly(plan, {true, std::nullopt}),
                 *executed(problem, plan, true, std::nullopt));
     }

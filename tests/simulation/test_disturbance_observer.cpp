@@ -66,7 +66,13 @@ class Pushed {
     /// Also a law that observes nothing flies as one with aids.
     template <class Use>
     void fly_aided(const Use& use) const {
-        std::visit([&]<class Law>(const Law& own) { use(controllers::Aided<Law>{own}); }, law_);
+        std::visit(
+            [&]<class Law>(const Law& own) {
+                if constexpr (controllers::can_be_aided<Law>) {
+                    use(controllers::Aided<Law>{own});
+                }
+            },
+            law_);
     }
 
     using Rates = std::array<double, 12>;  // of q, u and thrusts

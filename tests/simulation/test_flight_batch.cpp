@@ -120,14 +120,11 @@ TEST_CASE("edges fly side by side as one by one with an observer and a feed-forw
             problem.robot.rotors.time_constant_s = 0.012;
             problem.robot.controller.delay_s = delay_s;
             problem.aero.ground = EffectModel::multirotor_body;
-            const auto equip = [](auto& law) {
-                law.aids.observer.emplace();
-                law.aids.feed_forward = controllers::FeedForward{0.02, -0.03};
-            };
             if (is_cascaded) {
                 problem.robot.controller.law = CascadedPid{};
             }
-            std::visit(equip, problem.robot.controller.law);
+            give_aids(problem.robot.controller.law,
+                      {controllers::DisturbanceObserver{}, controllers::FeedForward{0.02, -0.03}});
             const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 100);
             CHECK(aware.count(Rejection::none) == 1);
         }

@@ -133,16 +133,14 @@ Problem cascaded_problem(bool has_memory) {
 
 /// A problem whose law observes, reads a map that is somewhat wrong, or both.
 Problem equipped(Problem problem, bool observes, bool reads) {
-    std::visit(
-        [&](auto& law) {
-            if (observes) {
-                law.aids.observer.emplace();
-            }
-            if (reads) {
-                law.aids.feed_forward = controllers::FeedForward{0.02, -0.01};
-            }
-        },
-        problem.robot.controller.law);
+    controllers::Aids aids;
+    if (observes) {
+        aids.observer.emplace();
+    }
+    if (reads) {
+        aids.feed_forward = controllers::FeedForward{0.02, -0.01};
+    }
+    give_aids(problem.robot.controller.law, aids);
     return problem;
 }
 

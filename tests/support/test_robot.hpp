@@ -63,6 +63,17 @@ inline const ModelInversion& gains_of(const Robot& robot) {
     return std::get<ModelInversion>(robot.controller.law);
 }
 
+/// Gives a law an observer, a feed-forward, or both, if it is one that can have them.
+inline void give_aids(ControlLaw& law, const controllers::Aids& aids) {
+    std::visit(
+        [&]<class Law>(Law& own) {
+            if constexpr (controllers::can_be_aided<Law>) {
+                own.aids = aids;
+            }
+        },
+        law);
+}
+
 inline void limit_arm(Robot& robot, double lower_rad, double upper_rad) {
     robot.arm.is_limited = true;
     robot.arm.lower_limit_rad = lower_rad;
