@@ -55,7 +55,7 @@ BenchFlight fly(const BenchExperiment& e) {
     const EffectCurve curve(e.ground, 2);
     dynamics::PitchBench bench{};
     bench.friction_nm_s_rad = e.friction_nm_s_rad;
-    const double weight_n = e.vehicle.mass_kg * 9.80665;
+    const double weight_n = e.vehicle.mass_kg * standard_gravity_m_s2;
 
     dynamics::PitchBenchState<double> state{};
     std::fill(state.thrust_n, state.thrust_n + 4, weight_n / 4);

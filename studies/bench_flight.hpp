@@ -7,7 +7,9 @@
 #include "downwash/effects/surface_effect.hpp"
 #include "downwash/studies/planar_flight.hpp"
 
-// A quadrotor that can only pitch, and a plate that comes under its front rotor: the test bench of thesis 3.5.
+// A quadrotor that can only pitch, and a plate that comes under its front rotor: the test bench of thesis 3.5. The laws
+// of controllers/ hold a position too, and would take the axle's force for a disturbance of it: the bench has the pitch
+// loops of the cascade and an observer of the pitch torque alone.
 
 namespace downwash::studies {
 

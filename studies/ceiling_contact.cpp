@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "downwash/base/parallel.hpp"
+#include "downwash/dynamics/plant_model.hpp"
 #include "downwash/studies/ceiling_flight.hpp"
 #include "downwash/studies/lyapunov_decay.hpp"
 
@@ -127,7 +128,7 @@ Table table_of_height_errors(const CeilingVehicle& vehicle) {
     for (const double distance_m : {0.04, 0.06, 0.1, 0.2, 0.4}) {
         const double k = ceiling_factor_at(vehicle, distance_m);
         const auto left = [&](double believed_m) {
-            return fmt::format("{:+.2f}", 9.80665 * (k / ceiling_factor_at(vehicle, believed_m) - 1));
+            return fmt::format("{:+.2f}", standard_gravity_m_s2 * (k / ceiling_factor_at(vehicle, believed_m) - 1));
         };
         table.rows.push_back({fmt::format("{}", distance_m), left(distance_m + off_m), left(distance_m - off_m)});
     }

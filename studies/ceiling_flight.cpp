@@ -15,31 +15,10 @@ namespace downwash::studies {
 namespace {
 
 constexpr double tick_s = 0.01;
-constexpr double rotor_height_m = 0.01;  // over the centre of mass
-constexpr double gravity_m_s2 = 9.80665;
-
-/// K of every rotor under a wide ceiling at z = 0.
-struct UnderWideCeiling {
-    const EffectCurve* curve;
-    double radius_m;
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return (*curve)(std::max(0.0, -z_m) / radius_m);
-    }
-};
 
 const EffectCurve& curve_of_ceiling() {
     static const EffectCurve curve(EffectModel::sanchez_cuevas, 2);
     return curve;
-}
-
-SpaceModel<0> model_of(const CeilingVehicle& vehicle) {
-    QuadrotorParameters quadrotor;
-    quadrotor.mass_kg = vehicle.mass_kg;
-    quadrotor.inertia_kg_m2 = {0.02, 0.02, 0.035};
-    quadrotor.arm_m = vehicle.arm_m;
-    quadrotor.rotor_height_m = rotor_height_m;
-    quadrotor.drag_torque_m = 0.016;
-    return make_space_model<0>(make_quadrotor(quadrotor));
 }
 
 /// It touches over the rotors.
@@ -48,7 +27,7 @@ dynamics::CeilingContact frame_of(const CeilingVehicle& vehicle) {
     const double half = vehicle.arm_m * std::numbers::sqrt2 / 2;
     for (const double x : {half, -half}) {
         for (const double y : {half, -half}) {
-            contact.point_m[contact.point_count++] = {x, y, rotor_height_m + vehicle.guard_m};
+            contact.point_m[contact.point_count++] = {x, y, vehicle.rotor_height_m + vehicle.guard_m};
         }
     }
     return contact;
@@ -70,6 +49,16 @@ Reference reference_at(const CeilingExperiment& e, double time_s, double leaves_
 }
 
 }  // namespace
+
+SpacePlant plant_of(const CeilingVehicle& vehicle) {
+    QuadrotorParameters quadrotor;
+    quadrotor.mass_kg = vehicle.mass_kg;
+    quadrotor.inertia_kg_m2 = {0.02, 0.02, 0.035};
+    quadrotor.arm_m = vehicle.arm_m;
+    quadrotor.rotor_height_m = vehicle.rotor_height_m;
+    quadrotor.drag_torque_m = 0.016;
+    return make_quadrotor(quadrotor);
+}
 
 double ceiling_factor_at(const CeilingVehicle& vehicle, double distance_m) {
     return curve_of_ceiling()(std::max(0.0, distance_m) / vehicle.radius_m);
@@ -115,12 +104,12 @@ double CeilingFlight::command_in_contact() const {
 
 CeilingFlight fly(const CeilingExperiment& e) {
     using dynamics::LaneVector;
-    const SpaceModel<0> model = model_of(e.vehicle);
+    const SpaceModel<0> model = make_space_model<0>(plant_of(e.vehicle));
     const SpaceAllocation allocation = make_space_allocation(model);
     const dynamics::CeilingContact contact = frame_of(e.vehicle);
-    const UnderWideCeiling factor{&curve_of_ceiling(), e.vehicle.radius_m};
-    const double frame_m = rotor_height_m + e.vehicle.guard_m;  // over the centre of mass
-    const double weight_n = e.vehicle.mass_kg * gravity_m_s2;
+    const UnderWideCeiling factor{e.vehicle};
+    const double frame_m = e.vehicle.rotor_height_m + e.vehicle.guard_m;  // over the centre of mass
+    const double weight_n = e.vehicle.mass_kg * standard_gravity_m_s2;
 
     controllers::LyapunovLaw law;
     law.z.k *= e.gain_scale;
@@ -160,7 +149,7 @@ CeilingFlight fly(const CeilingExperiment& e) {
             const double acceleration_m_s2 =
                 pid.climb_kp * climb_error_m_s +
                 controllers::integral_action(pid.climb_ki, pid.integral_limit_m_s2, integral_m);
-            acting_n = e.vehicle.mass_kg * (gravity_m_s2 + acceleration_m_s2) / attitude.third.z;
+            acting_n = e.vehicle.mass_kg * (standard_gravity_m_s2 + acceleration_m_s2) / attitude.third.z;
             is_clipped = acting_n < 0 || acting_n > 2 * weight_n;
             if (!is_clipped) {
                 integral_m =

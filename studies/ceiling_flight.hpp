@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/dynamics/space_plant.hpp"
 
 // A quadrotor in space under a wide ceiling that it may touch: the flights of thesis 4.7.
 
@@ -20,9 +21,10 @@ enum class AltitudeLaw : std::uint8_t {
 /// The thesis gives neither mass nor inertia nor gains. **Choice**: a quadrotor of the size of its platform.
 struct CeilingVehicle {
     double mass_kg = 1.5;
-    double arm_m = 0.24;       ///< 480 mm between opposite axes (thesis 4.3)
-    double radius_m = 0.1194;  ///< of the fit (2.18)
-    double guard_m = 0.04;     ///< how far the frame reaches above the rotors (thesis 4.4)
+    double rotor_height_m = 0.01;  ///< of the hubs over the centre of mass
+    double arm_m = 0.24;           ///< 480 mm between opposite axes (thesis 4.3)
+    double radius_m = 0.1194;      ///< of the fit (2.18)
+    double guard_m = 0.04;         ///< how far the frame reaches above the rotors (thesis 4.4)
 };
 
 /// Gains of the altitude PID. **Choice**: no thesis numbers; as quick in free air as the Lyapunov law.
@@ -67,7 +69,18 @@ struct CeilingFlight {
 
 [[nodiscard]] DOWNWASH_EXPORT CeilingFlight fly(const CeilingExperiment& experiment);
 
+/// The vehicle as a plant in space.
+[[nodiscard]] DOWNWASH_EXPORT SpacePlant plant_of(const CeilingVehicle& vehicle);
+
 /// K of (2.18) with the rotors `distance_m` below the ceiling.
 [[nodiscard]] DOWNWASH_EXPORT double ceiling_factor_at(const CeilingVehicle& vehicle, double distance_m);
+
+/// The same at every rotor, with the ceiling at z = 0: what rotor_wrench() in space asks for.
+struct UnderWideCeiling {
+    CeilingVehicle vehicle;
+    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
+        return ceiling_factor_at(vehicle, -z_m);
+    }
+};
 
 }  // namespace downwash::studies

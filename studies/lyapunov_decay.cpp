@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "downwash/controllers/lyapunov.hpp"
-#include "downwash/dynamics/quadrotor.hpp"
+#include "downwash/dynamics/space_model.hpp"
 #include "downwash/studies/ceiling_flight.hpp"
 
 namespace downwash::studies {
@@ -12,27 +12,12 @@ namespace {
 
 constexpr double tick_s = 0.01;
 constexpr double start_m = -0.5, target_m = -0.2;  // of the rotors, from the ceiling
-constexpr double rotor_height_m = 0.01;
-
-/// K of (2.18) at every rotor.
-struct WideCeiling {
-    CeilingVehicle vehicle;
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return ceiling_factor_at(vehicle, -z_m);
-    }
-};
-
 }  // namespace
 
 LyapunovDecay lyapunov_decay() {
-    const WideCeiling ceiling;
-    QuadrotorParameters quadrotor;
-    quadrotor.mass_kg = ceiling.vehicle.mass_kg;
-    quadrotor.inertia_kg_m2 = {0.02, 0.02, 0.035};
-    quadrotor.arm_m = ceiling.vehicle.arm_m;
-    quadrotor.rotor_height_m = rotor_height_m;
-    quadrotor.drag_torque_m = 0.016;
-    const SpaceModel<0> model = make_space_model<0>(make_quadrotor(quadrotor));
+    const UnderWideCeiling ceiling;
+    const double rotor_height_m = ceiling.vehicle.rotor_height_m;
+    const SpaceModel<0> model = make_space_model<0>(plant_of(ceiling.vehicle));
     const SpaceAllocation allocation = make_space_allocation(model);
     const controllers::LyapunovLaw law;
     const controllers::LyapunovTarget<double> target{target_m - rotor_height_m, 0, 0};

@@ -25,7 +25,7 @@ RotorParameters rotors_of(const PlanarVehicle& vehicle) {
     rotors.positions_m = vehicle.layout == RotorLayout::plus
                              ? std::vector<Vector3>{{a, 0, 0}, {0, a, 0}, {-a, 0, 0}, {0, -a, 0}}
                              : std::vector<Vector3>{{s, s, 0}, {-s, s, 0}, {-s, -s, 0}, {s, -s, 0}};
-    rotors.max_thrust_n = vehicle.mass_kg * 9.80665 / 2;
+    rotors.max_thrust_n = vehicle.mass_kg * standard_gravity_m_s2 / 2;
     rotors.power_coefficient_w_n1p5 = 3;
     return rotors;
 }

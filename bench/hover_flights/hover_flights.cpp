@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "../../tests/support/random.hpp"
+#include "../support/disturbed_hover.hpp"
 #include "../support/measuring.hpp"
 #include "../support/scenes.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/statistics.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 
 using namespace downwash;
@@ -26,7 +26,6 @@ using namespace downwash::bench;
 
 namespace {
 
-constexpr double flight_s = 40;
 /// Hovers whose growth rate is nearer to zero than this are all flown [1/s]: there a verdict is hardest.
 constexpr double critical_rate_1_s = 0.05;
 /// Of the hovers that are stable by more, one in so many is flown.
@@ -39,47 +38,6 @@ struct Options {
     std::size_t flights = 150;
     std::uint64_t seed = 1;
 };
-
-/// How far off a flight begins, and what it must not leave [m, rad].
-struct Disturbance {
-    double size = 1e-3;
-    double leaving = 0.05;
-};
-
-double distance(const FlightState& a, const FlightState& b) {
-    double most = 0;
-    for (int i = 0; i < 4; ++i) {
-        most = std::max(most, std::abs(a.plant.q[i] - b.plant.q[i]));
-    }
-    return most;
-}
-
-/// Flies with direct aerodynamics from beside the hover. Whether the vehicle leaves it, or is farther away in the last
-/// quarter than in the one before.
-bool grows(const FlightModel& model, const HoverTrim& trim, const Disturbance& disturbance, test::Random& random) {
-    FlightState state = trim.state;
-    for (int i = 0; i < 4; ++i) {
-        state.plant.q[i] += random.uniform(-disturbance.size, disturbance.size);
-        state.plant.u[i] += random.uniform(-disturbance.size, disturbance.size);
-    }
-    const int ticks = static_cast<int>(flight_s * model.robot().controller.rate_hz);
-    double before = 0;
-    double in_the_end = 0;
-    for (int i = 0; i < ticks; ++i) {
-        controllers::Actuation<double> given{};
-        state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
-        const double d = distance(state, trim.state);
-        if (!(d < disturbance.leaving)) {
-            return true;
-        }
-        if (4 * i >= 3 * ticks) {
-            in_the_end = std::max(in_the_end, d);
-        } else if (4 * i >= 2 * ticks) {
-            before = std::max(before, d);
-        }
-    }
-    return in_the_end > before && in_the_end > 1e-9;
-}
 
 /// One row of the table.
 struct Count {
@@ -115,7 +73,7 @@ class Campaign {
             if (!is_wanted) {
                 continue;
             }
-            const bool grew = grows(*model, hover.trim, count.disturbance, random_);
+            const bool grew = fly_disturbed(*model, hover.trim, count.disturbance, random_).grew;
             (is_unstable ? count.unstable : count.stable) += 1;
             count.critical += std::abs(rate_1_s) < critical_rate_1_s ? 1 : 0;
             count.grew += is_unstable && grew ? 1 : 0;
@@ -171,7 +129,7 @@ class Campaign {
             "unknown "
             "|\n|---|---|---|---|---|---|---|\n",
             source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options_.seed, max_places, critical_rate_1_s, clear_ones,
-            flight_s, critical_rate_1_s);
+            disturbed_flight_s, critical_rate_1_s);
         Count all{"all", "", {}};
         for (const Count& c : rows_) {
             print_row(c, fmt::format("{:g}, {:g}", c.disturbance.size, c.disturbance.leaving));

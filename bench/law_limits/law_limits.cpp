@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "../../tests/support/random.hpp"
+#include "../support/disturbed_hover.hpp"
 #include "../support/measuring.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
-#include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 
 using namespace downwash;
@@ -27,7 +27,6 @@ namespace {
 
 constexpr double farthest_m = 1.5;  ///< here every law hovers, or none of its distances counts
 constexpr double step_m = 1e-3;
-constexpr double flight_s = 40;
 constexpr double beside_m = 0.02;  ///< so far on either side of a limit the flights are
 constexpr double offsets_m[] = {0, 0.01, 0.03, 0.05, -0.01, -0.03, -0.05};
 
@@ -120,43 +119,6 @@ class Place {
     double hub_z_m_;
 };
 
-double distance(const FlightState& a, const FlightState& b) {
-    double most = 0;
-    for (int i = 0; i < 4; ++i) {
-        most = std::max(most, std::abs(a.plant.q[i] - b.plant.q[i]));
-    }
-    return most;
-}
-
-/// Whether a millimetre beside a hover grows in a flight with direct evaluation: it leaves 5 cm, or is farther away in
-/// the last quarter than in the one before.
-/// @param[out] end_m how far away it is in the end
-bool grows(const FlightModel& model, const HoverTrim& trim, test::Random& random, double& end_m) {
-    FlightState state = trim.state;
-    for (int i = 0; i < 4; ++i) {
-        state.plant.q[i] += random.uniform(-1e-3, 1e-3);
-        state.plant.u[i] += random.uniform(-1e-3, 1e-3);
-    }
-    const int ticks = static_cast<int>(flight_s * model.robot().controller.rate_hz);
-    double before = 0;
-    double in_the_end = 0;
-    for (int i = 0; i < ticks; ++i) {
-        controllers::Actuation<double> given{};
-        state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
-        const double d = distance(state, trim.state);
-        end_m = d;
-        if (!(d < 0.05)) {
-            return true;
-        }
-        if (4 * i >= 3 * ticks) {
-            in_the_end = std::max(in_the_end, d);
-        } else if (4 * i >= 2 * ticks) {
-            before = std::max(before, d);
-        }
-    }
-    return in_the_end > before && in_the_end > 1e-9;
-}
-
 /// Flights that the limits were tried by.
 struct Trials {
     test::Random random{1};
@@ -167,16 +129,14 @@ struct Trials {
         const HoverAnalysis outside = place.hover(limit_m + beside_m);
         if (outside.verdict == HoldVerdict::stable) {
             ++held;
-            double end_m = 0;
-            const bool grew = grows(place.model(), outside.trim, random, end_m);
+            const auto [grew, end_m] = fly_disturbed(place.model(), outside.trim, {}, random);
             held_decayed += grew ? 0 : 1;
             note(grew, of, "stable, grew", outside, end_m);
         }
         const HoverAnalysis inside = place.hover(limit_m - beside_m);
         if (inside.verdict == HoldVerdict::unstable) {
             ++lost;
-            double end_m = 0;
-            const bool grew = grows(place.model(), inside.trim, random, end_m);
+            const auto [grew, end_m] = fly_disturbed(place.model(), inside.trim, {}, random);
             lost_grew += grew ? 1 : 0;
             note(!grew, of, "unstable, did not grow", inside, end_m);
         }
@@ -255,7 +215,8 @@ void print_all(const std::string& file, const std::vector<std::string>& robots) 
         "\nEach limit was tried by flights of {:.0f} s with direct aerodynamics, disturbed by up to 1 mm, 1 mm/s, 1 "
         "mrad and 1 "
         "mrad/s: {:.0f} cm farther away {} of {} decayed,\n{:.0f} cm nearer {} of {} grew.\n\n",
-        flight_s, 100 * beside_m, trials.held_decayed, trials.held, 100 * beside_m, trials.lost_grew, trials.lost);
+        disturbed_flight_s, 100 * beside_m, trials.held_decayed, trials.held, 100 * beside_m, trials.lost_grew,
+        trials.lost);
     for (const std::string& disagreement : trials.disagreements) {
         fmt::print("- {}\n", disagreement);
     }
