@@ -240,17 +240,7 @@ struct CascadedPid {
         rows.add(rows.gain("joint.ki", "[N m/s]", &Law::joint_ki));
         rows.add(
             rows.gain("joint.integral_limit_nm", "most that the integral may ask for", &Law::joint_integral_limit_nm));
-        rows.add(rows.number("rotor_lead", "share by which rotors with a lag are asked for more than they lack",
-                             &Law::rotor_lead)
-                     .at_least(0)
-                     .at_most(10));
-        rows.add(rows.number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
-                     .at_least(0.01)
-                     .below(90));
-        rows.add(rows.number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
-                             &Law::min_vertical_force_ratio)
-                     .at_least(1e-3)
-                     .at_most(1));
+        rows.add_limits();
         rows.add_aids();
     }
 };

@@ -263,17 +263,7 @@ struct ModelInversion {
         rows.add(rows.gain("arm.ki", "[1/s3]", &Law::arm_ki));
         rows.add(rows.gain("arm.integral_limit_rad_s2", "most that the integral may ask for",
                            &Law::arm_integral_limit_rad_s2));
-        rows.add(rows.number("rotor_lead", "share by which rotors with a lag are asked for more than they lack",
-                             &Law::rotor_lead)
-                     .at_least(0)
-                     .at_most(10));
-        rows.add(rows.number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
-                     .at_least(0.01)
-                     .below(90));
-        rows.add(rows.number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
-                             &Law::min_vertical_force_ratio)
-                     .at_least(1e-3)
-                     .at_most(1));
+        rows.add_limits();
         rows.add_aids();
     }
 };

@@ -218,6 +218,19 @@ class LawRows {
     Parameter<Robot> number(std::string_view path, std::string_view description, Number Law::*member) const {
         return parameters::number<Robot>(below(path), description, place(member));
     }
+    /// The keys of how far a law goes, which the laws here share.
+    void add_limits() {
+        add(number("rotor_lead", "share by which rotors with a lag are asked for more than they lack", &Law::rotor_lead)
+                .at_least(0)
+                .at_most(10));
+        add(number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
+                .at_least(0.01)
+                .below(90));
+        add(number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
+                   &Law::min_vertical_force_ratio)
+                .at_least(1e-3)
+                .at_most(1));
+    }
     /// The keys of what a law has beside its loops.
     void add_aids() {
         const auto observer = [](auto& robot) -> auto& {
