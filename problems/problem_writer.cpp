@@ -201,9 +201,12 @@ std::string problem_sha256(const Problem& problem) {
     const auto digest = [&](const Parameter<Problem>& row, std::size_t index) { return row.digest(problem, index); };
     // A default, which the problem has taken over where it has an uncertainty: no flight depends on it.
     std::vector<std::string_view> left_out{"robot.uncertainty"};
-    // The law of files that name none: plans from before there was a choice are still of their problem.
+    // What files had no keys for means the same without them: plans from before are still of their problem.
     if (problem.robot.controller.law.index() == 0) {
         left_out.emplace_back("robot.controller.type");
+    }
+    if (!problem.aero.wall.is_any()) {
+        left_out.emplace_back("aero.wall");
     }
     return sha256_hex(Writer(problem, digest, left_out).written());
 }

@@ -205,3 +205,16 @@ TEST_CASE("the hash of a problem depends on its meaning, not on how it is writte
     CHECK(hash(edited(good_problem, "arm_deg: 90", "arm_deg: 90.00000000000001")) != problem_sha256(problem));
     CHECK(problem_sha256(problem).size() == 64);
 }
+
+TEST_CASE("the hash of a problem forgets walls that do nothing, and no others") {
+    const TestFolder folder;
+    Problem problem = folder.read();
+    const std::string nothing = problem_sha256(problem);
+    problem.aero.wall.decay_radii = 2;
+    CHECK(problem_sha256(problem) == nothing);
+    problem.aero.wall.moment = 0.03;
+    const std::string with_walls = problem_sha256(problem);
+    CHECK(with_walls != nothing);
+    problem.aero.wall.decay_radii = 1;
+    CHECK(problem_sha256(problem) != with_walls);
+}
