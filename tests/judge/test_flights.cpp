@@ -259,3 +259,25 @@ TEST_CASE("Goals in a row and alternatives are met as the planner meets them") {
     CHECK(mine.outcome == (stays ? judge::Outcome::ok : judge::Outcome::goal_missed));
     compare(mine, *executed(problem, plan, true, std::nullopt));
 }
+
+TEST_CASE("the judge and the planner agree about touches, as believed and in worlds") {
+    for (const char* name : {"contact/deck_with_frame", "contact/pier_with_arm"}) {
+        CAPTURE(name);
+        const Problem problem = shipped(name);
+        const Plan plan = plan_of(problem, 300);
+        const PlanJudge judge(problem);
+        for (std::uint64_t index = 0; index <= 6; ++index) {
+            CAPTURE(index);
+            const std::optional<World> world =
+                index == 0 ? std::nullopt : std::optional(draw_world(*problem.uncertainty, problem.robot, 11, index));
+            const std::optional<Execution> flight = executed(problem, plan, true, world);
+            REQUIRE(flight);
+            REQUIRE(flight->touch);
+            const JudgedFlight judged = judge.fly(plan, {true, world});
+            CHECK(name_of(judged.outcome) == name_of(flight->outcome));
+            REQUIRE(judged.touch_force_n);
+            CHECK(*judged.touch_force_n == Approx(flight->touch->force_n).epsilon(0.02));
+            CHECK(judged.energy_j == Approx(flight->energy_j).epsilon(0.01));
+        }
+    }
+}
