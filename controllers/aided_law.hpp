@@ -94,6 +94,13 @@ struct Aided {
         return memory;
     }
 
+    /// A memory whose integrals stand still. The observer goes on.
+    template <class T>
+    [[nodiscard]] static Memory<T> with_integrals_of(const Memory<T>& before, Memory<T> now) {
+        now.loops = Law::with_integrals_of(before.loops, now.loops);
+        return now;
+    }
+
     /// One control step: that of the law. @param map see read_ratios()
     template <class T, class Map>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,

@@ -20,7 +20,7 @@ struct PlanarContact {
     PlanePoint<double> point_m[max_touching_points] = {};  ///< from the centre of mass of the model, in the body frame
     bool is_end_effector = false;                          ///< the only point is that of the arm instead
     double stiffness_n_m = 1e5;                            ///< k of each point, > 0
-    double dissipation_s_m = 1;    ///< c: normal force k d (1 + c d') at the depth d (Hunt and Crossley 1975), >= 0
+    double dissipation_s_m = 10;   ///< c: normal force k d (1 + c d') at the depth d (Hunt and Crossley 1975), >= 0
     double friction = 0.5;         ///< Coulomb's, >= 0
     double slip_speed_m_s = 0.02;  ///< at which friction has 0.7 of its full force, > 0; below it creeps
 };

@@ -10,15 +10,17 @@ namespace {
 
 // docs/model.md 2.6.
 constexpr double stiffness_n_m = 1e5;
-constexpr double dissipation_s_m = 1;
+constexpr double dissipation_s_m = 10;
 constexpr double friction = 0.5;
 constexpr double slip_speed_m_s = 0.02;
 
 // docs/model.md 7.5.
-constexpr double settling_s = 3;
+constexpr double settling_constants = 5;
 constexpr double hover_s = 8;
 constexpr double overshoot_m = 0.5;
-constexpr double force_loop_1_s = 1.5;
+constexpr double free_s = 0.1;
+constexpr double pull_m = 2;
+constexpr double force_loop_share = 0.4;
 
 /// What a law answers to a metre along an axis, x or z [1/s2].
 double answer_1_s2(const ControlLaw& law, bool is_height) {
@@ -95,13 +97,17 @@ double TouchSurface::push(const Vehicle& vehicle, const Motion& motion, Loads& l
 TouchCourse::TouchCourse(const Touch& touch, const ReferencePoint& from, const Robot& robot)
     : touch_(touch), from_(from), tick_s_(1 / robot.controller.rate_hz) {
     const double mass_kg = robot.multirotor.mass_kg + robot.arm.mass_kg;
-    const double answer_n_m = mass_kg * answer_1_s2(robot.controller.law, touch.normal.x == 0);
-    metres_per_newton_ = force_loop_1_s / answer_n_m * tick_s_;
+    const double answer = answer_1_s2(robot.controller.law, touch.normal.x == 0);
+    const double rate_1_s = force_loop_share * std::sqrt(answer);
+    metres_per_newton_ = rate_1_s / (mass_kg * answer) * tick_s_;
+    settling_s_ = settling_constants / rate_1_s;
 }
 
 ReferencePoint TouchCourse::reference() const {
     ReferencePoint point = from_;
-    const double speed = stage_ == Stage::coming ? touch_.speed_m_s : stage_ == Stage::going ? -touch_.speed_m_s : 0.0;
+    const double speed = stage_ == Stage::coming ? touch_.speed_m_s : stage_ == Stage::pulling ? -touch_.speed_m_s
+                         : stage_ == Stage::going                                           ? beyond_m_ > 0 ? -touch_.speed_m_s : touch_.speed_m_s
+                                                                                            : 0.0;
     const double out[] = {touch_.normal.x, touch_.normal.z};
     for (int axis = 0; axis < 2; ++axis) {
         point.position[axis] -= beyond_m_ * out[axis];
@@ -127,7 +133,7 @@ void TouchCourse::next(double force_n) {
             if (force_n > 0) {
                 enter(Stage::settling);
             } else if (beyond_m_ > touch_.standoff_m + overshoot_m) {
-                enter(Stage::going);
+                enter(Stage::pulling);
             } else {
                 beyond_m_ += way_m;
             }
@@ -135,12 +141,21 @@ void TouchCourse::next(double force_n) {
         case Stage::settling:
         case Stage::holding:
             beyond_m_ += std::clamp(metres_per_newton_ * (touch_.force_n - force_n), -way_m, way_m);
-            if (!lasts(stage_ == Stage::settling ? settling_s : touch_.hold_s)) {
-                enter(stage_ == Stage::settling ? Stage::holding : Stage::going);
+            if (!lasts(stage_ == Stage::settling ? settling_s_ : touch_.hold_s)) {
+                enter(stage_ == Stage::settling ? Stage::holding : Stage::pulling);
+            }
+            break;
+        case Stage::pulling:
+            beyond_m_ -= way_m;
+            free_ = force_n > 0 ? 0 : free_ + 1;
+            if (static_cast<double>(free_) * tick_s_ >= free_s) {
+                enter(Stage::going);
+            } else if (beyond_m_ < -pull_m) {
+                enter(Stage::over);
             }
             break;
         case Stage::going:
-            beyond_m_ = std::max(0.0, beyond_m_ - way_m);
+            beyond_m_ -= std::clamp(beyond_m_, -way_m, way_m);
             if (beyond_m_ == 0) {
                 enter(Stage::hovering);
             }

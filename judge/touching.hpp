@@ -60,7 +60,7 @@ class TouchCourse {
     [[nodiscard]] std::optional<Hold> hold() const;
 
  private:
-    enum class Stage { coming, settling, holding, going, hovering, over };
+    enum class Stage { coming, settling, holding, pulling, going, hovering, over };
 
     void enter(Stage stage);
 
@@ -68,8 +68,10 @@ class TouchCourse {
     ReferencePoint from_;
     double tick_s_;
     double metres_per_newton_;  ///< of the reference in a tick
+    double settling_s_;
     Stage stage_ = Stage::coming;
     std::int64_t since_ = 0;  ///< ticks in this stage
+    std::int64_t free_ = 0;   ///< ticks without contact
     double beyond_m_ = 0;     ///< of the reference, from the hover towards the surface
     std::vector<double> held_n_;
 };

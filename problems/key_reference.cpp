@@ -30,6 +30,7 @@ Problem with_everything<Problem>() {
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
     problem.goal.any_of = {problem.goal};
+    problem.goal.contact.emplace();
     problem.obstacles = {{"", Box{}, {}, {}},
                          {"", Cylinder{}, {}, {}},
                          {"", Sphere{}, {}, {}},

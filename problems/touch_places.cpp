@@ -115,7 +115,7 @@ class TouchSearch {
 
     /// How far the obstacle is along a way from a point of the plane [m]: sphere tracing.
     double distance_along(const Way& way, PlaneVector from) const {
-        constexpr double dot_m = 1e-4;
+        constexpr double dot_m = 1e-7;
         const double longest_m = problem_.bounds.x_high_m - problem_.bounds.x_low_m + problem_.bounds.z_high_m -
                                  problem_.bounds.z_low_m + 10;
         double gone_m = 0;

@@ -7,19 +7,6 @@
 
 namespace downwash {
 
-double position_stiffness_1_s2(const ControlLaw& law, int axis) {
-    return std::visit(
-        [axis]<class Law>(const Law& own) {
-            const auto gains = own.axis_gains(axis);
-            if constexpr (requires { gains.kp; }) {
-                return gains.kp;
-            } else {
-                return gains.position_kp * gains.velocity_kp;
-            }
-        },
-        law);
-}
-
 TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch& touch, const ReferencePoint& base,
                       FlightState& state, const FlightWorld& in) {
     const FlownWorld* const world = flown_world(model, in.world);

@@ -2,7 +2,6 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/base/export.hpp"
-#include "downwash/controllers/control_law.hpp"
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/simulation/contact_goal.hpp"
 #include "downwash/simulation/flight.hpp"
@@ -22,8 +21,5 @@ struct TouchFlight {
 [[nodiscard]] DOWNWASH_EXPORT TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch& touch,
                                                     const ReferencePoint& base, FlightState& state,
                                                     const FlightWorld& in = {});
-
-/// Acceleration that a law answers to an error of the position along x (axis 0) or z (1) [1/s2].
-[[nodiscard]] DOWNWASH_EXPORT double position_stiffness_1_s2(const ControlLaw& law, int axis);
 
 }  // namespace downwash

@@ -18,11 +18,21 @@ class TouchReference {
  public:
     /// @param base reference from which the robot touches, at rest
     TouchReference(const FlightModel& model, const Touch& touch, const ReferencePoint& base)
-        : touch_(touch), base_(base), tick_s_(model.tick().tick_s), gain_m_n_s_(force_gain(model, touch)) {}
+        : touch_(touch), base_(base), tick_s_(model.tick().tick_s) {
+        const double stiffness_1_s2 = std::visit(
+            [axis = touch.normal.x == 0 ? 1 : 0](const auto& law) { return law.position_stiffness_1_s2(axis); },
+            model.tick().law);
+        const double rate_1_s = force_loop_share * std::sqrt(stiffness_1_s2);
+        gain_m_n_s_ = rate_1_s / (model.tick().plant.total_mass_kg * stiffness_1_s2);
+        settling_s_ = touch_settling_constants / rate_1_s;
+    }
 
     [[nodiscard]] ReferencePoint point() const noexcept {
         ReferencePoint point = base_;
-        const double along_m_s = phase_ == Phase::approach ? touch_.speed_m_s : phase_ == Phase::leave ? -touch_.speed_m_s : 0;
+        const double along_m_s = phase_ == Phase::approach  ? touch_.speed_m_s
+                                 : phase_ == Phase::leave   ? -touch_.speed_m_s
+                                 : phase_ == Phase::go_back ? std::copysign(touch_.speed_m_s, -ahead_m_)
+                                                            : 0;
         point.position[0] -= ahead_m_ * touch_.normal.x;
         point.position[1] -= ahead_m_ * touch_.normal.z;
         point.velocity[0] = -along_m_s * touch_.normal.x;
@@ -46,14 +56,23 @@ class TouchReference {
             case Phase::settle:
             case Phase::hold:
                 ahead_m_ += std::clamp(gain_m_n_s_ * (touch_.force_n - force_n) * tick_s_, -step_m, step_m);
-                if (phase_ == Phase::settle && seconds() >= touch_settling_s) {
+                if (phase_ == Phase::settle && seconds() >= settling_s_) {
                     go_to(Phase::hold);
                 } else if (phase_ == Phase::hold && seconds() >= touch_.hold_s) {
                     go_to(Phase::leave);
                 }
                 break;
-            case Phase::leave:
-                ahead_m_ = std::max(0.0, ahead_m_ - step_m);
+            case Phase::leave:  // as far as it takes: suction holds the vehicle to a ceiling
+                ahead_m_ -= step_m;
+                free_ticks_ = force_n > 0 ? 0 : free_ticks_ + 1;
+                if (static_cast<double>(free_ticks_) * tick_s_ >= touch_free_s) {
+                    go_to(Phase::go_back);
+                } else if (ahead_m_ < -touch_pull_m) {
+                    is_over_ = true;
+                }
+                break;
+            case Phase::go_back:
+                ahead_m_ = std::abs(ahead_m_) > step_m ? ahead_m_ - std::copysign(step_m, ahead_m_) : 0;
                 if (ahead_m_ == 0) {
                     go_to(Phase::wait);
                 }
@@ -68,13 +87,8 @@ class TouchReference {
     [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
  private:
-    enum class Phase { approach, settle, hold, leave, wait };
+    enum class Phase { approach, settle, hold, leave, go_back, wait };
 
-    /// By how many metres a second per newton the reference goes on [m / (N s)].
-    static double force_gain(const FlightModel& model, const Touch& touch) {
-        const double stiffness_1_s2 = position_stiffness_1_s2(model.tick().law, touch.normal.x == 0 ? 1 : 0);
-        return force_loop_1_s / (model.tick().plant.total_mass_kg * stiffness_1_s2);
-    }
     void go_to(Phase phase) {
         phase_ = phase;
         ticks_ = 0;
@@ -85,10 +99,12 @@ class TouchReference {
     const Touch& touch_;
     ReferencePoint base_;
     double tick_s_;
-    double gain_m_n_s_;
+    double gain_m_n_s_ = 0;  ///< how fast the reference goes on for a newton [m / (N s)]
+    double settling_s_ = 0;
     Phase phase_ = Phase::approach;
     double ahead_m_ = 0;
     std::int64_t ticks_ = 0;
+    std::int64_t free_ticks_ = 0;  ///< without contact
     bool is_over_ = false;
 };
 
@@ -198,6 +214,12 @@ Rejection fly_touch_ticks(const FlightModel& model, const FlownWorld* world, std
                 const auto motion = dynamics::motion_at(tick_model.plant, state.plant.q, state.plant.u);
                 const VehicleState<double>& vehicle = state;
                 next = {tick(tick_model, law, vehicle, motion, now, effect, given, step), state.world};
+            }
+            if (seen.normal_impulse_n_s > 0) {
+                using Law = std::remove_cvref_t<decltype(law)>;
+                controllers::remember(Law::with_integrals_of(controllers::recalled<Law>(state.memory),
+                                                             controllers::recalled<Law>(next.memory)),
+                                      next.memory);
             }
             const double end_s = static_cast<double>(first_tick + t + 1) * tick_model.tick_s;
             observer.saw(seen, end_s, next.plant.energy_j - state.plant.energy_j, is_holding);

@@ -265,7 +265,7 @@ TEST_CASE("the judge and the planner agree about touches, as believed and in wor
         CAPTURE(name);
         const Problem problem = shipped(name);
         const Plan plan = plan_of(problem, 300);
-        const PlanJudge judge(problem);
+        const judge::PlanJudge judge(problem);
         for (std::uint64_t index = 0; index <= 6; ++index) {
             CAPTURE(index);
             const std::optional<World> world =
@@ -273,7 +273,7 @@ TEST_CASE("the judge and the planner agree about touches, as believed and in wor
             const std::optional<Execution> flight = executed(problem, plan, true, world);
             REQUIRE(flight);
             REQUIRE(flight->touch);
-            const JudgedFlight judged = judge.fly(plan, {true, world});
+            const judge::JudgedFlight judged = judge.fly(plan, {true, world});
             CHECK(name_of(judged.outcome) == name_of(flight->outcome));
             REQUIRE(judged.touch_force_n);
             CHECK(*judged.touch_force_n == Approx(flight->touch->force_n).epsilon(0.02));

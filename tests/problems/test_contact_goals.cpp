@@ -56,14 +56,14 @@ TEST_CASE("a frame touches a ceiling from places below it, the length of the rob
 
 TEST_CASE("the end of the arm touches a wall from a side, and a ceiling from below, along the arm") {
     Problem problem = contact_problem("wall", TouchingPart::end_effector);
-    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4, 0, 2.5}));
+    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4.5, 0, 2.5}));
     problem.goal.contact->z_m = 2;
     const Problem before_wall = with_touches(problem);
     REQUIRE(before_wall.goal.any_of.size() == 1);  // the far side leaves no room within the bounds
     const Goal& place = before_wall.goal.any_of.front();
     CHECK(place.touch->normal.x == -1);
-    CHECK(place.touch->surface_m.x == Approx(3.82).margin(1e-5));
-    CHECK(place.end_effector->x_m == Approx(3.52).margin(1e-5));
+    CHECK(place.touch->surface_m.x == Approx(4.32).margin(1e-5));
+    CHECK(place.end_effector->x_m == Approx(4.02).margin(1e-5));
     CHECK(place.end_effector->z_m == 2);
     CHECK(*place.end_effector->direction_rad == 0);
 
