@@ -42,15 +42,15 @@ ContactLoad contact_load(const BasicPlantModel<P>& model, const PlanarContact& c
         const PlanePoint<double> velocity{u[0] + u[2] * from_center.z + u[3] * from_joint.z,
                                           u[1] - u[2] * from_center.x - u[3] * from_joint.x};
         const PlanePoint<double> n = contact.normal;
-        const double distance_m = (q[0] + from_center.x - contact.surface_m.x) * n.x +
-                                  (q[1] + from_center.z - contact.surface_m.z) * n.z;
+        const double distance_m =
+            (q[0] + from_center.x - contact.surface_m.x) * n.x + (q[1] + from_center.z - contact.surface_m.z) * n.z;
         load.depth_m = lane::max(load.depth_m, -distance_m);
         if (distance_m >= 0) {
             return;
         }
         const double inward_m_s = -(velocity.x * n.x + velocity.z * n.z);
-        const double normal_n = -contact.stiffness_n_m * distance_m *
-                                lane::max(1 + contact.dissipation_s_m * inward_m_s, 0.0);
+        const double normal_n =
+            -contact.stiffness_n_m * distance_m * lane::max(1 + contact.dissipation_s_m * inward_m_s, 0.0);
         const double slip_m_s = velocity.x * n.z - velocity.z * n.x;  // along (n.z, -n.x)
         const double drag_n = contact.friction * normal_n * slip_m_s /
                               lane::sqrt(slip_m_s * slip_m_s + contact.slip_speed_m_s * contact.slip_speed_m_s);
@@ -72,8 +72,8 @@ ContactLoad contact_load(const BasicPlantModel<P>& model, const PlanarContact& c
     return load;
 }
 
-/// Surroundings of a vehicle that touches: the thrust ratios at the beginning of the tick, in which the vehicle moves by
-/// a millimetre or two, and the load.
+/// Surroundings of a vehicle that touches: the thrust ratios at the beginning of the tick, in which the vehicle moves
+/// by a millimetre or two, and the load.
 template <class Factor, class P>
 class TouchingSurroundings {
  public:
@@ -87,7 +87,8 @@ class TouchingSurroundings {
             keep(model.body(), q, a);
         }
         if (model.has_walls) {
-            ratio_[model.walls()] = 1 + wall_nearness(model, factor, rotor_position(model, a, q[0], q[1], model.body()));
+            ratio_[model.walls()] =
+                1 + wall_nearness(model, factor, rotor_position(model, a, q[0], q[1], model.body()));
         }
     }
 
@@ -129,7 +130,7 @@ struct ContactTickRecord {
 
 /// A tick beside a surface, in as many Runge-Kutta steps as contact needs: one where nothing can touch.
 struct ContactStep {
-    const PlanarContact& contact;  ///< its points are those of the model without `center_of_mass`
+    const PlanarContact& contact;               ///< its points are those of the model without `center_of_mass`
     PlanePoint<double> center_of_mass_m{0, 0};  ///< of the plant, from where the points are given, in the body frame
     ContactTickRecord& record;                  ///< of the last tick
     double step_share = 1;                      ///< of the step that is taken otherwise; for tests
@@ -153,14 +154,13 @@ struct ContactStep {
             return flight_step(model, state, motion, command, dt_s, factor);
         }
         const TouchingSurroundings<std::remove_reference_t<Factor>, P> surroundings(model, here, factor, state.q,
-                                                                                     motion.attitude);
+                                                                                    motion.attitude);
         record.steps = static_cast<int>(std::ceil(dt_s / (step_share * longest_step_s(model, here))));
         const double step_s = dt_s / record.steps;
         PlantState<double> next = state;
         for (int i = 0; i < record.steps; ++i) {
             next = flight_step(model, next, command, step_s, surroundings);
-            const ContactLoad then =
-                contact_load(model, here, next.q, next.u, attitude(model, next.q[2], next.q[3]));
+            const ContactLoad then = contact_load(model, here, next.q, next.u, attitude(model, next.q[2], next.q[3]));
             record.normal_impulse_n_s += 0.5 * step_s * (load.normal_n + then.normal_n);
             record.depth_m = lane::max(record.depth_m, then.depth_m);
             load = then;
@@ -177,8 +177,9 @@ struct ContactStep {
             const double arm_m = model.arm_length_m;
             const double joint_m = lane::abs(model.joint_x_m) + lane::abs(model.joint_z_m);
             mobility = model.inverse_mass_1_kg +
-                       arm_m * arm_m / (model.arm_inertia_kg_m2 +
-                                        model.reduced_mass_kg * model.arm_center_of_mass_m * model.arm_center_of_mass_m) +
+                       arm_m * arm_m /
+                           (model.arm_inertia_kg_m2 +
+                            model.reduced_mass_kg * model.arm_center_of_mass_m * model.arm_center_of_mass_m) +
                        joint_m * joint_m / model.pitch_inertia_kg_m2;
         }
         for (int i = 0; i < contact.point_count; ++i) {

@@ -119,7 +119,8 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         goes_on = umpire.sees(loop, now);
     }
     std::vector<std::int64_t> ends = hovers;
-    const Goal* const touching = goes_on && hovers.size() == goals.size() ? touching_goal(goals.back(), plan, problem) : nullptr;
+    const Goal* const touching =
+        goes_on && hovers.size() == goals.size() ? touching_goal(goals.back(), plan, problem) : nullptr;
     if (touching != nullptr) {
         const TouchSurface surface(*touching->touch, world);
         const Plant touched(vehicle, surroundings, &surface);

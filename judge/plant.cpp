@@ -20,7 +20,7 @@ Motion motion_of(const Numbers& y) {
 
 Numbers numbers_of(const PlantState& state) {
     const Motion& m = state.motion;
-    Numbers y{m.position_m.x,   m.position_m.z,     m.pitch_rad,      m.arm_rad,     m.velocity_m_s.x,
+    Numbers y{m.position_m.x,   m.position_m.z,     m.pitch_rad,      m.arm_rad,      m.velocity_m_s.x,
               m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s, state.energy_j, 0};
     std::copy(state.thrust_n.begin(), state.thrust_n.end(), y.begin() + first_thrust);
     return y;

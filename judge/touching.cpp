@@ -105,9 +105,10 @@ TouchCourse::TouchCourse(const Touch& touch, const ReferencePoint& from, const R
 
 ReferencePoint TouchCourse::reference() const {
     ReferencePoint point = from_;
-    const double speed = stage_ == Stage::coming ? touch_.speed_m_s : stage_ == Stage::pulling ? -touch_.speed_m_s
-                         : stage_ == Stage::going                                           ? beyond_m_ > 0 ? -touch_.speed_m_s : touch_.speed_m_s
-                                                                                            : 0.0;
+    const double speed = stage_ == Stage::coming    ? touch_.speed_m_s
+                         : stage_ == Stage::pulling ? -touch_.speed_m_s
+                         : stage_ == Stage::going   ? beyond_m_ > 0 ? -touch_.speed_m_s : touch_.speed_m_s
+                                                    : 0.0;
     const double out[] = {touch_.normal.x, touch_.normal.z};
     for (int axis = 0; axis < 2; ++axis) {
         point.position[axis] -= beyond_m_ * out[axis];
@@ -177,8 +178,8 @@ std::optional<TouchCourse::Hold> TouchCourse::hold() const {
     }
     Hold hold{std::accumulate(held_n_.begin(), held_n_.end(), 0.0) / static_cast<double>(held_n_.size()), 0};
     for (auto first = held_n_.begin(); held_n_.end() - first >= static_cast<std::ptrdiff_t>(second); ++first) {
-        const double mean_n = std::accumulate(first, first + static_cast<std::ptrdiff_t>(second), 0.0) /
-                              static_cast<double>(second);
+        const double mean_n =
+            std::accumulate(first, first + static_cast<std::ptrdiff_t>(second), 0.0) / static_cast<double>(second);
         hold.worst_second_n = std::max(hold.worst_second_n, std::abs(mean_n - touch_.force_n));
     }
     return hold;

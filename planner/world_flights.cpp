@@ -180,7 +180,8 @@ void WorldFlights::touch(const std::vector<FlightJob>& jobs, const Plan& held, c
             return;
         }
         FlightState state = jobs[i].end();
-        flight.rejection = fly_touch(*model_, map_.get(), *touch, last.point, state, {jobs[i].world, last.tick}).rejection;
+        flight.rejection =
+            fly_touch(*model_, map_.get(), *touch, last.point, state, {jobs[i].world, last.tick}).rejection;
         if (flight.rejection == Rejection::none && !meets_goal(goals_.back(), plant, state)) {
             flight.rejection = Rejection::goal_missed;
         }

@@ -114,39 +114,50 @@ void add_contact(Rows& rows) {
     const auto length = [&](std::string_view name, std::string_view description, auto member) {
         return parameters::number<Problem>("goal.contact." + std::string(name), description, member);
     };
-    rows.push_back(parameters::text<Problem>("goal.contact.obstacle", "name of the obstacle",
-                                             [contact](auto& p, std::size_t i) -> auto& {
-                                                 return contact(p, i).obstacle;
-                                             })
-                       .is_required());
-    rows.push_back(length("force_n", "normal force that is held", [contact](auto& p, std::size_t i) -> auto& {
-                       return contact(p, i).force_n;
-                   })
-                       .above(0)
-                       .at_most(1000)
-                       .is_required());
+    rows.push_back(
+        parameters::text<Problem>(
+            "goal.contact.obstacle",
+            "name of the obstacle", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).obstacle; })
+            .is_required());
+    rows.push_back(
+        length(
+            "force_n",
+            "normal force that is held", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_n; })
+            .above(0)
+            .at_most(1000)
+            .is_required());
     rows.push_back(parameters::choice<Problem, TouchingPart>(
-        "goal.contact.part", "what touches: the top of the multirotor, from below, or the end of the arm, along the arm",
+        "goal.contact.part",
+        "what touches: the top of the multirotor, from below, or the end of the arm, along the arm",
         {{TouchingPart::frame, "frame"}, {TouchingPart::end_effector, "end_effector"}},
         [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).part; }));
-    rows.push_back(position("goal.contact.x_m", "where on an underside or a top; null: anywhere",
-                            [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).x_m; }));
-    rows.push_back(position("goal.contact.z_m", "where on a side; null: anywhere",
-                            [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).z_m; }));
-    rows.push_back(tolerance("goal.contact.tolerance_m", "of the place from which it touches", 100,
-                             [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).tolerance_m; }));
-    rows.push_back(length("force_tolerance_n", "what the mean force of a second may be off by; null: a fifth of force_n",
-                          [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_tolerance_n; })
+    rows.push_back(position(
+        "goal.contact.x_m",
+        "where on an underside or a top; null: anywhere", [contact](auto& p, std::size_t i) -> auto& {
+            return contact(p, i).x_m;
+        }));
+    rows.push_back(position(
+        "goal.contact.z_m",
+        "where on a side; null: anywhere", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).z_m; }));
+    rows.push_back(tolerance(
+        "goal.contact.tolerance_m", "of the place from which it touches",
+        100, [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).tolerance_m; }));
+    rows.push_back(length(
+                       "force_tolerance_n", "what the mean force of a second may be off by; null: a fifth of force_n",
+                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_tolerance_n; })
                        .above(0)
                        .at_most(1000));
-    rows.push_back(length("standoff_m", "distance from the surface before and after",
-                          [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).standoff_m; })
+    rows.push_back(length(
+                       "standoff_m", "distance from the surface before and after",
+                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).standoff_m; })
                        .above(0)
                        .at_most(10));
-    rows.push_back(length("speed_m_s", "of approach and leaving",
-                          [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).speed_m_s; })
-                       .above(0)
-                       .at_most(1));
+    rows.push_back(
+        length(
+            "speed_m_s",
+            "of approach and leaving", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).speed_m_s; })
+            .above(0)
+            .at_most(1));
 }
 
 template <class GoalMember>
@@ -190,8 +201,9 @@ void add_goal_rows(Rows& rows) {
     };
     add_kinds(rows, "goal.any_of[]", alternative);
     rows.push_back(hold("goal.any_of[]", alternative));
-    rows.push_back(
-        hold("goal", only).only("without any_of", [](const Problem& p, std::size_t) { return p.goal.any_of.empty() || p.goal.contact; }));
+    rows.push_back(hold("goal", only).only("without any_of", [](const Problem& p, std::size_t) {
+        return p.goal.any_of.empty() || p.goal.contact;
+    }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {
         return i < p.stops.size() ? p.stops[i] : p.goal;

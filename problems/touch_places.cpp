@@ -49,7 +49,8 @@ class TouchSearch {
 
     TouchPlaces places() {
         if (contact_.part == TouchingPart::frame && frame_points_m_.empty()) {
-            found_.reason = "needs a box, a sphere or an upright cylinder as the highest of robot.multirotor.body to touch with";
+            found_.reason =
+                "needs a box, a sphere or an upright cylinder as the highest of robot.multirotor.body to touch with";
             return found_;
         }
         if (contact_.part == TouchingPart::frame) {
@@ -222,7 +223,8 @@ class TouchSearch {
         touching.x_m += ahead_m * way.direction.x;
         touching.z_m += ahead_m * way.direction.z;
         const Bounds& b = problem_.bounds;
-        if (waiting.x_m < b.x_low_m || waiting.x_m > b.x_high_m || waiting.z_m < b.z_low_m || waiting.z_m > b.z_high_m) {
+        if (waiting.x_m < b.x_low_m || waiting.x_m > b.x_high_m || waiting.z_m < b.z_low_m ||
+            waiting.z_m > b.z_high_m) {
             return note(Flaw::outside);
         }
         const auto& collisions = check_.collisions();
@@ -235,8 +237,8 @@ class TouchSearch {
         for (const Vector3& hub : rotors.positions_m) {
             const Vector3 at = problem_.plane.to_world(touching.x_m + hub[0], hub[1], touching.z_m + hub[2]);
             if (problem_.aero.enabled && !disc_is_clear(*check_.scene(), at, rotors.radius_m, distance_m)) {
-                nearest_radii_ = std::max(nearest_radii_, disc_clearance_m(*check_.scene(), at, rotors.radius_m) /
-                                                              rotors.radius_m);
+                nearest_radii_ =
+                    std::max(nearest_radii_, disc_clearance_m(*check_.scene(), at, rotors.radius_m) / rotors.radius_m);
                 return note(Flaw::unflyable);
             }
         }
@@ -260,8 +262,9 @@ class TouchSearch {
             case Flaw::outside:
                 return where + "the robot would wait outside the bounds";
             case Flaw::blocked:
-                return where + "the robot that waits there, standoff_m away, is nearer to an obstacle than "
-                               "planner.safety_margin_m, or would touch with something else";
+                return where +
+                       "the robot that waits there, standoff_m away, is nearer to an obstacle than "
+                       "planner.safety_margin_m, or would touch with something else";
             case Flaw::unflyable:
                 return where + "its rotors would come within " + to_text(nearest_radii_, 3) +
                        " radii of an obstacle: expected at least aero.min_distance_radii, " +

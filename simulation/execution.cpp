@@ -37,7 +37,8 @@ class Recorder {
                         model.tick().tilt_loss),
           execution_(execution) {}
 
-    /// From here on the vehicle may touch a surface: rows tell the force, and obstacles see the vehicle a little off it.
+    /// From here on the vehicle may touch a surface: rows tell the force, and obstacles see the vehicle a little off
+    /// it.
     void expect(const Touch& touch) { touch_ = &touch; }
 
     /// Flown so far.
@@ -76,8 +77,8 @@ class Recorder {
             return Rejection::collision;
         }
         if (!is_first) {
-            const double between_m = simulation::least_clearance_between_m(model_, checked_before, checked_before_m,
-                                                                           checked, checked_m);
+            const double between_m =
+                simulation::least_clearance_between_m(model_, checked_before, checked_before_m, checked, checked_m);
             if (between_m <= 0) {
                 execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
                 return Rejection::collision;
@@ -155,8 +156,8 @@ class Recorder {
     Execution& execution_;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
-    PlanarPose checked_;      ///< for collisions, at the last state
-    double checked_m_ = 0;    ///< its clearance
+    PlanarPose checked_;    ///< for collisions, at the last state
+    double checked_m_ = 0;  ///< its clearance
     const Touch* touch_ = nullptr;
     double depth_m_ = 0;          ///< of the deepest point in the surface that is touched, at the last state
     double contact_force_n_ = 0;  ///< over the last tick
@@ -255,8 +256,9 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
                         : simulation::fly_ticks(model.tick(), *world, in.first_tick + recorder.ticks(), segment, factor,
                                                 dynamics::RefinedStep{}, state, after);
     }
-    const Touch* const touch =
-        ends.size() == goals.size() ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference))) : nullptr;
+    const Touch* const touch = ends.size() == goals.size()
+                                   ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference)))
+                                   : nullptr;
     if (touch != nullptr && rejection == Rejection::none) {
         recorder.expect(*touch);
         execution.touch.emplace();

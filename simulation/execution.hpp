@@ -73,9 +73,9 @@ struct Execution : FlightSums {
     double duration_s = 0;
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
-    double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped
-    double goal_error_m = 0;       ///< the worst of all goals
-    std::vector<GoalVisit> goals;  ///< one for each, in their order
+    double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;           ///< the worst of all goals
+    std::vector<GoalVisit> goals;      ///< one for each, in their order
     std::optional<TouchRecord> touch;  ///< of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;
     bool has_rotor_lag = false;
@@ -84,8 +84,8 @@ struct Execution : FlightSums {
     std::vector<FlightRow> rows;
 };
 
-/// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly. Where the
-/// last goal asks for a touch, the vehicle touches after that hover.
+/// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly. Where
+/// the last goal asks for a touch, the vehicle touches after that hover.
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
 /// @param goals at least one, in the order of the visits. The vehicle hovers at the last one after the last knot. It
 /// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold

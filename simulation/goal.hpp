@@ -32,13 +32,13 @@ struct ConfigurationGoal {
     std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
-/// Where the flight must end and stay. Exactly one of end_effector, configuration, any_of and contact is set; to contact
-/// belong the alternatives that with_touches() finds.
+/// Where the flight must end and stay. Exactly one of end_effector, configuration, any_of and contact is set; to
+/// contact belong the alternatives that with_touches() finds.
 struct Goal {
     std::optional<EndEffectorGoal> end_effector;
     std::optional<ConfigurationGoal> configuration;
     std::optional<ContactGoal> contact;  ///< the force is held for hold_s
-    double hold_s = 5;  ///< the last reference point is held for so long, >= 1
+    double hold_s = 5;                   ///< the last reference point is held for so long, >= 1
     std::vector<Goal>
         any_of;  ///< alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested
     std::optional<Touch> touch;  ///< follows the hover, where an alternative belongs to a contact

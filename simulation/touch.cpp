@@ -31,8 +31,8 @@ TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch&
         return map != nullptr && !simulation::is_flyable(model, *map, pose) ? Rejection::flyable_area : Rejection::none;
     };
     const auto fly = [&](auto&& effect) {
-        flight.rejection = simulation::fly_touch_ticks(model, world, in.first_tick, touch, base, effect, state,
-                                                       flight.record, after);
+        flight.rejection =
+            simulation::fly_touch_ticks(model, world, in.first_tick, touch, base, effect, state, flight.record, after);
     };
     if (map != nullptr) {
         const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);

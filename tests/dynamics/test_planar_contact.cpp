@@ -86,8 +86,7 @@ TEST_CASE("the generalised forces of a contact do the work of its force at its p
             behind[i] -= step;
             const PlanePoint<double> to = point_of(model, contact, ahead);
             const PlanePoint<double> from = point_of(model, contact, behind);
-            const double work =
-                (load.force[0] * (to.x - from.x) + load.force[1] * (to.z - from.z)) / (2 * step);
+            const double work = (load.force[0] * (to.x - from.x) + load.force[1] * (to.z - from.z)) / (2 * step);
             CHECK(load.force[i] == Approx(work).epsilon(1e-6).margin(1e-6));
         }
     }
@@ -111,7 +110,8 @@ TEST_CASE("no contact gives energy: 1000 random impacts on a ceiling and on a wa
         std::copy(std::begin(state.q), std::end(state.q), q);
         const double still[4] = {};
         const double distance_m = -load_at(model, contact, q, still).depth_m;
-        contact.surface_m = is_frame ? PlanePoint<double>{0, 1e-4 - distance_m} : PlanePoint<double>{1e-4 - distance_m, 0};
+        contact.surface_m =
+            is_frame ? PlanePoint<double>{0, 1e-4 - distance_m} : PlanePoint<double>{1e-4 - distance_m, 0};
         const double before_j = energy_of(model, state);
         double impulse_n_s = 0;
         ContactTickRecord record;

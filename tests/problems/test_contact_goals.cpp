@@ -37,7 +37,7 @@ TEST_CASE("a frame touches a ceiling from places below it, the length of the rob
     const Problem placed = with_touches(problem);
     REQUIRE(placed.goal.any_of.size() > 5);
     REQUIRE(placed.goal.any_of.size() <= 16);
-    const double top_m = 0.06 + 0.02;           // of the rotors' cylinders
+    const double top_m = 0.06 + 0.02;            // of the rotors' cylinders
     const double half_length_m = 0.32 + 0.1905;  // to their rims
     for (const Goal& place : placed.goal.any_of) {
         REQUIRE(place.touch);
@@ -78,7 +78,8 @@ TEST_CASE("the end of the arm touches a wall from a side, and a ceiling from bel
 TEST_CASE("a contact without a place says what is in its way") {
     using Catch::Matchers::Contains;
     Problem problem = contact_problem("celing", TouchingPart::frame);
-    CHECK_THAT(only_error(problem), Contains("goal.contact.obstacle: is 'celing'") && Contains("did you mean 'ceiling'"));
+    CHECK_THAT(only_error(problem),
+               Contains("goal.contact.obstacle: is 'celing'") && Contains("did you mean 'ceiling'"));
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.goal.contact->x_m = 40;
     CHECK_THAT(only_error(problem), Contains("goal.contact") && Contains("no way along x or z leads to the obstacle"));
