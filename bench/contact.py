@@ -76,7 +76,7 @@ def measured(program, case, options, folder):
         if contact:
             errors.append(contact["force_error_n"])
         flown = run(program, "validate", "--plan", out, file, "--runs", options.runs, "--threads", 2, "--json")
-        failures += flown["runs"]["failures"] if "failures" in flown.get("runs", {}) else flown["failures"]
+        failures += flown["failures"]
         runs += options.runs
     power = f"{statistics.fmean(powers):.0f}" if powers else "-"
     error = f"{max(errors):.2f}" if errors else ""
