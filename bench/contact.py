@@ -65,7 +65,7 @@ def measured(program, case, options, folder):
     file = problem_file(folder, problem, goal)
     certified, failures, runs, powers, errors = 0, 0, 0, [], []
     for seed in range(1, options.seeds + 1):
-        out = folder / "out"
+        out = folder / problem
         solution = run(program, "solve", file, "--seed", seed, "--time-limit", options.time_limit, "--threads", 2,
                        "--quiet", "--json", "--out", out)
         certified += solution["status"] == "solved"
