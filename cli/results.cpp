@@ -73,11 +73,11 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     text += row("goal error", millimetres(flight.goal_error_m));
     if (flight.touch) {
         const TouchRecord& touch = *flight.touch;
-        text += row("contact", touch.touched_s > 0
-                                   ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
-                                                 touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s,
-                                                 touch.left_s)
-                                   : "none: the surface was not found");
+        text += row("contact",
+                    touch.touched_s > 0
+                        ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
+                                      touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
+                        : "none: the surface was not found");
     }
     if (flight.goals.size() > 1) {
         const auto met =

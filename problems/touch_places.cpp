@@ -252,7 +252,7 @@ class TouchSearch {
     }
 
     [[nodiscard]] std::string reason() const {
-        const std::string where = "has no place to touch: ";
+        std::string where = "has no place to touch: ";
         switch (flaw_) {
             case Flaw::unseen:
                 return where + "no way along x or z leads to the obstacle within the bounds" +
