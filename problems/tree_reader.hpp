@@ -24,6 +24,8 @@ class TreeReader {
     /// Reads a file, and those that it refers to. Errors are collected, never thrown.
     /// @param group key of the group that the file holds ("robot"); empty for the whole model
     void read(const std::filesystem::path& file, const std::string& group = "") { read_document(file, group, {}); }
+    /// The same from the text of a file of the whole model. @param file names it, and is what its paths are relative to
+    void read_text(const std::string& text, const std::filesystem::path& file) { read_text(text, file, ""); }
 
     [[nodiscard]] const Model& model() const noexcept { return model_; }
     void adjust(const std::function<void(Model&)>& change) { change(model_); }
@@ -57,6 +59,7 @@ class TreeReader {
     };
 
     void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
+    void read_text(const std::string& text, const std::filesystem::path& file, const std::string& path);
     bool has_supported_schema(const YamlNode& root, const std::string& path);
     void read_keys(Group group);
     void find_entries(Group& group);
