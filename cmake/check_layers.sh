@@ -27,6 +27,7 @@ fitting:     base effects
 exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
 report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
 studies:     base scene dynamics effects grids aeromap controllers simulation problems search planner results report
+python:      base scene dynamics effects grids aeromap controllers simulation problems search planner results judge fitting exports report studies
 cli:         *
 bench:       *
 docs:        *

@@ -64,6 +64,16 @@ std::string why_absent(const std::string& key) {
     return "is no key of a problem" + remedy;
 }
 
+/// One value, which may be null: as a document of its own that would be an empty one.
+/// @throws YamlError
+problems::YamlNode::Pointer node_of(const std::string& yaml) {
+    const problems::YamlNode::Pointer list = problems::parse_yaml("[" + yaml + "]");
+    if (list->items.size() != 1) {
+        throw problems::YamlError({}, "is '" + excerpt(yaml) + "': expected one value");
+    }
+    return list->items.front();
+}
+
 /// Sets one value. @throws InputError
 void set_value(Problem& problem, const KeyChange& change) {
     const Parameter<Problem>* row = nullptr;
@@ -82,7 +92,7 @@ void set_value(Problem& problem, const KeyChange& change) {
     ParameterInfo info = known;
     info.can_be_group = false;  // it is no value
     try {
-        row->set(problem, index, problems::read_value(info, *problems::parse_yaml(change.yaml)));
+        row->set(problem, index, problems::read_value(info, *node_of(change.yaml)));
     } catch (const problems::YamlError& error) {
         throw InputError({{change.key, error.what()}});
     }
