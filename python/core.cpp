@@ -27,4 +27,7 @@ PYBIND11_MODULE(_core, module) {
 #ifdef DOWNWASH_WITH_JUDGE
     bind_validate(module);
 #endif
+#ifdef DOWNWASH_WITH_REPORT
+    bind_figures(module);
+#endif
 }

@@ -33,5 +33,6 @@ void bind_solve(py::module_& module);
 void bind_aeromap(py::module_& module);
 void bind_hold(py::module_& module);
 void bind_validate(py::module_& module);
+void bind_figures(py::module_& module);
 
 }  // namespace downwash::python

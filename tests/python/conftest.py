@@ -1,0 +1,52 @@
+"""What the tests share: the program to compare with, and problems."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import subprocess
+from typing import Any, Callable
+
+import downwash
+import pytest
+
+
+@pytest.fixture(scope="session")
+def folder() -> pathlib.Path:
+    """The shipped problems."""
+    return pathlib.Path(os.environ["DOWNWASH_PROBLEMS"])
+
+
+@pytest.fixture(scope="session")
+def bridge(folder: pathlib.Path) -> downwash.Problem:
+    return downwash.read_problem(folder / "bridge_inspection.yaml")
+
+
+@pytest.fixture(scope="session")
+def open_air(folder: pathlib.Path) -> downwash.Problem:
+    return downwash.read_problem(folder / "open_air.yaml")
+
+
+@pytest.fixture()
+def program(tmp_path: pathlib.Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs the program downwash."""
+
+    def run(*arguments: object) -> subprocess.CompletedProcess[str]:
+        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
+        command = [os.environ["DOWNWASH_PROGRAM"], *map(str, arguments)]
+        return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+
+    return run
+
+
+@pytest.fixture()
+def json_of(program: Callable[..., subprocess.CompletedProcess[str]]) -> Callable[..., Any]:
+    """What the program prints with --json."""
+
+    def run(*arguments: object) -> Any:
+        done = program(*arguments, "--json")
+        assert done.returncode in (0, 3), done.stderr
+        return json.loads(done.stdout)
+
+    return run

@@ -1,0 +1,69 @@
+"""Campaigns as frames."""
+
+import sqlite3
+import subprocess
+import sys
+
+import downwash
+import pytest
+
+CAMPAIGN = """
+schema: downwash/campaign/v1
+name: small
+problems: [{folder}/open_air.yaml]
+variants: [mp-arm, mp-arm-ada]
+seeds: {{first: 1, count: 3}}
+max_iterations: 40
+evaluation_worlds: 5
+"""
+
+
+@pytest.fixture()
+def results(tmp_path, folder, program):
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN.format(folder=folder))
+    done = program("bench", "run", tmp_path / "campaign.yaml", "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0, done.stderr
+    return tmp_path / "out"
+
+
+def test_frames_hold_what_the_report_counts(results, json_of):
+    campaign = downwash.Campaign(results)
+    assert campaign.settings["name"] == "small"
+    runs = campaign.runs()
+    assert list(runs.columns[:7]) == ["run", "problem", "objective", "variant", "algorithm", "margin_m", "seed"]
+    assert len(runs) == 6
+    assert runs["solved"].dtype == bool
+    report = json_of("bench", "report", results)
+    for cell in report["cells"]:
+        rows = runs[runs["variant"] == report["planners"][cell["planner"]]["variant"]] if isinstance(
+            cell["planner"], int
+        ) else runs[[name in cell["planner"].split() for name in runs["variant"]]]
+        assert len(rows) == 3
+        assert int(rows["solved"].sum()) == cell["solved"]["count"]
+    assert set(campaign.world_flights()["worlds"]) == {5}
+    assert (campaign.progress().groupby("run")["time_s"].diff().dropna() >= 0).all()
+    assert len(campaign.certificates()) <= 6
+    assert (campaign.rejections()["edges"] >= 0).all()
+
+
+def test_other_folders_are_no_campaign(tmp_path):
+    with pytest.raises(downwash.InputError, match="no such file"):
+        downwash.Campaign(tmp_path)
+    database = sqlite3.connect(tmp_path / "campaign.db")
+    database.execute("CREATE TABLE a (b)")
+    database.close()
+    with pytest.raises(downwash.InputError, match="holds no results of a campaign"):
+        downwash.Campaign(tmp_path)
+    (tmp_path / "campaign.db").write_text("no database" * 100)
+    with pytest.raises(downwash.InputError, match="cannot be read"):
+        downwash.Campaign(tmp_path)
+
+
+def test_the_package_needs_neither_pandas_nor_matplotlib(results):
+    script = """
+import sys
+sys.modules["pandas"] = sys.modules["matplotlib"] = None
+import downwash, downwash.figures
+downwash.Campaign(sys.argv[1])
+"""
+    subprocess.run([sys.executable, "-c", script, str(results)], check=True)
