@@ -25,8 +25,11 @@ struct PlacedProblem {
 
 /// Reads a problem from the text of a problem file.
 /// @param file names the text in messages; paths in the text are relative to its folder
+/// @param leaves_out_inapplicable whether keys that have no meaning beside the others are left out, not errors: for
+/// documents with every default, of which a group was changed
 /// @throws ProblemFileError as read_problem()
-[[nodiscard]] DOWNWASH_EXPORT PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file);
+[[nodiscard]] DOWNWASH_EXPORT PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file,
+                                                          bool leaves_out_inapplicable = false);
 
 /// A new value of a key.
 struct KeyChange {

@@ -206,7 +206,9 @@ void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model
         return;
     }
     if (parameter.applies && !parameter.applies(model_, group.index)) {
-        report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        if (!leaves_out_inapplicable_) {
+            report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        }
         return;
     }
     switch (parameter.kind) {

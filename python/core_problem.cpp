@@ -52,8 +52,8 @@ void bind_problem(py::module_& module) {
     py::class_<CoreProblem, std::shared_ptr<CoreProblem>>(module, "Problem")
         .def_static("read", [](const std::string& file) { return CoreProblem{read_placed_problem(file), file}; })
         .def_static("parse",
-                    [](const std::string& text, const std::string& file) {
-                        return CoreProblem{parse_problem(text, file), file};
+                    [](const std::string& text, const std::string& file, bool leaves_out_inapplicable) {
+                        return CoreProblem{parse_problem(text, file, leaves_out_inapplicable), file};
                     })
         .def("changed", changed)
         .def("json",

@@ -24,7 +24,7 @@ class Campaign:
     """What `downwash bench run` left in a folder, finished or not, as frames; these need pandas.
 
     Every frame begins with the columns `run` (a number), `problem`, `objective`, `variant`, `algorithm`, `margin_m`
-    (None: the problem's own) and `seed`. `downwash bench report` gives statistics with their intervals.
+    (NaN: the problem's own) and `seed`. `downwash bench report` gives statistics with their intervals.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -57,7 +57,7 @@ class Campaign:
 
         query = f"SELECT {_NAMES}, {columns} FROM {_OF_RUNS} {join} ORDER BY runs.id"
         with contextlib.closing(self._open()) as database:
-            return pandas.read_sql_query(query, database)
+            return pandas.read_sql_query(query, database).astype({"margin_m": float})
 
     def runs(self) -> Any:
         """A row for every run: the search, and the executed flight of its plan (empty cells without one).
@@ -101,4 +101,4 @@ class Campaign:
         return self._frame("rejections.cause, rejections.edges", "JOIN rejections ON rejections.runid = runs.id")
 
     def __repr__(self) -> str:
-        return f"<downwash.Campaign {self.settings.get('name', '')} in {self.folder}>"
+        return f"<downwash.Campaign {self.settings.get('campaign', '')} in {self.folder}>"

@@ -46,6 +46,27 @@ def _is_group(value: object) -> bool:
     return isinstance(value, Mapping) or (isinstance(value, (list, tuple)) and any(map(_is_group, value)))
 
 
+def _keys(key: str, value: object) -> list[str]:
+    """The keys of all values in a group."""
+    if isinstance(value, Mapping):
+        return [below for name, of in value.items() for below in _keys(f"{key}.{name}", of)]
+    if _is_group(value) and isinstance(value, (list, tuple)):
+        return [below for i, of in enumerate(value) for below in _keys(f"{key}[{i}]", of)]
+    return [key]
+
+
+def _parsed(document: Mapping[str, Any], folder: Path, leaves_out_inapplicable: bool) -> _core.Problem:
+    """The problem of a document. Its errors have no lines, which nobody has seen."""
+    try:
+        return _core.Problem.parse(_yaml(document), os.path.join(folder, "<dict>"), leaves_out_inapplicable)
+    except ProblemError as error:
+        rows = [
+            LocatedError(None, None, None, each.message) if (each.file or "").endswith("<dict>") else each
+            for each in error.errors
+        ]
+        raise ProblemError("\n".join(map(str, rows)), rows) from None
+
+
 class Problem:
     """A motion planning problem for an aerial manipulator: robot, scene, start, goals and planner settings.
 
@@ -60,19 +81,12 @@ class Problem:
     @classmethod
     def from_text(cls, text: str, folder: Path = "") -> Problem:
         """Reads the text of a problem file. Paths in it are relative to `folder`; messages call it `<text>`."""
-        return cls(_core.Problem.parse(text, os.path.join(folder, "<text>")))
+        return cls(_core.Problem.parse(text, os.path.join(folder, "<text>"), False))
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any], folder: Path = "") -> Problem:
         """Makes a problem from what a problem file holds, as dicts and lists. Errors name keys and no lines."""
-        try:
-            return cls(_core.Problem.parse(_yaml(document), os.path.join(folder, "<dict>")))
-        except ProblemError as error:
-            rows = [
-                (None, None, None, each.message) if each.file and each.file.endswith("<dict>") else each
-                for each in error.errors
-            ]
-            raise ProblemError("\n".join(str(LocatedError(*row)) for row in rows), rows) from None
+        return cls(_parsed(document, folder, False))
 
     def replace(self, changes: Mapping[str, object]) -> Problem:
         """The same problem with other values: `problem.replace({"planner.seed": 3, "start.x_m": -4})`.
@@ -81,16 +95,8 @@ class Problem:
         keys that are left out get their defaults: `problem.replace({"uncertainty": {"wind": {"gust_m_s": 0.5}}})`.
         Raises ProblemError if a change is none, or the changed problem cannot be planned.
         """
-        base = self
         groups = {key: value for key, value in changes.items() if _is_group(value) or self._is_group_now(key)}
-        if groups:
-            document = self.to_dict()
-            for key, value in groups.items():
-                try:
-                    _put(document, key, value)
-                except (AttributeError, IndexError, KeyError, TypeError):
-                    raise ProblemError(f"{key} is no key of this problem as it is") from None
-            base = Problem.from_dict(document)
+        base = self._with_groups(groups) if groups else self
         values = [(key, _yaml(value)) for key, value in changes.items() if key not in groups]
         try:
             return Problem(base._core.changed(values))
@@ -98,6 +104,20 @@ class Problem:
             raise
         except InputError as error:
             raise ProblemError(str(error), error.errors) from None
+
+    def _with_groups(self, groups: Mapping[str, object]) -> Problem:
+        """The problem with other groups. Keys elsewhere that have no meaning beside them are left out."""
+        document = self.to_dict()
+        for key, value in groups.items():
+            try:
+                _put(document, key, value)
+            except (AttributeError, IndexError, KeyError, TypeError):
+                raise ProblemError(f"{key} is no key of this problem as it is") from None
+        changed = Problem(_parsed(document, "", True))
+        lost = [each for key, value in groups.items() for each in _keys(key, value) if not changed._has(each)]
+        if lost:
+            raise ProblemError("\n".join(f"{key} has no meaning in this problem: remove it" for key in lost))
+        return changed
 
     def __getitem__(self, key: str) -> Any:
         if self._document is None:
@@ -107,11 +127,15 @@ class Problem:
         except (IndexError, KeyError, TypeError):
             raise KeyError(f"{key} is no key of this problem; explain() lists the keys of problem files") from None
 
-    def _is_group_now(self, key: str) -> bool:
+    def _has(self, key: str) -> bool:
         try:
-            return _is_group(self[key])
+            self[key]
         except KeyError:
             return False
+        return True
+
+    def _is_group_now(self, key: str) -> bool:
+        return self._has(key) and _is_group(self[key])
 
     def to_dict(self, folder: Path = ".") -> dict[str, Any]:
         """Everything that a problem file holds, with all defaults filled in and the robot inline.

@@ -28,19 +28,20 @@ def open_air(folder: pathlib.Path) -> downwash.Problem:
     return downwash.read_problem(folder / "open_air.yaml")
 
 
-@pytest.fixture()
-def program(tmp_path: pathlib.Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+@pytest.fixture(scope="session")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Runs the program downwash."""
+    cache = tmp_path_factory.mktemp("cache")
 
     def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
+        environment = {**os.environ, "XDG_CACHE_HOME": str(cache)}
         command = [os.environ["DOWNWASH_PROGRAM"], *map(str, arguments)]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
     return run
 
 
-@pytest.fixture()
+@pytest.fixture(scope="session")
 def json_of(program: Callable[..., subprocess.CompletedProcess[str]]) -> Callable[..., Any]:
     """What the program prints with --json."""
 

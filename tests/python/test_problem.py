@@ -51,6 +51,16 @@ def test_a_replaced_group_has_the_defaults_of_what_is_left_out(bridge):
     assert changed["start"] == bridge["start"]
 
 
+def test_keys_that_lose_their_meaning_go_and_new_ones_without_are_errors(bridge):
+    certain = bridge.replace({"uncertainty": "none", "planner.seed": 2})
+    assert certain["uncertainty"] == "none"
+    assert certain["planner.seed"] == 2
+    with pytest.raises(KeyError):
+        certain["planner.confidence"]
+    with pytest.raises(downwash.ProblemError, match="goal.hold_s has no meaning in this problem"):
+        certain.replace({"goal": {"any_of": [{"end_effector": {"x_m": 2, "z_m": 8}}], "hold_s": 3}})
+
+
 def test_numbers_of_numpy_are_numbers(bridge):
     changed = bridge.replace({"planner.seed": np.int64(3), "environment.obstacles[1].box.size_m": np.array([9.0, 2, 1])})
     assert changed["planner.seed"] == 3
