@@ -131,7 +131,7 @@ def plan(solution: Solution, ax: Any = None, *, robots: int = 8, with_scene: boo
     goal = solution.problem["goal"]
     for place in goal if isinstance(goal, list) else goal.get("any_of", [goal]):
         if "end_effector" in place:
-            at = place["end_effector"]
-            ax.plot(at["x_m"], at["z_m"], "x", color=style["goal"], markersize=8, label="goal of the end effector")
+            point = place["end_effector"]
+            ax.plot(point["x_m"], point["z_m"], "x", color=style["goal"], markersize=8, label="goal of the end effector")
     ax.legend(loc="best", fontsize="small", frameon=True)
     return ax
