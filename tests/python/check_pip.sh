@@ -10,7 +10,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 mkdir "$work/copy"
-git -C "$root" ls-files -z --cached --others --exclude-standard | (cd "$root" && cpio -0pdm --quiet "$work/copy")
+git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c | tar -C "$work/copy" -x
 # Debian's packages are there: NumPy, setuptools and wheel.
 "$python" -m venv --system-site-packages "$work/venv"
 "$work/venv/bin/pip" install --no-index --no-build-isolation --no-deps --quiet "$work/copy"

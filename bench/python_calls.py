@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""Times calls from Python beside the same calls from C++, and writes bench/results/python_calls.md. A minute.
+
+Both sides run in turns, on one thread. Usage: bench/python_calls.py [--rounds N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from typing import Any, Callable
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "build" / "python"))
+POINTS = 1_000_000
+SEARCHES = 1000
+
+
+def seconds_of(work: Callable[[], Any]) -> float:
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
+
+
+def from_python(problem: Any, points: Any) -> dict[str, float]:
+    import downwash
+
+    result: dict[str, Any] = {}
+    direct_s = seconds_of(lambda: result.update(k=downwash.factor(problem, points, threads=1)))
+    built = downwash.AeroMap.build(problem, threads=1)
+    map_s = seconds_of(lambda: built.factor(points, threads=1))
+    short = problem.replace(
+        {"planner.variant": "mp-arm", "planner.time_limit_s": None, "planner.max_iterations": 1}
+    )
+    solve_s = seconds_of(lambda: [downwash.solve(short, threads=1) for _ in range(SEARCHES)]) / SEARCHES
+    return {"direct_s": direct_s, "map_s": map_s, "solve_s": solve_s, "sum": float(result["k"].cumsum()[-1])}
+
+
+def measured(rounds: int) -> list[tuple[dict[str, float], dict[str, float]]]:
+    import downwash
+    import numpy as np
+
+    file = ROOT / "problems" / "bridge_inspection.yaml"
+    problem = downwash.read_problem(file)
+    bounds = problem["environment.bounds"]
+    low, high = zip(bounds["x_m"], bounds["z_m"])
+    points = np.random.default_rng(1).uniform(low, high, size=(POINTS, 2))
+    pairs = []
+    with tempfile.NamedTemporaryFile() as stored:
+        points.tofile(stored.name)
+        command = [ROOT / "build/bench/bench_python_calls", file, stored.name, "--searches", str(SEARCHES)]
+        for _ in range(rounds):
+            done = subprocess.run(command, check=True, capture_output=True, text=True)
+            pairs.append((json.loads(done.stdout), from_python(problem, points)))
+    for cpp, python in pairs:
+        assert cpp["sum"] == python["sum"], "K differs between C++ and Python"
+    return pairs
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=7)
+    options = parser.parse_args()
+    for command in (["./dev", "build", "--target", "bench_python_calls"], ["./dev", "build", "--target", "downwash_python"]):
+        subprocess.run(command, cwd=ROOT, check=True)
+    pairs = measured(options.rounds)
+
+    def median(of: Callable[[dict[str, float], dict[str, float]], float]) -> float:
+        return statistics.median(of(cpp, python) for cpp, python in pairs)
+
+    commit = subprocess.run([ROOT / "bench/source_commit.sh"], check=True, capture_output=True, text=True).stdout.strip()
+    lines = [
+        "# Calls from Python beside calls from C++",
+        "",
+        f"Commit `{commit}`, Release. `bench/python_calls.py` writes this page: medians of {options.rounds} rounds in which both sides",
+        "take turns, one thread each, problem `bridge_inspection`. The ratio is the median of the ratios within a round.",
+        "",
+        "| call | C++ | Python | ratio |",
+        "|---|---:|---:|---:|",
+    ]
+    for name, key in ((f"K at {POINTS} points, evaluated directly", "direct_s"), (f"K at {POINTS} points, from a map", "map_s")):
+        cpp_s, python_s = (median(lambda cpp, python: (cpp, python)[side][key]) for side in (0, 1))
+        ratio = median(lambda cpp, python: python[key] / cpp[key])
+        lines.append(f"| {name} | {1e3 * cpp_s:.1f} ms | {1e3 * python_s:.1f} ms | {ratio:.2f} |")
+    cpp_s, python_s = (median(lambda cpp, python: (cpp, python)[side]["solve_s"]) for side in (0, 1))
+    overhead_s = median(lambda cpp, python: python["solve_s"] - cpp["solve_s"])
+    ratio = median(lambda cpp, python: python["direct_s"] / cpp["direct_s"])
+    lines += [
+        f"| a search of one iteration (mp-arm) | {1e6 * cpp_s:.0f} us | {1e6 * python_s:.0f} us | {python_s / cpp_s:.2f} |",
+        "",
+        "| bound | found | kept |",
+        "|---|---|---|",
+        f"| K evaluated directly: at most 1.2 times C++ | {ratio:.2f} | {'kept' if ratio <= 1.2 else '**missed**'} |",
+        f"| overhead of a search: below 1 ms | {1e3 * overhead_s:.3f} ms | {'kept' if overhead_s < 1e-3 else '**missed**'} |",
+    ]
+    page = ROOT / "bench" / "results" / "python_calls.md"
+    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(page.read_text(encoding="utf-8"))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
