@@ -143,8 +143,7 @@ PlacedProblem read_placed_problem(const std::filesystem::path& file) {
     return placed_problem(reader);
 }
 
-PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file,
-                            bool leaves_out_inapplicable) {
+PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file, bool leaves_out_inapplicable) {
     auto reader = std::make_shared<ProblemTreeReader>(problem_parameters());
     if (leaves_out_inapplicable) {
         reader->leave_out_inapplicable();

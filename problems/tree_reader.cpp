@@ -58,8 +58,7 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
 
 /// Reads the text of a file as the group `path`.
 template <class Model>
-void TreeReader<Model>::read_text(const std::string& text, const std::filesystem::path& file,
-                                  const std::string& path) {
+void TreeReader<Model>::read_text(const std::string& text, const std::filesystem::path& file, const std::string& path) {
     files_.push_back({file, path});
     file_ = files_.size() - 1;
     places_[path] = {file_, {}};

@@ -16,8 +16,16 @@ py::dict columns_of(NumberTable table) {
 
 NumberTable knot_table(const Plan& plan) {
     NumberTable table;
-    table.names = {"t_s",    "x_m",            "z_m",     "arm_rad", "vx_m_s",
-                   "vz_m_s", "arm_rate_rad_s", "ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"};
+    table.names = {"t_s",
+                   "x_m",
+                   "z_m",
+                   "arm_rad",
+                   "vx_m_s",
+                   "vz_m_s",
+                   "arm_rate_rad_s",
+                   "ax_m_s2",
+                   "az_m_s2",
+                   "arm_acceleration_rad_s2"};
     table.columns.resize(table.names.size());
     for (const ReferenceKnot& knot : plan.reference) {
         const auto& [at, velocity, acceleration] = knot.point;

@@ -37,12 +37,14 @@ py::array_t<Result> at_points(const Points& points, std::size_t count, int threa
     Result* to = results.mutable_data();
     const auto width = static_cast<std::size_t>(points.shape(1));
     interruptible(py::none(), [&](Attendance& attendance) {
-        run_parallel((count + batch - 1) / batch, thread_count(threads), [&, token = attendance.token()](std::size_t i) {
-            const std::size_t end = std::min(count, (i + 1) * batch);
-            for (std::size_t k = i * batch; k < end && !token.stop_requested(); ++k) {
-                to[k] = of(from + k * width);
-            }
-        });
+        run_parallel((count + batch - 1) / batch, thread_count(threads),
+                     [&, token = attendance.token()](std::size_t i) {
+                         const std::size_t begin = i * batch,
+                                           end = token.stop_requested() ? begin : std::min(count, begin + batch);
+                         for (std::size_t k = begin; k < end; ++k) {
+                             to[k] = of(from + k * width);
+                         }
+                     });
         return true;
     });
     return results;
@@ -60,9 +62,8 @@ py::array_t<double> factor(const CoreProblem& of, const Points& points, int roto
     const std::size_t count = count_points(points, true);
     const bool is_in_world = points.shape(1) == 3;
     const DirectEffect& effect = model.effect(index);
-    return at_points<double>(points, count, threads, [&](const double* at) {
-        return effect.factor(hub_of(model, index, at, is_in_world));
-    });
+    return at_points<double>(points, count, threads,
+                             [&](const double* at) { return effect.factor(hub_of(model, index, at, is_in_world)); });
 }
 
 py::array_t<bool> is_flyable(const CoreProblem& of, const Points& points, int rotor, int threads) {
@@ -71,9 +72,8 @@ py::array_t<bool> is_flyable(const CoreProblem& of, const Points& points, int ro
     const std::size_t count = count_points(points, true);
     const bool is_in_world = points.shape(1) == 3;
     const DirectEffect& effect = model.effect(index);
-    return at_points<bool>(points, count, threads, [&](const double* at) {
-        return effect.is_flyable(hub_of(model, index, at, is_in_world));
-    });
+    return at_points<bool>(points, count, threads,
+                           [&](const double* at) { return effect.is_flyable(hub_of(model, index, at, is_in_world)); });
 }
 
 CoreMap built(const CoreProblem& of, int threads, const std::string& cache, const py::object& on_progress,
@@ -105,8 +105,8 @@ CoreMap read(const std::string& file, const CoreProblem& of) {
     } catch (const FileError& error) {
         throw_input_error(file + " " + error.what());
     }
-    std::optional<AeroMap> map = AeroMap::from_bytes(
-        layers_of(problem), problem.plane, rotor_extent(problem.robot.rotors, problem.bounds), bytes);
+    std::optional<AeroMap> map = AeroMap::from_bytes(layers_of(problem), problem.plane,
+                                                     rotor_extent(problem.robot.rotors, problem.bounds), bytes);
     if (!map) {
         throw_input_error(file +
                           " holds no aero map of this problem: it is of another scene, robot, plane, bounds or "
@@ -190,8 +190,7 @@ void bind_aeromap(py::module_& module) {
         .def("is_flyable", map_flyable)
         .def("arrays", arrays_of)
         .def("extent", extent_of)
-        .def("cells_per_m",
-             [](const CoreMap& of) { return of.map->view(0).cells_per_m; })
+        .def("cells_per_m", [](const CoreMap& of) { return of.map->view(0).cells_per_m; })
         .def("memory_bytes", [](const CoreMap& of) { return of.map->memory_bytes(); });
 }
 

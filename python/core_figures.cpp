@@ -59,7 +59,8 @@ py::tuple factor_colors(double low, double high) {
 
 void bind_figures(py::module_& module) {
     module.def("outlines", outlines);
-    module.def("body_outlines", [](const CoreProblem& of) { return arrays_of(body_outlines(of.problem().robot.body)); });
+    module.def("body_outlines",
+               [](const CoreProblem& of) { return arrays_of(body_outlines(of.problem().robot.body)); });
     module.def("factor_colors", factor_colors);
     module.def("figure_style", [] {
         py::dict style;

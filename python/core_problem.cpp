@@ -50,7 +50,10 @@ py::dict explained(const std::string& path) {
 
 void bind_problem(py::module_& module) {
     py::class_<CoreProblem, std::shared_ptr<CoreProblem>>(module, "Problem")
-        .def_static("read", [](const std::string& file) { return CoreProblem{read_placed_problem(file), file}; })
+        .def_static("read",
+                    [](const std::string& file) {
+                        return CoreProblem{read_placed_problem(file), file};
+                    })
         .def_static("parse",
                     [](const std::string& text, const std::string& file, bool leaves_out_inapplicable) {
                         return CoreProblem{parse_problem(text, file, leaves_out_inapplicable), file};

@@ -28,8 +28,8 @@ std::function<void(const Progress&)> telling(Attendance& attendance, const py::o
 }
 
 CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int threads, bool stop_at_first,
-                           const std::string& cache, const std::shared_ptr<CoreMap>& map,
-                           const py::object& on_progress, const py::object& stop) {
+                           const std::string& cache, const std::shared_ptr<CoreMap>& map, const py::object& on_progress,
+                           const py::object& stop) {
     Solution solution = interruptible(stop, [&](Attendance& attendance) {
         SolveOptions options;
         options.threads = thread_count(threads);

@@ -55,8 +55,7 @@ py::tuple flights_of(const judge::WorldRuns& worlds) {
     table.columns.resize(table.names.size());
     py::list outcomes;
     for (const judge::WorldRun& run : worlds.runs) {
-        table.add_row(
-            {static_cast<double>(run.world), run.min_clearance_m, run.max_tracking_error_m, run.energy_j});
+        table.add_row({static_cast<double>(run.world), run.min_clearance_m, run.max_tracking_error_m, run.energy_j});
         outcomes.append(judge::name_of(run.outcome));
     }
     return py::make_tuple(columns_of(std::move(table)), outcomes);

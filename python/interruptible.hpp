@@ -15,8 +15,8 @@ namespace downwash::python {
 
 namespace py = pybind11;
 
-/// Long work on a thread of its own, while the calling thread waits for it without the interpreter lock, runs callbacks,
-/// and looks for signals and for a wish to stop fifty times a second.
+/// Long work on a thread of its own, while the calling thread waits for it without the interpreter lock, runs
+/// callbacks, and looks for signals and for a wish to stop fifty times a second.
 class Attendance {
  public:
     /// @param stop None, or an object whose is_set() says whether the work is to end: a threading.Event
