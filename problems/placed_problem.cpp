@@ -100,6 +100,18 @@ void set_value(Problem& problem, const KeyChange& change) {
 
 using Json = nlohmann::ordered_json;
 
+/// What stands in a document without quotes.
+Json json_of_word(const std::string& word) {
+    if (word == "true" || word == "false") {
+        return word == "true";
+    }
+    if (const auto whole = parse_number<std::uint64_t>(word)) {
+        return *whole;
+    }
+    const auto number = parse_number<double>(word);
+    return number ? Json(*number) : Json(word);
+}
+
 /// A value of a document that we wrote: text is in quotes, but for words that are no numbers.
 Json json_of(const problems::YamlNode& node) {
     using Kind = problems::YamlNode::Kind;
@@ -120,17 +132,7 @@ Json json_of(const problems::YamlNode& node) {
             }
             break;
         case Kind::scalar:
-            if (node.is_quoted) {
-                json = node.text;
-            } else if (node.text == "true" || node.text == "false") {
-                json = node.text == "true";
-            } else if (const auto whole = parse_number<std::uint64_t>(node.text)) {
-                json = *whole;
-            } else if (const auto number = parse_number<double>(node.text)) {
-                json = *number;
-            } else {
-                json = node.text;
-            }
+            json = node.is_quoted ? Json(node.text) : json_of_word(node.text);
     }
     return json;
 }
