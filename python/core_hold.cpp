@@ -46,7 +46,8 @@ NumberTable table_of(const std::vector<Answer>& answers, const Points& points) {
                    "torque_gain_nm_rad"};
     table.columns.resize(table.names.size());
     for (std::size_t i = 0; i < answers.size(); ++i) {
-        const auto& [analysis, effect] = answers[i];
+        const HoverAnalysis& analysis = answers[i].analysis;
+        const VehicleEffect& effect = answers[i].effect;
         const auto only = [&](HoldVerdict from, double number) { return analysis.verdict >= from ? number : NAN; };
         const auto shown = [&](double number) { return only(HoldVerdict::in_collision, number); };
         const auto trim = [&](double number) { return only(HoldVerdict::no_equilibrium, number); };

@@ -1,13 +1,16 @@
 #include <pybind11/stl.h>
 
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "downwash/base/key_error.hpp"
-#include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/python/columns.hpp"
 #include "downwash/python/core.hpp"
+#include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::python {
 namespace {
@@ -30,6 +33,33 @@ CoreProblem changed(const CoreProblem& before, const std::vector<std::pair<std::
         list.push_back({key, yaml});
     }
     return {changed_problem(before.placed, list), before.file};
+}
+
+/// What the worlds 1 to `count` have otherwise than believed, one row each.
+py::dict drawn_worlds(const CoreProblem& of, std::uint64_t count, const std::optional<std::uint64_t>& seed) {
+    const Problem& problem = of.problem();
+    if (!problem.uncertainty) {
+        throw_input_error("need to know what is uncertain: the problem has no `uncertainty:`", "worlds");
+    }
+    std::vector<const WorldParameter*> parameters;
+    NumberTable table;
+    table.names.emplace_back("world");
+    for (const WorldParameter& each : world_parameters()) {
+        if (each.value != nullptr || each.rotor < of.model()->tick().plant.rotor_count) {
+            parameters.push_back(&each);
+            table.names.emplace_back(each.name);
+        }
+    }
+    table.columns.resize(table.names.size());
+    for (std::uint64_t i = 1; i <= count; ++i) {
+        const World world = draw_world(*problem.uncertainty, problem.robot, seed.value_or(problem.planner.seed), i);
+        std::vector<double> row{static_cast<double>(i)};
+        for (const WorldParameter* each : parameters) {
+            row.push_back(each->of(world));
+        }
+        table.add_row(row);
+    }
+    return columns_of(std::move(table));
 }
 
 /// What the parameter table says of a key: meaning, expected value and default.
@@ -70,6 +100,7 @@ void bind_problem(py::module_& module) {
         .def_property_readonly("warnings", [](const CoreProblem& of) { return remarks_of(of.placed.warnings); })
         .def_property_readonly("outdated", [](const CoreProblem& of) { return remarks_of(of.placed.outdated); });
     module.def("explained", explained);
+    module.def("draw_worlds", drawn_worlds);
 }
 
 }  // namespace downwash::python

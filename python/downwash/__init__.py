@@ -10,7 +10,7 @@ docs/python.md explains the package.
 
 from ._core import version as __version__
 from .aeromap import AeroMap, factor, is_flyable
-from .analysis import Validation, hold, validate
+from .analysis import Validation, draw_worlds, hold, validate
 from .campaign import Campaign
 from .errors import FolderError, InputError, LocatedError, OtherRunError, ProblemError, Stopped
 from .problem import Problem, explain, read_problem
@@ -32,6 +32,7 @@ __all__ = [
     "Stopped",
     "Validation",
     "__version__",
+    "draw_worlds",
     "execute",
     "explain",
     "factor",

@@ -11,7 +11,7 @@ from . import _core
 from .problem import Problem
 from .solution import Solution, StopSignal
 
-__all__ = ["Validation", "hold", "validate"]
+__all__ = ["Validation", "draw_worlds", "hold", "validate"]
 
 
 def hold(
@@ -29,6 +29,19 @@ def hold(
     table: Dict[str, npt.NDArray[Any]] = dict(columns)
     table["verdict"] = np.array(verdicts, dtype=str)
     table["limit"] = np.array(limits, dtype=str)
+    return table
+
+
+def draw_worlds(problem: Problem, count: int, *, seed: int | None = None) -> Dict[str, npt.NDArray[Any]]:
+    """What the worlds 1 to `count` of the problem's uncertainty have otherwise than believed.
+
+    seed: of the worlds; default: that of the problem
+
+    Returns the column `world`, and one for every parameter that worlds draw, with its name in `validate`'s sensitivity:
+    differences, or relative changes, in SI units and radians. The rows are those of `Validation.flights`.
+    """
+    table: Dict[str, npt.NDArray[Any]] = dict(_core.draw_worlds(problem._core, count, seed))
+    table["world"] = table["world"].astype(np.int64)
     return table
 
 

@@ -11,6 +11,16 @@ from typing import Any, Callable
 import downwash
 import pytest
 
+CAMPAIGN = """
+schema: downwash/campaign/v1
+name: small
+problems: [{folder}/open_air.yaml]
+variants: [mp-arm, mp-arm-da]
+seeds: {{first: 1, count: 2}}
+max_iterations: 30
+evaluation_worlds: 3
+"""
+
 
 @pytest.fixture(scope="session")
 def folder() -> pathlib.Path:
@@ -51,3 +61,15 @@ def json_of(program: Callable[..., subprocess.CompletedProcess[str]]) -> Callabl
         return json.loads(done.stdout)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def results(
+    tmp_path_factory: pytest.TempPathFactory, folder: pathlib.Path, program: Callable[..., Any]
+) -> pathlib.Path:
+    """The folder of a small campaign."""
+    tmp_path = tmp_path_factory.mktemp("campaign")
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN.format(folder=folder))
+    done = program("bench", "run", tmp_path / "campaign.yaml", "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0, done.stderr
+    return tmp_path / "out"

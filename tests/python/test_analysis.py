@@ -73,6 +73,25 @@ def test_validate_says_what_the_program_says(tmp_path, planned, bridge, json_of)
     assert shares == sorted(shares)
 
 
+def test_worlds_are_those_that_the_simulator_flies_in(planned, bridge):
+    count = 40
+    worlds = downwash.draw_worlds(bridge, count, seed=4)
+    found = downwash.validate(bridge, planned, runs=count, seed=4)
+    assert worlds["world"].tolist() == found.flights["world"].tolist()
+    correlations = {each["parameter"]: each["rank_correlation"] for each in found.record["sensitivity"]}
+    assert set(worlds) == {"world", *correlations}
+
+    def ranks(values):
+        return np.argsort(np.argsort(values))
+
+    for name, expected in correlations.items():
+        if expected is not None:
+            own = np.corrcoef(ranks(worlds[name]), ranks(found.flights["min_clearance_m"]))[0, 1]
+            assert own == pytest.approx(expected, abs=1e-9), name
+    with pytest.raises(downwash.InputError, match="no `uncertainty:`"):
+        downwash.draw_worlds(bridge.replace({"uncertainty": "none"}), 3)
+
+
 def test_one_world_and_none_are_flown_alone(planned, bridge):
     undisturbed = downwash.validate(bridge, planned)
     assert undisturbed.outcome == "ok"

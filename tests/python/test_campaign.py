@@ -7,26 +7,6 @@ import sys
 import downwash
 import pytest
 
-CAMPAIGN = """
-schema: downwash/campaign/v1
-name: small
-problems: [{folder}/open_air.yaml]
-variants: [mp-arm, mp-arm-da]
-seeds: {{first: 1, count: 2}}
-max_iterations: 30
-evaluation_worlds: 3
-"""
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory, folder, program):
-    tmp_path = tmp_path_factory.mktemp("campaign")
-    (tmp_path / "campaign.yaml").write_text(CAMPAIGN.format(folder=folder))
-    done = program("bench", "run", tmp_path / "campaign.yaml", "--out", tmp_path / "out", "--quiet")
-    assert done.returncode == 0, done.stderr
-    return tmp_path / "out"
-
-
 def test_frames_hold_what_the_report_counts(results, json_of):
     campaign = downwash.Campaign(results)
     assert campaign.settings["campaign"] == "small"
