@@ -73,35 +73,45 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=9)
     options = parser.parse_args()
-    for command in (["./dev", "build", "--target", "bench_python_calls"], ["./dev", "build", "--target", "downwash_python"]):
+    for command in (
+        ["./dev", "build", "--target", "bench_python_calls"],
+        ["./dev", "build", "--target", "downwash_python"],
+    ):
         subprocess.run(command, cwd=ROOT, check=True)
     pairs = measured(options.rounds)
 
     best = [{key: min(pair[side][key] for pair in pairs) for key in pairs[0][0]} for side in (0, 1)]
-    commit = subprocess.run([ROOT / "bench/source_commit.sh"], check=True, capture_output=True, text=True).stdout.strip()
+    commit = subprocess.run(
+        [ROOT / "bench/source_commit.sh"], check=True, capture_output=True, text=True
+    ).stdout.strip()
+
+    def row(call: str, key: str, digits: int) -> str:
+        cpp, python = (1e3 * side[key] for side in best)
+        return f"| {call} | {cpp:.{digits}f} ms | {python:.{digits}f} ms | {python / cpp:.2f} |"
+
+    ratio = best[1]["direct_s"] / best[0]["direct_s"]
+    overhead_ms = 1e3 * (best[1]["solve_s"] - best[0]["solve_s"])
+
+    def verdict(is_kept: bool) -> str:
+        return "kept" if is_kept else "**missed**"
+
     lines = [
         "# Calls from Python beside calls from C++",
         "",
-        f"Commit `{commit}`, Release. `bench/python_calls.py` writes this page: the best of {options.rounds} rounds in which",
-        "both sides take turns, one thread each; other programs can only add to a time. K is that of `bridge_inspection`, the search",
-        f"the fastest of {SEARCHES} a round in `open_air` as believed.",
+        f"Commit `{commit}`, Release. `bench/python_calls.py` writes this page: the best of {options.rounds} rounds",
+        "in which both sides take turns, one thread each; other programs can only add to a time. K is that of",
+        f"`bridge_inspection`, the search the fastest of {SEARCHES} a round in `open_air` as believed.",
         "",
         "| call | C++ | Python | ratio |",
         "|---|---:|---:|---:|",
-    ]
-    for name, key in ((f"K at {POINTS} points, evaluated directly", "direct_s"), (f"K at {POINTS} points, from a map", "map_s")):
-        cpp_s, python_s = (side[key] for side in best)
-        lines.append(f"| {name} | {1e3 * cpp_s:.1f} ms | {1e3 * python_s:.1f} ms | {python_s / cpp_s:.2f} |")
-    cpp_s, python_s = (side["solve_s"] for side in best)
-    overhead_s = python_s - cpp_s
-    ratio = best[1]["direct_s"] / best[0]["direct_s"]
-    lines += [
-        f"| a search of one iteration (mp-arm) | {1e6 * cpp_s:.0f} us | {1e6 * python_s:.0f} us | {python_s / cpp_s:.2f} |",
+        row(f"K at {POINTS} points, evaluated directly", "direct_s", 1),
+        row(f"K at {POINTS} points, from a map", "map_s", 1),
+        row("a search of one iteration (mp-arm)", "solve_s", 3),
         "",
         "| bound | found | kept |",
         "|---|---|---|",
-        f"| K evaluated directly: at most 1.2 times C++ | {ratio:.2f} | {'kept' if ratio <= 1.2 else '**missed**'} |",
-        f"| overhead of a search: below 1 ms | {1e3 * overhead_s:.3f} ms | {'kept' if overhead_s < 1e-3 else '**missed**'} |",
+        f"| K evaluated directly: at most 1.2 times C++ | {ratio:.2f} | {verdict(ratio <= 1.2)} |",
+        f"| overhead of a search: below 1 ms | {overhead_ms:.3f} ms | {verdict(overhead_ms < 1)} |",
     ]
     page = ROOT / "bench" / "results" / "python_calls.md"
     page.write_text("\n".join(lines) + "\n", encoding="utf-8")

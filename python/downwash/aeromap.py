@@ -79,9 +79,7 @@ class AeroMap:
         """
         return self._core.factor(np.asarray(points, dtype=np.float64), rotor, threads or 0)
 
-    def is_flyable(
-        self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None
-    ) -> npt.NDArray[np.bool_]:
+    def is_flyable(self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Whether hubs in plane coordinates are inside the flyable area."""
         return self._core.is_flyable(np.asarray(points, dtype=np.float64), rotor, threads or 0)
 

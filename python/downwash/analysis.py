@@ -95,9 +95,7 @@ def validate(
     on_progress: called with the share of the worlds that is done, by the calling thread
     stop: a threading.Event; when it ends the runs, there are no statistics
     """
-    record, flights = _core.validate(
-        problem._core, solution._core, runs, world, seed, threads or 0, on_progress, stop
-    )
+    record, flights = _core.validate(problem._core, solution._core, runs, world, seed, threads or 0, on_progress, stop)
     if flights is None:
         return Validation(record, None)
     columns, outcomes = flights

@@ -35,7 +35,9 @@ class Campaign:
             raise InputError(f"{self._file} cannot be read: there is no such file; expected the folder of a campaign")
         try:
             with contextlib.closing(self._open()) as database:
-                marks = [database.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")]
+                marks = [
+                    database.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
+                ]
                 self.settings: dict[str, str] = dict(
                     database.execute("SELECT name, value FROM campaign ORDER BY place") if marks[1] == _LAYOUT else ()
                 )

@@ -1,6 +1,7 @@
 """Pictures with matplotlib that look like those of `downwash report` and `downwash aeromap plot`.
 
-Every function draws into `ax`, or into a new figure, and returns the axes. Coordinates are those of the plane of motion.
+Every function draws into `ax`, or into a new figure, and returns the axes. Coordinates are those of the plane of
+motion.
 """
 
 from __future__ import annotations
@@ -132,6 +133,8 @@ def plan(solution: Solution, ax: Any = None, *, robots: int = 8, with_scene: boo
     for place in goal if isinstance(goal, list) else goal.get("any_of", [goal]):
         if "end_effector" in place:
             point = place["end_effector"]
-            ax.plot(point["x_m"], point["z_m"], "x", color=style["goal"], markersize=8, label="goal of the end effector")
+            ax.plot(
+                point["x_m"], point["z_m"], "x", color=style["goal"], markersize=8, label="goal of the end effector"
+            )
     ax.legend(loc="best", fontsize="small", frameon=True)
     return ax

@@ -92,7 +92,8 @@ class Problem:
         """The same problem with other values: `problem.replace({"planner.seed": 3, "start.x_m": -4})`.
 
         A key of one value keeps everything else. A dict, or a list of dicts, takes the place of a whole group, in which
-        keys that are left out get their defaults: `problem.replace({"uncertainty": {"wind": {"gust_m_s": {"sd": 0.5}}}})`.
+        keys that are left out get their defaults, and keys elsewhere that have no meaning beside it are left out:
+        `problem.replace({"uncertainty": {"wind": {"gust_m_s": {"sd": 0.5}}}})`.
         Raises ProblemError if a change is none, or the changed problem cannot be planned.
         """
         groups = {key: value for key, value in changes.items() if _is_group(value) or self._is_group_now(key)}

@@ -22,7 +22,8 @@ Columns = Dict[str, npt.NDArray[np.float64]]
 class StopSignal(Protocol):
     """What ends long work early: a threading.Event."""
 
-    def is_set(self) -> bool: ...
+    def is_set(self) -> bool:
+        ...
 
 
 class Progress(NamedTuple):

@@ -36,9 +36,7 @@ def test_k_in_the_world_is_that_of_the_program(tmp_path, bridge, points, json_of
 def test_points_of_the_plane_are_where_the_rotor_is(bridge, points):
     for rotor, (_, lateral_m, _) in enumerate(bridge["robot.rotors.positions_m"], start=1):
         world = np.column_stack([points[:, 0], np.full(len(points), lateral_m), points[:, 1]])
-        assert np.array_equal(
-            downwash.factor(bridge, points, rotor=rotor), downwash.factor(bridge, world, rotor=rotor)
-        )
+        assert np.array_equal(downwash.factor(bridge, points, rotor=rotor), downwash.factor(bridge, world, rotor=rotor))
 
 
 def test_threads_and_memory_order_change_nothing(bridge, points, built):

@@ -44,7 +44,17 @@ def test_an_executed_plan_flies_as_it_did(planned, bridge):
 def test_a_plan_is_executed_in_a_world_as_the_program_does(tmp_path, planned, bridge, json_of):
     planned.write(tmp_path / "run")
     said = json_of(
-        "execute", bridge.file, "--plan", tmp_path / "run", "--world", 3, "--seed", 9, "--quiet", "--out", tmp_path / "to"
+        "execute",
+        bridge.file,
+        "--plan",
+        tmp_path / "run",
+        "--world",
+        3,
+        "--seed",
+        9,
+        "--quiet",
+        "--out",
+        tmp_path / "to",
     )
     read = downwash.read_solution(tmp_path / "run", bridge)
     assert read.flight is None
@@ -64,7 +74,9 @@ def test_validate_says_what_the_program_says(tmp_path, planned, bridge, json_of)
     said.pop("disagreements")
     for name in found.record:
         if name == "sensitivity":
-            assert found.record[name] == [{k: each[k] for k in ("parameter", "rank_correlation")} for each in said[name]]
+            assert found.record[name] == [
+                {k: each[k] for k in ("parameter", "rank_correlation")} for each in said[name]
+            ]
         else:
             assert found.record[name] == json.loads(json.dumps(said[name])), name
     assert found.failure_probability == said["failure_probability"]

@@ -7,6 +7,7 @@ import sys
 import downwash
 import pytest
 
+
 def test_frames_hold_what_the_report_counts(results, json_of):
     campaign = downwash.Campaign(results)
     assert campaign.settings["campaign"] == "small"

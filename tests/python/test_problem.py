@@ -62,7 +62,9 @@ def test_keys_that_lose_their_meaning_go_and_new_ones_without_are_errors(bridge)
 
 
 def test_numbers_of_numpy_are_numbers(bridge):
-    changed = bridge.replace({"planner.seed": np.int64(3), "environment.obstacles[1].box.size_m": np.array([9.0, 2, 1])})
+    changed = bridge.replace(
+        {"planner.seed": np.int64(3), "environment.obstacles[1].box.size_m": np.array([9.0, 2, 1])}
+    )
     assert changed["planner.seed"] == 3
     assert changed["environment.obstacles[1].box.size_m"] == [9, 2, 1]
 
