@@ -82,6 +82,8 @@ def test_a_map_comes_back_from_its_file(tmp_path, bridge, open_air, points, buil
     again = downwash.AeroMap.read(file, bridge)
     assert again.extent == built.extent
     assert np.array_equal(again.factor(points), built.factor(points))
+    solution = downwash.solve(bridge, variant="mp-arm-ada", max_iterations=5, map=again)
+    assert solution.record["planning"]["map_wall_s"] < 0.05
     with pytest.raises(downwash.InputError, match="holds no aero map of this problem"):
         downwash.AeroMap.read(file, open_air)
     file.write_bytes(file.read_bytes()[:-1])
