@@ -44,12 +44,8 @@ void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
     command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, believed_, memory_);
     wind_ = gusts_.wind();
     state_ = plant_->after(state_, command_, wind_, law_.tick_s());
-    if (state_.contact_n > 0) {  // integrals stand still while the vehicle touches something
-        memory_.position_integral = memory_before.position_integral;
-        memory_.pitch_rate_integral = memory_before.pitch_rate_integral;
-        memory_.arm_integral = memory_before.arm_integral;
-        memory_.velocity_integral = memory_before.velocity_integral;
-        memory_.joint_integral = memory_before.joint_integral;
+    if (state_.contact_n > 0) {
+        law_.stand_still(memory_before, now, motion(), memory_);
     }
     sensors_.remember(now);
     gusts_.next(tape);

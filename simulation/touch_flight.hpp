@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "downwash/dynamics/momentum.hpp"
 #include "downwash/dynamics/planar_contact.hpp"
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -171,6 +172,28 @@ class TouchObserver {
     return pose;
 }
 
+/// Lets integrals and an observer stand still over a tick: a surface that pushes is not what they are there for.
+/// @param[in,out] next state after the tick
+template <class Law>
+void stand_still(const TickModel& model, const Law& law, const FlightState& before, FlightState& next) {
+    const auto kept = controllers::recalled<Law>(before.memory);
+    auto memory = Law::with_integrals_of(kept, controllers::recalled<Law>(next.memory));
+    if constexpr (controllers::is_aided<Law>) {
+        const auto momentum_of = [&](const dynamics::PlantState<double>& plant, double p[4]) {
+            dynamics::momentum(model.plant, dynamics::motion_at(model.plant, plant.q, plant.u).equations, plant.u, p);
+        };
+        double p[4];
+        double change[4];
+        momentum_of(before.plant, p);
+        momentum_of(next.plant, change);
+        for (int i = 0; i < 4; ++i) {
+            change[i] -= p[i];
+        }
+        law.hold_estimate(kept, change, model.tick_s, memory);
+    }
+    controllers::remember(memory, next.memory);
+}
+
 /// Flies a touch, from a hover in front of the surface to the same hover.
 /// @param base reference of that hover   @param state vehicle there; replaced by that at the end
 /// @param first_tick of the whole flight   @param effect see WorldSurroundings
@@ -216,10 +239,7 @@ Rejection fly_touch_ticks(const FlightModel& model, const FlownWorld* world, std
                 next = {tick(tick_model, law, vehicle, motion, now, effect, given, step), state.world};
             }
             if (seen.normal_impulse_n_s > 0) {
-                using Law = std::remove_cvref_t<decltype(law)>;
-                controllers::remember(Law::with_integrals_of(controllers::recalled<Law>(state.memory),
-                                                             controllers::recalled<Law>(next.memory)),
-                                      next.memory);
+                stand_still(tick_model, law, state, next);
             }
             const double end_s = static_cast<double>(first_tick + t + 1) * tick_model.tick_s;
             observer.saw(seen, end_s, next.plant.energy_j - state.plant.energy_j, is_holding);
