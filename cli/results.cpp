@@ -185,6 +185,11 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (solution.certificate) {
         text += certificate_rows(*solution.certificate, folder);
     }
+    if (solution.stops) {
+        const double share = solution.stops->share_without;
+        text += row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
+                                       : "safe all along the way");
+    }
     const SearchRecord& record = solution.planning;
     text += row("first solution",
                 record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");

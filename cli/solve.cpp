@@ -82,6 +82,7 @@ ExitCode run(const SolveArguments& given) {
     options.threads = given.threads;
     options.stop_at_first_solution = given.stop_at_first;
     options.keep_tree = true;
+    options.finds_stops = true;
     options.stop = interruption.token();
     interruption.expect_results();
     options.map_cache = cache_folder(given.no_cache);

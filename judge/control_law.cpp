@@ -307,6 +307,29 @@ ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
     return rotors;
 }
 
+ControlMemory ControlLaw::memory_of(const std::vector<double>& numbers) const {
+    ControlMemory memory;
+    const std::vector<double>& n = numbers;
+    if (std::holds_alternative<CascadedPid>(robot_.controller.law)) {
+        memory.velocity_integral = {n[0], n[1]};
+        memory.pitch_rate_integral = n[2];
+        memory.joint_integral = n[3];
+        memory.velocity_before = {n[4], n[5]};
+        memory.rate_before = n[6];
+    } else {
+        memory.position_integral = {n[0], n[1]};
+        memory.pitch_rate_integral = n[2];
+        memory.arm_integral = n[3];
+        memory.pitch_reference_rad = n[4];
+        memory.pitch_reference_rate = n[5];
+        memory.rate_reference = n[6];
+    }
+    if (has_observer_) {
+        memory.observed = observer_.of_kept({n[7], n[8], n[9], n[10]});
+    }
+    return memory;
+}
+
 void ControlLaw::stand_still(const ControlMemory& before, const Motion& from, const Motion& to,
                              ControlMemory& memory) const {
     memory.position_integral = before.position_integral;

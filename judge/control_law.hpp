@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/judge/observer.hpp"
@@ -42,6 +43,9 @@ class ControlLaw {
 
     /// The memory at the start of a flight. @param motion of the point that the robot file calls the centre of mass
     [[nodiscard]] DOWNWASH_EXPORT ControlMemory memory_at_start(const Motion& motion) const;
+
+    /// The memory in the middle of a flight. @param numbers as Start::controller_memory has them
+    [[nodiscard]] ControlMemory memory_of(const std::vector<double>& numbers) const;
 
     /// One tick. @param seen what the sensors tell, about the point that the robot file calls the centre of mass
     /// @param rotor_n thrusts that the rotors' lag has reached [N]

@@ -1,5 +1,7 @@
 #include "downwash/judge/loop.hpp"
 
+#include <algorithm>
+
 namespace downwash::judge {
 namespace {
 
@@ -63,6 +65,7 @@ PlantState start_of(const Start& s, const ControlLaw& law, const Vehicle& vehicl
     PlantState state;
     state.motion = of_true_point(vehicle, motion_of(s));
     state.thrust_n = law.resting_thrust_n();
+    std::copy(s.rotor_thrust_n.begin(), s.rotor_thrust_n.end(), state.thrust_n.begin());
     return state;
 }
 

@@ -70,6 +70,14 @@ ObserverMemory Observer::at_start(const Motion& motion) const {
     return {{}, momentum_of(believed_, motion)};
 }
 
+ObserverMemory Observer::of_kept(const Four& kept) const {
+    ObserverMemory memory;
+    for (std::size_t i = 0; i < 4; ++i) {
+        memory.expected_momentum[i] = -kept[i] * tick_s_ / share_;
+    }
+    return memory;
+}
+
 void Observer::look(const Motion& seen, ObserverMemory& memory) const {
     const Four momentum = momentum_of(believed_, seen);
     for (std::size_t i = 0; i < 4; ++i) {

@@ -31,6 +31,8 @@ class Observer {
 
     /// At the start of a flight, with nothing estimated.
     [[nodiscard]] ObserverMemory at_start(const Motion& motion) const;
+    /// In the middle of a flight. @param kept of each coordinate: the estimate less share / tick times the momentum
+    [[nodiscard]] ObserverMemory of_kept(const Four& kept) const;
     /// Compares the momentum with what was expected.
     void look(const Motion& seen, ObserverMemory& memory) const;
     /// Says what to expect a tick later.

@@ -81,7 +81,9 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
     const Surroundings believed(effects, nominal);
     const Plant plant(vehicle, surroundings);
     PlantState state = start_of(problem.start, setting.law, vehicle);
-    ControlMemory memory = setting.law.memory_at_start(motion_of(problem.start));
+    ControlMemory memory = problem.start.controller_memory.empty()
+                               ? setting.law.memory_at_start(motion_of(problem.start))
+                               : setting.law.memory_of(problem.start.controller_memory);
     JudgedFlight flight;
 
     // In a world a vehicle at rest has hovered at its start, in calm air and with quiet sensors.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/planner.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/search/search_space.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -47,6 +48,14 @@ bool is_inside(const Bounds& bounds, const Configuration& at) {
            at.z_m <= bounds.z_high_m;
 }
 
+double least_clearance_m(const FlightJob& job) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const FlightLeg& leg : job.legs) {
+        least_m = std::min(least_m, leg.flight.min_clearance_m);
+    }
+    return least_m;
+}
+
 /// A hover there: it may be a little beside it, but has to come to rest.
 Goal hover_at(const Configuration& rest) {
     Goal goal;
@@ -63,7 +72,9 @@ Braking::Braking(const Problem& problem, std::shared_ptr<const FlightModel> mode
       model_(std::move(model)),
       map_(std::move(map)),
       worlds_(std::move(worlds)),
-      threads_(threads) {}
+      threads_(threads) {
+    worlds_.insert(worlds_.begin(), model_->nominal_world());
+}
 
 Bounds Braking::reach(const Problem& problem, const Start& from) {
     const ReferencePoint reference = reference_at(from);
@@ -77,12 +88,20 @@ Bounds Braking::reach(const Problem& problem, const Start& from) {
     return {reach.x_low_m - swing_m, reach.x_high_m + swing_m, reach.z_low_m - swing_m, reach.z_high_m + swing_m};
 }
 
-std::optional<Plan> Braking::safe_stop(const Start& from) const {
+std::optional<Plan> Braking::safe_stop(const Start& from, const std::vector<FlightState>& fleet) const {
     const ReferencePoint reference = reference_at(from);
     const double tick_s = model_->tick().tick_s;
     Problem stop = problem_;
     stop.stops.clear();
     stop.start = from;
+    std::vector<FlightState> vehicles = fleet;
+    if (vehicles.empty()) {
+        const FlightState here = start_state(*model_, from);
+        for (const FlownWorld& world : worlds_) {
+            vehicles.push_back(here);
+            vehicles.back().world = memory_at_start(world, here.plant);
+        }
+    }
     for (const Way& way : ways) {
         const MotionLimits limits = harder_limits(problem_.motion, way.harder);
         const Configuration rest = rest_of(reference, limits, way);
@@ -92,28 +111,81 @@ std::optional<Plan> Braking::safe_stop(const Start& from) const {
         Plan plan{{{0, reference}}, tick_s};
         plan.reference.push_back({shortest_ticks(reference, at_rest(rest), limits, tick_s), at_rest(rest)});
         stop.goal = hover_at(rest);
-        if (is_safe(stop, plan)) {
+        if (is_safe(stop, plan, vehicles)) {
             return plan;
         }
     }
     return std::nullopt;
 }
 
-bool Braking::is_safe(const Problem& stop, const Plan& plan) const {
-    const FlightState start = start_state(*model_, stop.start);
-    const Execution flight = execute(*model_, start, plan.reference, stop.goal, stop.aero.enabled);
-    const double margin_m =
-        std::min(stop.planner.safety_margin_m, model_->collisions().clearance_m(pose_of(start)) - 1e-3);
-    if (!is_good(flight, margin_m)) {
-        return false;
-    }
-    if (worlds_.empty()) {
-        return true;
+bool Braking::is_safe(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const {
+    const double here_m = model_->collisions().clearance_m(pose_of(fleet.front()));
+    const double margin_m = std::min(stop.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
+    plan.reference.push_back(plan.reference.back());
+    plan.reference.back().tick += hold_ticks(stop.goal, *model_, plan.reference.back().point);
+    std::vector<FlightJob> jobs;
+    for (std::size_t i = 0; i < worlds_.size(); ++i) {
+        jobs.push_back({fleet[i], {}, 0, &worlds_[i]});
     }
     WorldFlights flights(stop, model_, map_, threads_);
-    const std::vector<WorldFlight> flown = flights.fly(plan, 1, worlds_);
-    return std::all_of(flown.begin(), flown.end(),
-                       [](const WorldFlight& each) { return each.rejection == Rejection::none; });
+    flights.advance(jobs, plan, 0, plan.reference.size() - 1, 0);
+    // Where the vehicle is not quite as believed it may still be settling.
+    return jobs.front().rejection() == Rejection::none && least_clearance_m(jobs.front()) >= margin_m &&
+           std::all_of(jobs.begin() + 1, jobs.end(), [](const FlightJob& job) {
+               return job.rejection() == Rejection::none || job.rejection() == Rejection::goal_missed;
+           });
+}
+
+SafeStops stops_along(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
+                      const std::shared_ptr<const AeroMap>& map, const std::vector<FlownWorld>& worlds,
+                      const Plan& plan, int threads, const StopCondition& is_over) {
+    constexpr double step_s = 0.5;
+    const Braking braking(problem, model, map, worlds, threads);
+    const auto step = std::max<std::int64_t>(1, std::llround(step_s / plan.tick_s));
+    std::vector<std::int64_t> ticks;
+    for (const ReferenceKnot& knot : plan.reference) {
+        for (std::int64_t tick = ticks.empty() ? knot.tick : ticks.back() + step; tick < knot.tick; tick += step) {
+            ticks.push_back(tick);
+        }
+        ticks.push_back(knot.tick);
+    }
+    Plan moments{{}, plan.tick_s};
+    for (const std::int64_t tick : ticks) {
+        moments.reference.push_back({tick, reference_of(plan, tick)});
+    }
+    WorldFlights flights(problem, model, map, threads);
+    std::vector<FlownWorld> all = worlds;
+    all.insert(all.begin(), model->nominal_world());
+    std::vector<FlightJob> fleet;
+    const std::vector<std::optional<FlightState>> starts = flights.starts_in(all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        fleet.push_back({starts[i].value_or(start_state(*model, problem.start)), {}, 0, &all[i]});
+    }
+    SafeStops stops;
+    std::int64_t without = 0;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+        throw_if_over(is_over);
+        const std::int64_t tick = ticks[i];
+        if (i > 0) {
+            flights.advance(fleet, moments, i - 1, i, std::nullopt);
+        }
+        std::vector<FlightState> vehicles;
+        for (const FlightJob& job : fleet) {
+            vehicles.push_back(job.legs.empty() ? job.start : job.end());
+        }
+        SafeStops::Moment& moment = stops.moments.emplace_back();
+        moment.tick = tick;
+        if (const auto stop = braking.safe_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles)) {
+            moment.rest = stop->last();
+            moment.duration_s = stop->duration_s();
+        } else if (i + 1 < ticks.size()) {
+            without += ticks[i + 1] - tick;
+        }
+    }
+    if (ticks.back() > 0) {
+        stops.share_without = static_cast<double>(without) / static_cast<double>(ticks.back());
+    }
+    return stops;
 }
 
 }  // namespace downwash::planning

@@ -6,39 +6,50 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/planner/solution.hpp"
 #include "downwash/planner/world_flights.hpp"
 
 namespace downwash::planning {
 
 /// For how long a stop hovers before it counts [s].
-inline constexpr double stop_hold_s = 2;
+inline constexpr double stop_hold_s = 4;
 
 /// Flights that brake to a hover, wherever a vehicle is: from the reference that it follows to rest nearby, as the
 /// limits of motion allow, and a hover there for stop_hold_s.
 class DOWNWASH_EXPORT Braking {
  public:
     /// @param problem whose rules count: bounds, obstacles, margin and, with an uncertainty, its worlds
-    /// @param map of the planner's own model over the places of the stops; nullptr: surfaces do not act in worlds
-    /// @param worlds in which stops have to be safe, too   @param threads at least 1
+    /// @param map of the planner's own model over the places of the stops; nullptr: surfaces do not act
+    /// @param worlds in which stops have to be safe beside the nominal one   @param threads at least 1
     /// @pre the problem outlives it
     Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
             std::vector<FlownWorld> worlds, int threads = 1);
 
-    /// The first of some ways to brake that is safe: it touches nothing and hovers, and keeps the margin in the nominal
-    /// world if the vehicle has it where it begins. Nothing where none is.
-    [[nodiscard]] std::optional<Plan> safe_stop(const Start& from) const;
+    /// The first of some ways to brake that is safe: it touches nothing in any world, and in the nominal one it comes to
+    /// rest and keeps the margin, if the vehicle has it where it begins. Nothing where none is.
+    /// @param fleet the vehicle in the nominal world and in each of the worlds; empty: it is the same in all of them
+    [[nodiscard]] std::optional<Plan> safe_stop(const Start& from, const std::vector<FlightState>& fleet = {}) const;
 
     /// The places around the way on which a vehicle may stop, for the map of stops.
     [[nodiscard]] static Bounds reach(const Problem& problem, const Start& from);
 
  private:
-    [[nodiscard]] bool is_safe(const Problem& stop, const Plan& plan) const;
+    [[nodiscard]] bool is_safe(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const;
 
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;
     std::shared_ptr<const AeroMap> map_;
-    std::vector<FlownWorld> worlds_;
+    std::vector<FlownWorld> worlds_;  ///< the nominal one first
     int threads_;
 };
+
+/// Where the vehicle can stop as it follows a plan from the problem's start, in every world from where it is in that
+/// world. Reference and way to brake are the same in all of them.
+/// @param map of the planner's own model; nullptr: surfaces do not act   @throws WorkStopped
+[[nodiscard]] DOWNWASH_EXPORT SafeStops stops_along(const Problem& problem,
+                                                    const std::shared_ptr<const FlightModel>& model,
+                                                    const std::shared_ptr<const AeroMap>& map,
+                                                    const std::vector<FlownWorld>& worlds, const Plan& plan,
+                                                    int threads, const StopCondition& is_over);
 
 }  // namespace downwash::planning

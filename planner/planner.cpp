@@ -237,7 +237,7 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
 
     const bool has_effects = problem_.aero.enabled;
-    const auto stop_map = has_effects && problem_.uncertainty
+    const auto stop_map = has_effects
                               ? model_->make_map(planning::Braking::reach(problem_, start), options_.threads)
                               : nullptr;
     const planning::Braking braking(problem_, model_, stop_map, worlds(), options_.threads);

@@ -21,6 +21,17 @@ struct ExecutionWorld {
     std::uint64_t seed = 0;
 };
 
+/// Where a vehicle that follows a plan can break off and hover.
+struct SafeStops {
+    struct Moment {
+        std::int64_t tick = 0;
+        std::optional<Configuration> rest;  ///< of the reference after braking; empty: no stop is known to be safe
+        double duration_s = 0;              ///< until it is at rest
+    };
+    std::vector<Moment> moments;  ///< at each knot, and at most half a second apart
+    double share_without = 0;     ///< of the time from the first knot to the last, from moments without a safe stop on
+};
+
 /// The answer to a problem.
 struct Solution {
     Status status = Status::none;
@@ -37,6 +48,7 @@ struct Solution {
     std::vector<TreeNode> tree;              ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;                ///< empty with Status::none
     std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
+    std::optional<SafeStops> stops;          ///< along a plan that solves the problem, if asked for
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
     std::optional<Execution> execution;             ///< the whole plan flown from the start with direct aerodynamics
 };

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/planner/braking.hpp"
 #include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/line_search.hpp"
 #include "downwash/planner/search_clock.hpp"
@@ -69,6 +70,11 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
         solution.execution =
             planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan, goals_of(problem),
                                        solution.planning.flight_wall_s, end_of_last_flight(options.stop));
+    }
+    if (options.finds_stops && solution.status == Status::solved && problem.planner.variant == Variant::mp_arm_ada) {
+        solution.stops = planning::stops_along(
+            problem, model, map, plans_in_worlds ? planning::search_worlds(problem) : std::vector<FlownWorld>(),
+            *solution.plan, options.threads, end_of_last_flight(options.stop));
     }
     if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
         // The others know nothing of worlds: what becomes of their plan is for comparison.

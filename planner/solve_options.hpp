@@ -52,6 +52,7 @@ struct SolveOptions {
     std::optional<Plan> known_plan;
     std::vector<Configuration> known_places;
     bool stop_at_first_solution = false;
+    bool finds_stops = false;  ///< also says where a plan of mp-arm-ada can be left for a hover; takes a moment more
     bool keep_tree = false;  ///< also gives the search tree
     std::shared_ptr<const AeroMap>
         map;  ///< reuses a map of the same problem, else std::invalid_argument; built when empty

@@ -37,6 +37,7 @@ CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int thre
         options.on_progress = telling(attendance, on_progress);
         options.stop_at_first_solution = stop_at_first;
         options.keep_tree = true;
+        options.finds_stops = true;
         options.map = map != nullptr ? map->map : nullptr;
         options.map_cache = cache;
         return solve(problem->placed.plannable, options);

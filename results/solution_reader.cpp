@@ -40,12 +40,13 @@ void compare_waypoints(JsonReader& reader, const Node& list, const std::vector<C
 }
 
 void check_start(JsonReader& reader, const Node& reference, const Plan& plan, const Start& start) {
-    if (!is_at(start.configuration(), plan.first())) {
+    const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
+    if (!is_at(begin, plan.first())) {
         const auto place = [](const Configuration& c) {
             return "x_m " + to_text(c.x_m) + ", z_m " + to_text(c.z_m) + ", arm_rad " + to_text(c.arm_rad);
         };
         reader.report(reference.at(0), "the plan begins at " + place(plan.first()) + ", but the problem starts at " +
-                                           place(start.configuration()) + "; is it the plan of another problem?");
+                                           place(begin) + "; is it the plan of another problem?");
     }
 }
 
@@ -164,6 +165,30 @@ void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     solution.cost = reader.amount(root, "cost", 0);
 }
 
+void read_stops(JsonReader& reader, const Node& root, double tick_s, std::optional<SafeStops>& into) {
+    const auto node = JsonReader::member(root, "stops");
+    if (!node || node->json->is_null()) {
+        return;
+    }
+    if (!node->json->is_object()) {
+        reader.report(*node, "expected a group of keys or null");
+        return;
+    }
+    SafeStops& stops = into.emplace();
+    stops.share_without = reader.amount(*node, "share_without", 0);
+    for (const Node& each : reader.groups(JsonReader::member(*node, "moments"))) {
+        SafeStops::Moment& moment = stops.moments.emplace_back();
+        moment.tick = std::llround(reader.amount(each, "t_s", 0) / tick_s);
+        bool is_safe = false;
+        reader.read_flag(each, "safe", is_safe);
+        if (const auto rest = JsonReader::member(each, "rest"); is_safe && rest) {
+            const auto coordinate = [&](const char* key) { return reader.required_number(*rest, key); };
+            moment.rest = Configuration{coordinate("x_m"), coordinate("z_m"), coordinate("arm_rad")};
+            moment.duration_s = reader.amount(each, "duration_s", 0);
+        }
+    }
+}
+
 /// A solution with nothing in it but what the problem asks for.
 Solution blank_solution(const Problem& problem) {
     Solution solution;
@@ -184,6 +209,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
         read_planning(reader, root, solution.planning);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
+        read_stops(reader, root, solution.plan->tick_s, solution.stops);
     });
     return solution;
 }

@@ -107,6 +107,22 @@ Json plan_json(const std::optional<Plan>& plan) {
     return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
 }
 
+Json stops_json(const std::optional<SafeStops>& stops, double tick_s) {
+    if (!stops) {
+        return {};
+    }
+    Json moments = Json::array();
+    for (const SafeStops::Moment& moment : stops->moments) {
+        Json each = {{"t_s", static_cast<double>(moment.tick) * tick_s}, {"safe", moment.rest.has_value()}};
+        if (moment.rest) {
+            each["rest"] = {{"x_m", moment.rest->x_m}, {"z_m", moment.rest->z_m}, {"arm_rad", moment.rest->arm_rad}};
+            each["duration_s"] = moment.duration_s;
+        }
+        moments.push_back(std::move(each));
+    }
+    return {{"share_without", stops->share_without}, {"moments", std::move(moments)}};
+}
+
 Json execution_json(const Solution& solution) {
     if (!solution.execution) {
         return {};
@@ -185,6 +201,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"planning", planning_json(solution.planning)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
+        {"stops", stops_json(solution.stops, solution.plan ? solution.plan->tick_s : 0)},
         {"execution", execution_json(solution)},
         {"files", files},
     };

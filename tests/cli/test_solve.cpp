@@ -84,7 +84,7 @@ TEST_CASE("Solve writes a solution and a trajectory and the effective problem in
     const auto solution = nlohmann::json::parse(files.at(place + "solution.json"));
     CHECK(keys_of(solution) == std::set<std::string>{"schema", "status", "interrupted", "problem", "variant",
                                                      "algorithm", "objective", "seed", "version", "threads", "cost",
-                                                     "planning", "certificate", "plan", "execution", "files",
+                                                     "planning", "certificate", "plan", "stops", "execution", "files",
                                                      "warnings"});
     CHECK(keys_of(solution.at("problem")) == std::set<std::string>{"name", "file", "sha256"});
     CHECK(keys_of(solution.at("planning")) == std::set<std::string>{"wall_s", "map_wall_s", "flight_wall_s",
