@@ -64,7 +64,8 @@ class Writer {
         std::string before = first_indent;
         for (const Row* row : problem_parameters().children(path)) {
             const bool is_left_out = std::find(left_out_.begin(), left_out_.end(), row->path) != left_out_.end();
-            const bool applies = !is_left_out && (!row->applies || row->applies(problem_, index));
+            const bool applies =
+                !is_left_out && !is_without_numbers(*row, index) && (!row->applies || row->applies(problem_, index));
             if (applies && (row->get || is_written(*row, index))) {
                 out_ += before + std::string(last_name(row->path)) + ":";
                 write_content(*row, index, indent);
@@ -74,6 +75,16 @@ class Writer {
     }
     void write_keys(const std::string& path, std::size_t index, const std::string& indent) {
         write_keys(path, index, indent, indent);
+    }
+
+    /// A list of any number of numbers that has none says nothing.
+    bool is_without_numbers(const Row& row, std::size_t index) const {
+        if (row.kind != ParameterKind::numbers || !row.elements.empty()) {
+            return false;
+        }
+        const Value value = row.get(problem_, index);
+        const auto* numbers = std::get_if<std::vector<double>>(&value);
+        return numbers != nullptr && numbers->empty();
     }
 
     /// Groups that are switched off are written as none, those of another alternative not at all.

@@ -4,6 +4,7 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/judge/plan_judge.hpp"
+#include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -65,6 +66,43 @@ void make_real(Robot& robot) {
 }
 
 }  // namespace
+
+TEST_CASE("The judge flies on from the middle of a flight as the planner does, with every law") {
+    for (const bool is_cascade : {false, true}) {
+        for (const double observer_1_s : {0.0, 3.0}) {
+            CAPTURE(is_cascade, observer_1_s);
+            Problem problem = shipped("along_the_deck");
+            problem.uncertainty.reset();
+            if (is_cascade) {
+                problem.robot.controller.law = CascadedPid{};
+            }
+            if (observer_1_s > 0) {
+                std::visit([&](auto& law) { law.aids.observer = controllers::DisturbanceObserver{observer_1_s}; },
+                           problem.robot.controller.law);
+            }
+            const auto model = make_flight_model(problem);
+            ReferencePoint there = at_rest(problem.start.configuration());
+            there.position[0] += 2.5;
+            there.velocity[0] = 0.4;
+            ReferencePoint end = at_rest(configuration_of(there));
+            end.position[0] += 1;
+            end.position[2] -= 0.3;
+            const Plan whole{{{0, at_rest(problem.start.configuration())}, {600, there}, {1000, end}}, 0.01};
+            FlightState vehicle = start_state(*model, problem.start);
+            const auto map = model->make_map(problem.bounds);
+            REQUIRE(fly_along(*model, map.get(), whole, 600, vehicle));
+            problem.start = start_of(*model, vehicle, there);
+            problem.goal = Goal{};
+            problem.goal.configuration = ConfigurationGoal{end.position[0], end.position[1], {}};
+            const Plan rest = rest_of_plan(whole, 600, there);
+            const judge::JudgedFlight mine = judge::PlanJudge(problem).fly(rest, {});
+            const auto theirs = executed(problem, rest, true, std::nullopt);
+            REQUIRE(theirs);
+            CHECK(theirs->max_tracking_error_m > 0.01);
+            compare(mine, *theirs);
+        }
+    }
+}
 
 TEST_CASE("The judge's flight of a plan is the planner's on every shipped problem") {
     for (const char* name : shipped_names) {

@@ -26,6 +26,9 @@ const Edit edits[] = {
     {"arm_deg: 90", "arm_deg: 90, pitch_deg: 20, vx_m_s: 1.2, arm_rate_deg_s: -60",
      "12:62: start.vx_m_s makes a start speed of 1.2 m/s: expected at most motion.max_speed_m_s, 1\n12:83: "
      "start.arm_rate_deg_s is faster than motion.max_arm_rate_deg_s: expected at most 45 in size"},
+    {"arm_deg: 90", "arm_deg: 90, rotor_thrust_n: [9, 9, 9], controller_memory: [1, 2]",
+     "12:55: start.rotor_thrust_n has 3 numbers: expected 4, one for each rotor\n12:85: start.controller_memory has 2 "
+     "numbers: expected 7, as many as robot.controller remembers"},
     {"x_m: [-6, 6]", "x_m: [6, -6]", "5:17: environment.bounds.x_m is [low, high]: expected low below high"},
     {"z_m: [0.5, 5]", "z_m: [5, 5]", "5:31: environment.bounds.z_m is [low, high]: expected low below high"},
     {"x_m: [-6, 6], z_m: [0.5, 5]", "x_m: [-6000, 6000], z_m: [0.5, 50]",

@@ -22,7 +22,8 @@ const Edit edits[] = {
     {"arm_deg: 90", "arm_rad: 1.57", "12:26: unknown key 'arm_rad' in start: its unit is wrong; expected arm_deg"},
     {"arm_deg: 90", "color: red",
      "12:1: start.arm_deg is missing: expected a number in deg from -3600 to 3600\n12:26: unknown key 'color' in "
-     "start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s or arm_rate_deg_s"},
+     "start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s, arm_rate_deg_s, rotor_thrust_n, "
+     "controller_memory or reference"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {aero: {ceiling_scale: {sd: -0.1}}}",
      "13:37: uncertainty.aero.ceiling_scale has a negative sd: expected a standard deviation of at least 0"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {mass_scale: {range: [0.1, -0.1]}}}",
@@ -54,8 +55,8 @@ const Edit edits[] = {
     {"x_m: -4", "x_m: {is: -4}", "12:14: start.x_m is a group of keys: expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 4 m", "12:14: start.x_m is '4 m': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 4,5",
-     "12:16: unknown key '5' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s or "
-     "arm_rate_deg_s"},
+     "12:16: unknown key '5' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s, "
+     "arm_rate_deg_s, rotor_thrust_n, controller_memory or reference"},
     {"x_m: -4", "x_m: 0x10", "12:14: start.x_m is '0x10': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 1_000", "12:14: start.x_m is '1_000': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: .nan", "12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},

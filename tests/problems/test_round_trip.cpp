@@ -26,6 +26,16 @@ class ProblemMaker {
         problem.start.z_m += 0.1 * uniform();
         problem.start.arm_rad += 0.2 * uniform();
         problem.start.pitch_rate_rad_s = uniform() - 0.5;
+        if (coin()) {
+            ReferencePoint& reference = problem.start.reference.emplace();
+            for (int axis = 0; axis < 3; ++axis) {
+                reference.position[axis] = 10 * uniform();
+                reference.velocity[axis] = uniform();
+                reference.acceleration[axis] = -uniform();
+            }
+            problem.start.rotor_thrust_n.assign(problem.robot.rotors.positions_m.size(), 5 + uniform());
+            problem.start.controller_memory = {uniform(), -uniform(), 0, uniform(), 1e-9 * uniform(), 0, uniform()};
+        }
         problem.plane = PlaneOfMotion({0.01 * uniform(), 0, 0}, 1e-3 * uniform());
         for (Obstacle& obstacle : problem.obstacles) {
             obstacle.rpy_rad = {1e-3 * uniform(), 1e-5 * uniform(), uniform()};
