@@ -139,8 +139,8 @@ AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::
                is_multirotor(effect.settings().ceiling.model) || effect.ground().depends_on_wall() ||
                effect.ceiling().depends_on_wall();
     };
-    const bool is_same_grid =
-        next.cell_m_ == cell_m_ && next.columns_ == columns_ && next.rows_ == rows_ && layers_.size() == next.layers_.size();
+    const bool is_same_grid = next.cell_m_ == cell_m_ && next.columns_ == columns_ && next.rows_ == rows_ &&
+                              layers_.size() == next.layers_.size();
     if (!is_same_grid || std::any_of(next.layers_.begin(), next.layers_.end(), sees_beside)) {
         next.build(threads, {}, is_over);
     } else {
@@ -165,14 +165,15 @@ ColumnRange AeroMap::columns_beside(const std::vector<Scene::Bounds>& boxes) con
     }
     double reach_m = cell_m_;
     for (const MapLayer& layer : layers_) {
-        reach_m = std::max(
-            reach_m, cell_m_ + layer.effect->column_radius_m() + std::max(0.0, layer.effect->min_clearance_m()));
+        reach_m = std::max(reach_m,
+                           cell_m_ + layer.effect->column_radius_m() + std::max(0.0, layer.effect->min_clearance_m()));
     }
     const auto column_at = [this](double x_m) {
         return static_cast<std::size_t>(
             std::clamp((x_m - extent_.x_low_m) * cells_per_m_, 0.0, static_cast<double>(columns_)));
     };
-    return low_m > high_m ? ColumnRange{columns_, 0} : ColumnRange{column_at(low_m - reach_m), column_at(high_m + reach_m)};
+    return low_m > high_m ? ColumnRange{columns_, 0}
+                          : ColumnRange{column_at(low_m - reach_m), column_at(high_m + reach_m)};
 }
 
 /// Rows of which only some columns were built; the others are those of another raster.

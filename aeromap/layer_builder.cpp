@@ -58,8 +58,9 @@ class RowsBuilder {
     /// The values of some columns, whose blocks of patches are theirs alone.
     void build_columns(const ColumnRange& columns) {
         if (grid_.effect.settings().enabled && std::isinf(everywhere_.shortest_turn_m)) {
-            patches_.fit(
-                columns, [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, first_ + k, n); });
+            patches_.fit(columns, [this](std::size_t i, std::size_t k, std::size_t n) {
+                return flyable_cells(i, first_ + k, n);
+            });
         }
         for (std::size_t k = first_; k < last_; ++k) {
             for (std::size_t i = columns.first; i < columns.last; ++i) {

@@ -7,8 +7,8 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p bench/results
 {
     printf '# Changes in the middle of a flight\n\n'
-    printf 'Commit %s, %s, 2 threads. Made by `bench/replan.sh`.\n\n' "$(bench/source_commit.sh)" \
-        "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)"
+    printf 'Commit %s, %s, 2 threads. Made by %sbench/replan.sh%s.\n\n' "$(bench/source_commit.sh)" \
+        "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" '`' '`'
     build/bench/bench_replan problems/bridge_inspection.yaml "$@"
 } >bench/results/replan.md.new
 mv bench/results/replan.md.new bench/results/replan.md

@@ -21,8 +21,8 @@ struct Way {
 };
 
 /// The gentle ones first, then those that get out of the way of something.
-constexpr Way ways[] = {{1, 1.3, 0}, {2, 1.2, 0}, {1, 1.3, -0.3}, {1, 1.3, 0.3}, {2, 1.2, -0.3}, {2, 1.2, 0.3},
-                        {3, 1.1, 0}, {2, 2.5, 0}, {2, 1.2, -0.8}, {2, 1.2, 0.8}};
+constexpr Way ways[] = {{1, 1.3, 0},   {2, 1.2, 0}, {1, 1.3, -0.3}, {1, 1.3, 0.3},  {2, 1.2, -0.3},
+                        {2, 1.2, 0.3}, {3, 1.1, 0}, {2, 2.5, 0},    {2, 1.2, -0.8}, {2, 1.2, 0.8}};
 
 MotionLimits harder_limits(MotionLimits limits, double times) {
     limits.max_speed_m_s *= 2;  // a vehicle is as fast as it is
@@ -68,11 +68,7 @@ Goal hover_at(const Configuration& rest) {
 
 Braking::Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                  std::vector<FlownWorld> worlds, int threads)
-    : problem_(problem),
-      model_(std::move(model)),
-      map_(std::move(map)),
-      worlds_(std::move(worlds)),
-      threads_(threads) {
+    : problem_(problem), model_(std::move(model)), map_(std::move(map)), worlds_(std::move(worlds)), threads_(threads) {
     worlds_.insert(worlds_.begin(), model_->nominal_world());
 }
 
@@ -170,12 +166,14 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
             flights.advance(fleet, moments, i - 1, i, std::nullopt);
         }
         std::vector<FlightState> vehicles;
+        vehicles.reserve(fleet.size());
         for (const FlightJob& job : fleet) {
             vehicles.push_back(job.legs.empty() ? job.start : job.end());
         }
         SafeStops::Moment& moment = stops.moments.emplace_back();
         moment.tick = tick;
-        if (const auto stop = braking.safe_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles)) {
+        if (const auto stop =
+                braking.safe_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles)) {
             moment.rest = stop->last();
             moment.duration_s = stop->duration_s();
         } else if (i + 1 < ticks.size()) {

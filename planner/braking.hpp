@@ -25,8 +25,8 @@ class DOWNWASH_EXPORT Braking {
     Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
             std::vector<FlownWorld> worlds, int threads = 1);
 
-    /// The first of some ways to brake that is safe: it touches nothing in any world, and in the nominal one it comes to
-    /// rest and keeps the margin, if the vehicle has it where it begins. Nothing where none is.
+    /// The first of some ways to brake that is safe: it touches nothing in any world, and in the nominal one it comes
+    /// to rest and keeps the margin, if the vehicle has it where it begins. Nothing where none is.
     /// @param fleet the vehicle in the nominal world and in each of the worlds; empty: it is the same in all of them
     [[nodiscard]] std::optional<Plan> safe_stop(const Start& from, const std::vector<FlightState>& fleet = {}) const;
 

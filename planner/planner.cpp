@@ -82,7 +82,7 @@ struct Planner::Call {
     Answer best;
 };
 
-Planner::Planner(const Problem& problem, const SolveOptions& options) : options_(options) {
+Planner::Planner(const Problem& problem, SolveOptions options) : options_(std::move(options)) {
     PlannableProblem checked = plannable(problem);
     problem_ = std::move(checked.problem);
     model_ = std::move(checked.model);
@@ -187,8 +187,8 @@ void Planner::drop_visited_goals(std::int64_t tick) {
         return;
     }
     const std::vector<std::size_t> ends = hover_ends(*model_, plan_->reference, goals_of(problem_));
-    const auto visited = std::count_if(ends.begin(), ends.end(),
-                                       [&](std::size_t knot) { return plan_->reference[knot].tick <= tick; });
+    const auto visited =
+        std::count_if(ends.begin(), ends.end(), [&](std::size_t knot) { return plan_->reference[knot].tick <= tick; });
     problem_.stops.erase(problem_.stops.begin(),
                          problem_.stops.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.stops)));
 }
@@ -202,8 +202,8 @@ std::vector<FlownWorld> Planner::worlds() const {
 }
 
 bool Planner::can_keep(const Plan& left, double& cost) const {
-    const Execution flight = execute(*model_, start_state(*model_, problem_.start), left.reference,
-                                     goals_of(problem_), problem_.aero.enabled);
+    const Execution flight = execute(*model_, start_state(*model_, problem_.start), left.reference, goals_of(problem_),
+                                     problem_.aero.enabled);
     cost = cost_of(flight, problem_.planner.objective);
     if (!planning::is_good(flight, problem_.planner.safety_margin_m)) {
         return false;
@@ -218,8 +218,7 @@ bool Planner::can_keep(const Plan& left, double& cost) const {
                        [](const WorldFlight& each) { return each.rejection == Rejection::none; });
 }
 
-Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change,
-                       const ReplanOptions& options) {
+Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
     Call call{options, {}, {}};
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
     take_up(change);
@@ -227,8 +226,7 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
         drop_visited_goals(tick);
     }
     problem_.start = start;
-    const ReferencePoint reference =
-        start.reference ? *start.reference : at_rest(start.configuration());
+    const ReferencePoint reference = start.reference ? *start.reference : at_rest(start.configuration());
     Plan left;
     if (plan_ && !change.goal) {
         left = rest_of_plan(*plan_, tick, reference);
@@ -237,9 +235,8 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
 
     const bool has_effects = problem_.aero.enabled;
-    const auto stop_map = has_effects
-                              ? model_->make_map(planning::Braking::reach(problem_, start), options_.threads)
-                              : nullptr;
+    const auto stop_map =
+        has_effects ? model_->make_map(planning::Braking::reach(problem_, start), options_.threads) : nullptr;
     const planning::Braking braking(problem_, model_, stop_map, worlds(), options_.threads);
     Answer first;
     first.plan = left;

@@ -39,9 +39,9 @@ enum class Advice : std::uint8_t {
 /// An answer to where to fly from a moment on.
 struct Answer {
     Advice advice = Advice::none;
-    Plan plan;              ///< from the start on, its first knot at tick 0; of `none` what is left of the last plan
-    double cost = 0;        ///< of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
-    double after_wall_s = 0;  ///< since replan() was called
+    Plan plan;        ///< from the start on, its first knot at tick 0; of `none` what is left of the last plan
+    double cost = 0;  ///< of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
+    double after_wall_s = 0;           ///< since replan() was called
     std::optional<Solution> solution;  ///< of the search; `follow` only
 };
 
@@ -65,7 +65,7 @@ class DOWNWASH_EXPORT Planner {
  public:
     /// @param options as for solve(); its map, stop token and known plan are not used
     /// @throws InputError when the problem cannot be planned
-    explicit Planner(const Problem& problem, const SolveOptions& options = {});
+    explicit Planner(const Problem& problem, SolveOptions options = {});
     ~Planner();
     Planner(const Planner&) = delete;
     Planner& operator=(const Planner&) = delete;
@@ -113,12 +113,12 @@ class DOWNWASH_EXPORT Planner {
     Problem problem_;
     SolveOptions options_;
     std::shared_ptr<const FlightModel> model_;
-    std::shared_ptr<const AeroMap> map_;      ///< of the scene as it is, once it was needed
-    std::vector<Scene::Bounds> unmapped_;     ///< changes that the map does not know yet
+    std::shared_ptr<const AeroMap> map_;   ///< of the scene as it is, once it was needed
+    std::vector<Scene::Bounds> unmapped_;  ///< changes that the map does not know yet
     std::optional<Plan> plan_;
-    std::vector<Configuration> places_;       ///< that carried the tree of the last search
+    std::vector<Configuration> places_;  ///< that carried the tree of the last search
     Solution solution_;
-    mutable std::mutex mutex_;                ///< of latest_
+    mutable std::mutex mutex_;  ///< of latest_
     std::optional<Answer> latest_;
 };
 

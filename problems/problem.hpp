@@ -104,8 +104,8 @@ inline constexpr std::size_t max_goals = 64;
 /// or outside the flyable area, a goal out of reach. Keys are key paths of a problem file. Empty when it is sound.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> problem_errors(const Problem& problem);
 
-/// What of a start does not belong to the robot: too many or too few rotor thrusts, or numbers of the controller's memory.
-/// Part of problem_errors().
+/// What of a start does not belong to the robot: too many or too few rotor thrusts, or numbers of the controller's
+/// memory. Part of problem_errors().
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> start_errors(const Start& start, const Robot& robot);
 
 /// What can be planned but is likely not meant: a controller that does not hold a hover in free air, overlapping rotor

@@ -136,13 +136,15 @@ void add_start_reference(Rows& rows) {
         {"start.reference.arm_rate_deg_s", "its rate of the arm", 1800, &ReferencePoint::velocity, 2},
         {"start.reference.ax_m_s2", "its acceleration along the plane", 1000, &ReferencePoint::acceleration, 0},
         {"start.reference.az_m_s2", "its acceleration upwards", 1000, &ReferencePoint::acceleration, 1},
-        {"start.reference.arm_acceleration_deg_s2", "its acceleration of the arm", 1e5, &ReferencePoint::acceleration, 2},
+        {"start.reference.arm_acceleration_deg_s2", "its acceleration of the arm", 1e5, &ReferencePoint::acceleration,
+         2},
     };
     for (const Coordinate& each : coordinates) {
-        rows.push_back(angle(each.path, each.description, each.most, [&each](auto& p) -> auto& {
-            auto& point = reference_in(p);
-            return (point.*each.part)[each.axis];
-        }));
+        rows.push_back(angle(
+            each.path, each.description, each.most, [&each](auto& p) -> auto& {
+                auto& point = reference_in(p);
+                return (point.*each.part)[each.axis];
+            }));
     }
 }
 

@@ -66,8 +66,8 @@ Change drawn_change(const Problem& problem, const Plan& plan, std::int64_t tick,
     const int kind = draw.below(4);
     if (kind < 2) {
         const auto last = plan.reference.back().tick;
-        const ReferencePoint ahead =
-            reference_of(plan, tick + static_cast<std::int64_t>(draw.uniform(0.2, 1) * static_cast<double>(last - tick)));
+        const ReferencePoint ahead = reference_of(
+            plan, tick + static_cast<std::int64_t>(draw.uniform(0.2, 1) * static_cast<double>(last - tick)));
         const Obstacle box = box_at(ahead.position[0] + draw.uniform(-1.5, 1.5),
                                     ahead.position[1] + draw.uniform(-1.5, 1.5), draw.uniform(0.2, 0.8));
         return {"of a new box", {{box}, {}, {}}, {{}, {box.name}, {}}};
@@ -118,7 +118,8 @@ double quantile(std::vector<double> values, double q) {
 }
 
 /// Moments and changes without a simulated outcome.
-void report_moments(const Given& given, const Problem& problem, Planner& planner, const Plan& plan, const Start& start) {
+void report_moments(const Given& given, const Problem& problem, Planner& planner, const Plan& plan,
+                    const Start& start) {
     Draw draw(given.seed);
     std::vector<double> first_ms, keep_ms, ratios;
     std::map<std::string, int> kinds, first, last;
@@ -166,16 +167,20 @@ void report_moments(const Given& given, const Problem& problem, Planner& planner
         planner.replan(here, tick, change.back, none);
         planner.adopt(plan);
     }
-    fmt::print("## Moments\n\n{} moments, each with one change: {}.\n\n| | |\n| --- | ---: |\n", given.moments, listed(kinds));
+    fmt::print("## Moments\n\n{} moments, each with one change: {}.\n\n| | |\n| --- | ---: |\n", given.moments,
+               listed(kinds));
     fmt::print("| first answers | {} |\n", listed(first));
-    fmt::print("| first safe answer | median {:.1f} ms, 95 % within {:.1f} ms; {:.1f} % of the moments within 10 ms |\n",
-               quantile(first_ms, 0.5), quantile(first_ms, 0.95),
-               100 * share(first_ms, 10) * static_cast<double>(first_ms.size()) / given.moments);
-    fmt::print("| that the last plan still holds is known | {} times, median after {:.1f} ms, 95 % within {:.1f} ms |\n",
-               keep_ms.size(), quantile(keep_ms, 0.5), quantile(keep_ms, 0.95));
+    fmt::print(
+        "| first safe answer | median {:.1f} ms, 95 % within {:.1f} ms; {:.1f} % of the moments within 10 ms |\n",
+        quantile(first_ms, 0.5), quantile(first_ms, 0.95),
+        100 * share(first_ms, 10) * static_cast<double>(first_ms.size()) / given.moments);
+    fmt::print(
+        "| that the last plan still holds is known | {} times, median after {:.1f} ms, 95 % within {:.1f} ms |\n",
+        keep_ms.size(), quantile(keep_ms, 0.5), quantile(keep_ms, 0.95));
     fmt::print("| answers after {:g} s | {} |\n", given.budget_s, listed(last));
-    fmt::print("| cost over that of a fresh search of {:g} s | median {:.3f}, 90 % below {:.3f}, {:.1f} % below 1.1 ({}) |\n",
-               given.fresh_s, quantile(ratios, 0.5), quantile(ratios, 0.9), 100 * share(ratios, 1.1), ratios.size());
+    fmt::print(
+        "| cost over that of a fresh search of {:g} s | median {:.3f}, 90 % below {:.3f}, {:.1f} % below 1.1 ({}) |\n",
+        given.fresh_s, quantile(ratios, 0.5), quantile(ratios, 0.9), 100 * share(ratios, 1.1), ratios.size());
     fmt::print("| solved only by the fresh search, only by replanning | {}, {} |\n\n", unsolved, fresh_unsolved);
 }
 
@@ -202,7 +207,8 @@ std::optional<FlightState> state_in(const Planner& planner, const FlownWorld& wo
 }
 
 /// Flights in worlds in which a box appears on the way; with room to stop before it, or without.
-void report_flights(const Given& given, const Problem& problem, Planner& planner, const Plan& plan, const Start& start) {
+void report_flights(const Given& given, const Problem& problem, Planner& planner, const Plan& plan,
+                    const Start& start) {
     Draw draw(given.seed + 1);
     struct Count {
         int flights = 0, collisions = 0, told = 0;
@@ -212,14 +218,14 @@ void report_flights(const Given& given, const Problem& problem, Planner& planner
     const double tick_s = planner.model().tick().tick_s;
     for (int i = 0; i < given.flights;) {
         const bool has_room = i % 2 == 0;
-        const FlownWorld world = make_world(
-            problem.robot, draw_world(*problem.uncertainty, problem.robot, given.seed + 77, static_cast<std::uint64_t>(i)));
+        const FlownWorld world = make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot,
+                                                                      given.seed + 77, static_cast<std::uint64_t>(i)));
         const auto tick = static_cast<std::int64_t>(draw.uniform(0, static_cast<double>(plan.reference.back().tick)));
         planner.adopt(plan);
         const ReferencePoint reference = reference_of(plan, tick);
         const double speed = std::hypot(reference.velocity[0], reference.velocity[1]);
-        const double room_m = has_room ? 1.6 + speed * speed / (2 * problem.motion.max_acceleration_m_s2) * 1.5
-                                       : draw.uniform(0.9, 1.2);
+        const double room_m =
+            has_room ? 1.6 + speed * speed / (2 * problem.motion.max_acceleration_m_s2) * 1.5 : draw.uniform(0.9, 1.2);
         const auto state = state_in(planner, world, start, plan, tick);
         if (!state || speed < 0.2) {
             continue;
@@ -247,8 +253,12 @@ void report_flights(const Given& given, const Problem& problem, Planner& planner
         ++i;
         planner.replan(here, tick, {{}, {box.name}, {}}, options);
     }
-    fmt::print("## Flights\n\nA box of 0.5 m appears on the way of a flight in a drawn world (tick {:g} s), and the first answer is "
-               "flown in that world.\n\n| | flights | answers | lost | of these announced |\n| --- | ---: | --- | ---: | ---: |\n", tick_s);
+    fmt::print(
+        "## Flights\n\nA box of 0.5 m appears on the way of a flight in a drawn world (tick {:g} s), and the first "
+        "answer is "
+        "flown in that world.\n\n| | flights | answers | lost | of these announced |\n| --- | ---: | --- | ---: | ---: "
+        "|\n",
+        tick_s);
     for (const bool has_room : {true, false}) {
         const Count& count = counts[has_room ? 0 : 1];
         fmt::print("| {} | {} | {} | {} | {} |\n", has_room ? "with room to stop" : "without", count.flights,

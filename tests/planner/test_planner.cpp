@@ -134,8 +134,8 @@ TEST_CASE("where nothing but a stop is safe it stops, and where nothing is it sa
     const Answer answer = planner.replan(here, tick, change, iterations(100));
     Goal anywhere = test::configuration_goal(answer.plan.last().x_m, answer.plan.last().z_m);
     anywhere.configuration->tolerance_m = 1;
-    const Execution flight = execute(planner.model(), start_state(planner.model(), here), answer.plan.reference,
-                                     anywhere, true);
+    const Execution flight =
+        execute(planner.model(), start_state(planner.model(), here), answer.plan.reference, anywhere, true);
     if (room_m > 2) {
         CHECK(answer.advice == Advice::stop);
         CHECK(flight.outcome == Outcome::ok);
