@@ -84,12 +84,13 @@ Bounds Braking::reach(const Problem& problem, const Start& from) {
     return {reach.x_low_m - swing_m, reach.x_high_m + swing_m, reach.z_low_m - swing_m, reach.z_high_m + swing_m};
 }
 
-std::optional<Plan> Braking::safe_stop(const Start& from, const std::vector<FlightState>& fleet) const {
+std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) const {
     const ReferencePoint reference = reference_at(from);
     const double tick_s = model_->tick().tick_s;
     Problem stop = problem_;
     stop.stops.clear();
     stop.start = from;
+    std::optional<Stop> best;
     std::vector<FlightState> vehicles = fleet;
     if (vehicles.empty()) {
         const FlightState here = start_state(*model_, from);
@@ -107,14 +108,18 @@ std::optional<Plan> Braking::safe_stop(const Start& from, const std::vector<Flig
         Plan plan{{{0, reference}}, tick_s};
         plan.reference.push_back({shortest_ticks(reference, at_rest(rest), limits, tick_s), at_rest(rest)});
         stop.goal = hover_at(rest);
-        if (is_safe(stop, plan, vehicles)) {
-            return plan;
+        const std::size_t failing = failures(stop, plan, vehicles);
+        if (!best || failing < best->failures) {
+            best = {std::move(plan), failing};
+        }
+        if (failing == 0) {
+            break;
         }
     }
-    return std::nullopt;
+    return best;
 }
 
-bool Braking::is_safe(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const {
+std::size_t Braking::failures(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const {
     const double here_m = model_->collisions().clearance_m(pose_of(fleet.front()));
     const double margin_m = std::min(stop.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
     plan.reference.push_back(plan.reference.back());
@@ -126,10 +131,11 @@ bool Braking::is_safe(const Problem& stop, Plan plan, const std::vector<FlightSt
     WorldFlights flights(stop, model_, map_, threads_);
     flights.advance(jobs, plan, 0, plan.reference.size() - 1, 0);
     // Where the vehicle is not quite as believed it may still be settling.
-    return jobs.front().rejection() == Rejection::none && least_clearance_m(jobs.front()) >= margin_m &&
-           std::all_of(jobs.begin() + 1, jobs.end(), [](const FlightJob& job) {
-               return job.rejection() == Rejection::none || job.rejection() == Rejection::goal_missed;
-           });
+    const auto failing = static_cast<std::size_t>(std::count_if(jobs.begin() + 1, jobs.end(), [](const FlightJob& job) {
+        return job.rejection() != Rejection::none && job.rejection() != Rejection::goal_missed;
+    }));
+    const bool is_good = jobs.front().rejection() == Rejection::none && least_clearance_m(jobs.front()) >= margin_m;
+    return failing + (is_good ? 0 : 1);
 }
 
 SafeStops stops_along(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
@@ -172,10 +178,10 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
         }
         SafeStops::Moment& moment = stops.moments.emplace_back();
         moment.tick = tick;
-        if (const auto stop =
-                braking.safe_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles)) {
-            moment.rest = stop->last();
-            moment.duration_s = stop->duration_s();
+        const auto stop = braking.best_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles);
+        if (stop && stop->failures == 0) {
+            moment.rest = stop->plan.last();
+            moment.duration_s = stop->plan.duration_s();
         } else if (i + 1 < ticks.size()) {
             without += ticks[i + 1] - tick;
         }

@@ -25,16 +25,23 @@ class DOWNWASH_EXPORT Braking {
     Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
             std::vector<FlownWorld> worlds, int threads = 1);
 
+    /// A stop, and in how many of the worlds, the nominal one included, it is not safe.
+    struct Stop {
+        Plan plan;
+        std::size_t failures = 0;
+    };
     /// The first of some ways to brake that is safe: it touches nothing in any world, and in the nominal one it comes
-    /// to rest and keeps the margin, if the vehicle has it where it begins. Nothing where none is.
+    /// to rest and keeps the margin, if the vehicle has it where it begins. Where none is, the one that fails in the
+    /// fewest worlds; nothing if all of them leave the bounds.
     /// @param fleet the vehicle in the nominal world and in each of the worlds; empty: it is the same in all of them
-    [[nodiscard]] std::optional<Plan> safe_stop(const Start& from, const std::vector<FlightState>& fleet = {}) const;
+    [[nodiscard]] std::optional<Stop> best_stop(const Start& from, const std::vector<FlightState>& fleet = {}) const;
 
     /// The places around the way on which a vehicle may stop, for the map of stops.
     [[nodiscard]] static Bounds reach(const Problem& problem, const Start& from);
 
  private:
-    [[nodiscard]] bool is_safe(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const;
+    /// In how many worlds a stop is not safe.
+    [[nodiscard]] std::size_t failures(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const;
 
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;

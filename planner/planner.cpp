@@ -240,9 +240,9 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     const planning::Braking braking(problem_, model_, stop_map, worlds(), options_.threads);
     Answer first;
     first.plan = left;
-    if (auto stop = braking.safe_stop(start)) {
-        first.advice = Advice::stop;
-        first.plan = std::move(*stop);
+    if (auto stop = braking.best_stop(start)) {
+        first.advice = stop->failures == 0 ? Advice::stop : Advice::none;
+        first.plan = std::move(stop->plan);
     }
     publish(call, std::move(first));
 

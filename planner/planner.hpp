@@ -30,7 +30,8 @@ enum class Advice : std::uint8_t {
     keep,    ///< follow what is left of the last plan: it is safe in the scene as it is now
     follow,  ///< follow a new plan to the goal
     stop,    ///< brake and hover: that is safe
-    none,    ///< nothing that is known to be safe; a collision may be ahead
+    none,    ///< nothing is known to be safe, and a collision may be ahead; brake in the way that fails in the fewest
+             ///< worlds
 };
 
 /// Name as in messages: "keep".

@@ -142,7 +142,7 @@ TEST_CASE("where nothing but a stop is safe it stops, and where nothing is it sa
         CHECK_FALSE(planner.plan());
     } else {
         CHECK(answer.advice == Advice::none);
-        CHECK(flight.outcome == Outcome::collision);  // of the last plan, which it returns
+        CHECK(flight.outcome == Outcome::collision);
     }
 }
 
