@@ -1,0 +1,407 @@
+#include "downwash/planner/any_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/search_clock.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/execution.hpp"
+
+namespace downwash::planning {
+namespace {
+
+class AnyOrder {
+ public:
+    AnyOrder(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
+             const LegSearch& search_leg, const SequenceSearch& search_sequence, Solution& solution)
+        : problem_(problem),
+          model_(model),
+          options_(options),
+          silent_(silent(options)),
+          search_sequence_(search_sequence),
+          solution_(solution),
+          table_(problem, model, map, silent_, search_leg),
+          left_(problem.planner),
+          energy_limit_j_(table_.estimates().energy_budget_j) {}
+
+    void run();
+
+ private:
+    [[nodiscard]] static SolveOptions silent(SolveOptions options) {
+        options.on_plan = nullptr;
+        options.on_progress = nullptr;
+        return options;
+    }
+    [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
+    [[nodiscard]] bool has_way() const { return solution_.status == Status::solved; }
+    [[nodiscard]] bool is_limited() const { return problem_.energy_budget_j.has_value(); }
+
+    [[nodiscard]] bool is_done() const { return is_over() || (options_.stop_at_first_solution && has_way()); }
+    [[nodiscard]] static bool is_order(const PlaceOrder& order) {
+        return std::isfinite(order.cost) && !order.places.empty();
+    }
+    /// With the limit of energy.
+    [[nodiscard]] LegCosts limited(LegCosts costs) const {
+        costs.energy_budget_j = energy_limit_j_;
+        return costs;
+    }
+
+    void search();
+    [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
+    [[nodiscard]] PlaceOrder chosen() const;
+    void compare_orders(SearchBudget budget);
+    [[nodiscard]] bool fly_leg(std::size_t from, std::size_t to, const SearchBudget& slice, SearchBudget& budget);
+    [[nodiscard]] bool fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget);
+    void fly_nearest_first(const SearchBudget& slice, SearchBudget& budget);
+    [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
+    [[nodiscard]] double cost_of_way(const Solution& way) const;
+    [[nodiscard]] bool attempt(const PlaceOrder& order, SearchBudget budget, bool is_first_only);
+    [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
+    void learn_from_failure(const PlaceOrder& order, const Solution& failed);
+    void take_if_better(const PlaceOrder& order, Solution found, double begun_at_s, std::uint64_t iterations_before);
+    void explain();
+    [[nodiscard]] double energy_with(std::size_t target) const;
+    void spend(SearchBudget& budget, std::uint64_t iterations_before);
+
+    const Problem& problem_;
+    const FlightModel& model_;
+    const SolveOptions& options_;
+    SolveOptions silent_;  ///< of searches of which the caller hears nothing
+    const SequenceSearch& search_sequence_;
+    Solution& solution_;
+    LegTable table_;
+    SearchBudget left_;
+    double energy_limit_j_;       ///< of the legs of an order together: what they say of a whole flight is not exact
+    Stopwatch clock_;
+    double spent_at_s_ = 0;       ///< when time was last taken from what is left
+    std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
+    PlaceOrder best_;             ///< of the solution; empty without one
+};
+
+/// Takes what has passed since it was called last from what is left, and from a part of it.
+void AnyOrder::spend(SearchBudget& budget, std::uint64_t iterations_before) {
+    SearchRecord work;
+    const double now_s = clock_.seconds();
+    work.wall_s = now_s - std::exchange(spent_at_s_, now_s);
+    work.iterations = solution_.planning.iterations - iterations_before;
+    left_.spend(work);
+    budget.spend(work);
+}
+
+/// First a flight through all in the order that looks best; then orders are compared; then a flight in the best of
+/// them or, where there is none, in the next one.
+void AnyOrder::search() {
+    constexpr double share_of_first = 0.15, share_of_legs = 0.45, share_of_try = 0.35, share_of_more_legs = 0.2;
+    const PlaceOrder likely = best_order(limited(table_.estimates()));
+    if (!is_limited() && is_order(likely)) {
+        static_cast<void>(attempt(likely, left_.part(share_of_first), true));
+    }
+    if (!is_done()) {
+        compare_orders(left_.part(share_of_legs));
+    }
+    bool has_grown = false;
+    for (PlaceOrder order = chosen(); !is_done() && is_order(order);) {
+        const bool is_known = has_way() && order.places == best_.places;
+        if (!is_known && !attempt(order, left_.part(share_of_try), true)) {
+            compare_orders(left_.part(share_of_more_legs));
+            const PlaceOrder next = chosen();
+            if (next.places == order.places) {
+                break;
+            }
+            order = next;
+            continue;
+        }
+        if (!has_grown && leaves_energy(order)) {
+            has_grown = true;
+            compare_orders(left_.part(share_of_more_legs));
+            if (PlaceOrder more = chosen(); more.places.size() > order.places.size()) {
+                order = std::move(more);
+                continue;
+            }
+        }
+        static_cast<void>(attempt(best_, left_, options_.stop_at_first_solution));
+        break;
+    }
+}
+
+void AnyOrder::run() {
+    try {
+        search();
+    } catch (const WorkStopped&) {  // there is what was found before
+    }
+    explain();
+}
+
+/// Whether a whole flight took less than its legs: then there may be energy for another target.
+bool AnyOrder::leaves_energy(const PlaceOrder& order) {
+    if (!is_limited() || order.places.size() == problem_.targets.size() || !solution_.execution) {
+        return false;
+    }
+    energy_limit_j_ = *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
+    return true;
+}
+
+/// The best order of flown legs or, where others may visit more, of those.
+PlaceOrder AnyOrder::chosen() const {
+    PlaceOrder flown = best_order(limited(table_.flown_costs()), best_.places);
+    PlaceOrder likely = best_order(limited(table_.estimates()), flown.places);
+    const bool is_flown = is_order(flown) && flown.places.size() >= likely.places.size();
+    // Lower bounds show that no order with other legs is cheaper.
+    flown.is_best = likely.is_best && flown.cost <= likely.cost * (1 + 1e-9);
+    likely.is_best = false;
+    return is_flown ? flown : likely;
+}
+
+/// Flies the legs of the order that is the best by what is known, until it has none that are not flown.
+void AnyOrder::compare_orders(SearchBudget budget) {
+    const auto targets = static_cast<double>(problem_.targets.size());
+    const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
+    const SearchBudget slice = budget.part(1 / legs);
+    fly_nearest_first(slice, budget);
+    std::vector<std::size_t> hint;
+    while (!is_over() && !budget.is_used_up()) {
+        const PlaceOrder order = best_order(limited(table_.estimates()), hint);
+        if (!is_order(order) || !fly_missing_legs(order, slice, budget)) {
+            return;
+        }
+        hint = order.places;
+    }
+}
+
+bool AnyOrder::fly_leg(std::size_t from, std::size_t to, const SearchBudget& slice, SearchBudget& budget) {
+    const std::uint64_t iterations = solution_.planning.iterations;
+    const bool is_flown = table_.fly(from, to, slice.at_most(budget), solution_.planning);
+    spend(budget, iterations);
+    return is_flown;
+}
+
+/// @return false if none was missing. One to which no flight is found ends it: another order may be better then
+bool AnyOrder::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget) {
+    bool was_missing = false;
+    std::size_t from = table_.estimates().outside();
+    std::vector<std::size_t> stations = order.places;
+    stations.push_back(from);
+    for (const std::size_t to : stations) {
+        if (is_over() || budget.is_used_up()) {
+            break;
+        }
+        if (!table_.is_flown(from, to)) {
+            was_missing = true;
+            if (!fly_leg(from, to, slice, budget)) {
+                break;
+            }
+        }
+        from = to;
+    }
+    return was_missing;
+}
+
+/// So that no order that is chosen costs more than this one: each time to the place that costs least by flown legs.
+void AnyOrder::fly_nearest_first(const SearchBudget& slice, SearchBudget& budget) {
+    while (!is_over() && !budget.is_used_up()) {
+        if (!fly_missing_legs(nearest_first(limited(table_.estimates())), slice, budget)) {
+            return;
+        }
+    }
+}
+
+VisitOrder AnyOrder::described(const PlaceOrder& order) const {
+    VisitOrder described;
+    for (const std::size_t place : order.places) {
+        described.visits.push_back(table_.visit_at(place));
+    }
+    described.is_best = order.is_best;
+    described.legs = table_.legs_flown();
+    described.cost_of_legs = order_of(table_.estimates(), order.places).cost;
+    return described;
+}
+
+double AnyOrder::cost_of_way(const Solution& way) const {
+    return way.execution ? cost_of(*way.execution, problem_.planner.objective) : way.cost;
+}
+
+/// Searches for a flight in an order. @return whether there is one
+bool AnyOrder::attempt(const PlaceOrder& order, SearchBudget budget, bool is_first_only) {
+    Problem part = in_order(problem_, described(order));
+    budget.limit(part.planner);
+    Solution found;
+    const double begun_at_s = clock_.seconds();
+    const std::uint64_t iterations = solution_.planning.iterations;
+    SolveOptions options = options_of_attempt(is_first_only, order);
+    search_sequence_(part, options, attempts_, found);
+    if (found.status == Status::solved && is_limited() && !found.execution) {
+        double wall_s = 0;
+        found.execution = execute_directly(model_, start_state(model_, part.start), *found.plan, goals_of(part),
+                                           part.energy_budget_j, wall_s,
+                                           [this] { return options_.stop.stop_requested(); });
+        if (found.execution->outcome == Outcome::over_budget) {
+            found.status = Status::approximate;
+        }
+    }
+    add_work(solution_.planning, found.planning);
+    spend(budget, iterations);
+    if (found.status != Status::solved) {
+        learn_from_failure(order, found);
+    }
+    const bool is_found = found.status == Status::solved;
+    take_if_better(order, std::move(found), begun_at_s, iterations);
+    return is_found;
+}
+
+SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& order) {
+    SolveOptions inner = options_;
+    inner.stop_at_first_solution = is_first_only;
+    const bool counts_alone = !has_way() || order.places.size() > best_.places.size();
+    const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_of_way(solution_);
+    if (options_.on_progress) {
+        inner.on_progress = [this, to_beat](Progress progress) {
+            progress.wall_s = clock_.seconds();
+            progress.iterations += solution_.planning.iterations;
+            if (has_way()) {
+                progress.best_cost = std::min(progress.best_cost.value_or(solution_.cost), to_beat);
+            }
+            options_.on_progress(progress);
+        };
+    }
+    inner.on_plan = nullptr;
+    if (options_.on_plan && (counts_alone || order.places.size() == best_.places.size())) {
+        inner.on_plan = [this, to_beat](const FoundPlan& found) {
+            if (found.flown_cost.value_or(found.cost) < to_beat) {
+                options_.on_plan(found);
+            }
+        };
+    }
+    return inner;
+}
+
+/// What does not fly as a whole is not to be chosen again.
+void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& failed) {
+    if (options_.stop.stop_requested()) {
+        return;
+    }
+    const bool is_too_much =
+        (failed.execution && failed.execution->outcome == Outcome::over_budget) ||
+        (failed.planning.obstruction && failed.planning.obstruction->cause == name_of(Outcome::over_budget)) ||
+        (failed.certificate && failed.certificate->causes.contains(std::string(name_of(Outcome::over_budget))));
+    if (is_too_much) {
+        constexpr double less = 0.98;
+        energy_limit_j_ = less * std::min(energy_limit_j_, order.energy_j);
+        return;
+    }
+    const std::size_t goal = failed.planning.goal.value_or(1);
+    const std::size_t outside = table_.estimates().outside();
+    table_.give_up(goal >= 2 ? order.places[goal - 2] : outside,
+                   goal <= order.places.size() ? order.places[goal - 1] : outside);
+}
+
+/// Takes a flight as the solution if it visits more than the present one, or as many for less; where there is none yet,
+/// a part of one that comes farther.
+void AnyOrder::take_if_better(const PlaceOrder& order, Solution found, double begun_at_s,
+                              std::uint64_t iterations_before) {
+    const bool is_solved = found.status == Status::solved;
+    const bool visits_more = order.places.size() > best_.places.size();
+    const bool is_better =
+        has_way() ? is_solved && (visits_more || (order.places.size() == best_.places.size() &&
+                                                  cost_of_way(found) < cost_of_way(solution_)))
+                  : is_solved || !solution_.plan ||
+                        found.planning.goal.value_or(0) > solution_.planning.goal.value_or(0);
+    SearchRecord& whole = solution_.planning;
+    const auto note_first = [begun_at_s](std::optional<double>& at_s, const std::optional<double>& in_part_s) {
+        if (!at_s && in_part_s) {
+            at_s = begun_at_s + *in_part_s;
+        }
+    };
+    note_first(whole.first_solution_wall_s, found.planning.first_solution_wall_s);
+    note_first(whole.first_certified_wall_s, found.planning.first_certified_wall_s);
+    if (!is_better) {
+        return;
+    }
+    if (!has_way() || visits_more) {
+        whole.improvements.clear();  // of flights to fewer targets
+    }
+    for (const Improvement& each : found.planning.improvements) {
+        if (whole.improvements.empty() ||
+            each.flown_cost.value_or(each.cost) < whole.improvements.back().flown_cost.value_or(each.cost)) {
+            whole.improvements.push_back(
+                {begun_at_s + each.wall_s, iterations_before + each.iteration, each.cost, each.flown_cost});
+        }
+    }
+    whole.flight_wall_s = found.planning.flight_wall_s;
+    whole.nearest_approach_m = found.planning.nearest_approach_m;
+    whole.obstruction = found.planning.obstruction;
+    whole.goal = found.planning.goal;
+    best_ = order;
+    solution_.status = found.status;
+    solution_.cost = found.cost;
+    solution_.plan = std::move(found.plan);
+    solution_.tree = std::move(found.tree);
+    solution_.certificate = found.certificate;
+    solution_.execution = std::move(found.execution);
+}
+
+/// Which targets are left out, and why. Where no flight to one was found, the solution is approximate.
+void AnyOrder::explain() {
+    PlaceOrder order = best_;
+    if (has_way() && !best_.is_best) {
+        const PlaceOrder known = chosen();
+        order.is_best = known.is_best && known.places == best_.places;
+    }
+    VisitOrder described = this->described(order);
+    for (std::size_t target = 0; target < problem_.targets.size(); ++target) {
+        const auto is_it = [target](const Visit& visit) { return visit.target == target; };
+        if (std::ranges::any_of(described.visits, is_it)) {
+            continue;
+        }
+        LeftOutTarget left_out{target, LeftOutReason::no_flight, std::nullopt};
+        const double energy_j = energy_with(target);
+        if (is_limited() && std::isfinite(energy_j) && !table_.is_out_of_reach(target)) {
+            left_out = {target, LeftOutReason::energy_budget, energy_j};
+        } else if (has_way()) {
+            solution_.status = Status::approximate;
+        }
+        described.left_out.push_back(left_out);
+    }
+    solution_.order = std::move(described);
+    solution_.planning.wall_s = clock_.seconds();
+}
+
+/// What a target more would take, in the cheapest order with it [J].
+double AnyOrder::energy_with(std::size_t target) const {
+    std::vector<std::size_t> places;
+    std::vector<std::size_t> target_of;
+    std::vector<std::size_t> numbers(problem_.targets.size(), problem_.targets.size());
+    const LegCosts& all = table_.estimates();
+    std::size_t count = 0;
+    for (std::size_t place = 0; place < all.places(); ++place) {
+        const std::size_t of = all.target_of(place);
+        const bool is_wanted = of == target || std::ranges::find(best_.places, place) != best_.places.end();
+        if (is_wanted) {
+            numbers[of] = numbers[of] == problem_.targets.size() ? count++ : numbers[of];
+            places.push_back(place);
+            target_of.push_back(numbers[of]);
+        }
+    }
+    LegCosts energies(std::move(target_of));
+    places.push_back(all.outside());
+    for (std::size_t from = 0; from < places.size(); ++from) {
+        for (std::size_t to = 0; to < places.size(); ++to) {
+            const LegCost& leg = all.leg(places[from], places[to]);
+            energies.leg(from, to) = {std::isfinite(leg.cost) ? leg.energy_j : leg.cost, leg.energy_j};
+        }
+    }
+    const PlaceOrder order = best_order(energies);
+    return order.places.size() == count ? order.cost : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void solve_in_any_order(const Problem& problem, const FlightModel& model, const AeroMap* map,
+                        const SolveOptions& options, const LegSearch& search_leg,
+                        const SequenceSearch& search_sequence, Solution& solution) {
+    AnyOrder(problem, model, map, options, search_leg, search_sequence, solution).run();
+}
+
+}  // namespace downwash::planning
