@@ -101,8 +101,12 @@ struct ParameterInfo {
     return around << 32U | i;
 }
 /// The element itself, and the one around it.
-[[nodiscard]] constexpr std::size_t inner_element(std::size_t index) noexcept { return index & 0xffffffffU; }
-[[nodiscard]] constexpr std::size_t outer_element(std::size_t index) noexcept { return index >> 32U; }
+[[nodiscard]] constexpr std::size_t inner_element(std::size_t index) noexcept {
+    return index & 0xffffffffU;
+}
+[[nodiscard]] constexpr std::size_t outer_element(std::size_t index) noexcept {
+    return index >> 32U;
+}
 
 /// A parameter with access to where it lives in a Model. The index is that of the list element that it belongs to.
 template <class Model>

@@ -51,14 +51,13 @@ std::string error_text(const Goal& goal, const GoalVisit& visit) {
                         : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
 }
 
-/// What a number of a goal in a sequence is in the problem file.
+/// What a goal is called, of those of a solution by its number from 1.
 std::string goal_name(const Solution& solution, std::size_t number) {
     if (!solution.order) {
         return fmt::format("goal {}", number);
     }
-    return number <= solution.order->visits.size()
-               ? fmt::format("target {}", solution.order->visits[number - 1].target + 1)
-               : "the place to return to";
+    const std::vector<Visit>& visits = solution.order->visits;
+    return number <= visits.size() ? fmt::format("target {}", visits[number - 1].target + 1) : "the place to return to";
 }
 
 /// The goal that the search did not get to.
@@ -76,16 +75,18 @@ std::string order_rows(const VisitOrder& order, const std::optional<double>& ene
         visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
         visits += visit.alternative ? fmt::format(" (alternative {})", *visit.alternative + 1) : "";
     }
-    std::string text = row("order", visits.empty() ? "none" : "targets " + visits) +
-                       row("", order.is_best ? fmt::format("the best order by {} flown legs", order.legs)
-                                             : fmt::format("the best order found by {} flown legs", order.legs));
+    std::string text =
+        row("order", visits.empty() ? "none" : "targets " + visits) +
+        row("", order.is_best ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
+                              : fmt::format("the cheapest that was found by {} flown legs", order.legs));
     for (const LeftOutTarget& each : order.left_out) {
         std::string why = "no flight to it was found";
         if (each.energy_j) {
             why = fmt::format("with it the flight takes about {:.6g} J of {:.6g} J", *each.energy_j,
                               energy_budget_j.value_or(0));
         }
-        text += row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
+        text +=
+            row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
     }
     return text;
 }

@@ -74,7 +74,7 @@ class AnyOrder {
     Solution& solution_;
     LegTable table_;
     SearchBudget left_;
-    double energy_limit_j_;       ///< of the legs of an order together: what they say of a whole flight is not exact
+    double energy_limit_j_;  ///< of the legs of an order together: what they say of a whole flight is not exact
     Stopwatch clock_;
     double spent_at_s_ = 0;       ///< when time was last taken from what is left
     std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
@@ -234,9 +234,9 @@ bool AnyOrder::attempt(const PlaceOrder& order, SearchBudget budget, bool is_fir
     search_sequence_(part, options, attempts_, found);
     if (found.status == Status::solved && is_limited() && !found.execution) {
         double wall_s = 0;
-        found.execution = execute_directly(model_, start_state(model_, part.start), *found.plan, goals_of(part),
-                                           part.energy_budget_j, wall_s,
-                                           [this] { return options_.stop.stop_requested(); });
+        found.execution =
+            execute_directly(model_, start_state(model_, part.start), *found.plan, goals_of(part), part.energy_budget_j,
+                             wall_s, [this] { return options_.stop.stop_requested(); });
         if (found.execution->outcome == Outcome::over_budget) {
             found.status = Status::approximate;
         }
@@ -303,11 +303,10 @@ void AnyOrder::take_if_better(const PlaceOrder& order, Solution found, double be
                               std::uint64_t iterations_before) {
     const bool is_solved = found.status == Status::solved;
     const bool visits_more = order.places.size() > best_.places.size();
-    const bool is_better =
-        has_way() ? is_solved && (visits_more || (order.places.size() == best_.places.size() &&
-                                                  cost_of_way(found) < cost_of_way(solution_)))
-                  : is_solved || !solution_.plan ||
-                        found.planning.goal.value_or(0) > solution_.planning.goal.value_or(0);
+    const bool is_better = has_way() ? is_solved && (visits_more || (order.places.size() == best_.places.size() &&
+                                                                     cost_of_way(found) < cost_of_way(solution_)))
+                                     : is_solved || !solution_.plan ||
+                                           found.planning.goal.value_or(0) > solution_.planning.goal.value_or(0);
     SearchRecord& whole = solution_.planning;
     const auto note_first = [begun_at_s](std::optional<double>& at_s, const std::optional<double>& in_part_s) {
         if (!at_s && in_part_s) {
@@ -399,8 +398,8 @@ double AnyOrder::energy_with(std::size_t target) const {
 }  // namespace
 
 void solve_in_any_order(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                        const SolveOptions& options, const LegSearch& search_leg,
-                        const SequenceSearch& search_sequence, Solution& solution) {
+                        const SolveOptions& options, const LegSearch& search_leg, const SequenceSearch& search_sequence,
+                        Solution& solution) {
     AnyOrder(problem, model, map, options, search_leg, search_sequence, solution).run();
 }
 

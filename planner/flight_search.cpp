@@ -102,8 +102,9 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
         try {
-            execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_,
-                                          task_.problem.energy_budget_j, execution_wall_s_, [this] { return is_over(); });
+            execution_ =
+                execute_directly(task_.model, start_, before_.continued_by(plan), goals_, task_.problem.energy_budget_j,
+                                 execution_wall_s_, [this] { return is_over(); });
         } catch (const WorkStopped&) {
             discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
             return false;

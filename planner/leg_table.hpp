@@ -17,9 +17,9 @@ namespace downwash::planning {
 /// Searches for a way in the nominal world. Like PartSearch, with a course that is nothing but a hovering vehicle.
 using LegSearch = std::function<void(const Problem& leg, const SolveOptions&, const Course& before, Solution&)>;
 
-/// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is flown
-/// by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its cost
-/// is a lower bound: that of straight motion in free air to the goal region, and the hold there.
+/// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is
+/// flown by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its
+/// cost is a lower bound: that of straight motion in free air to the goal region, and the hold there.
 class LegTable {
  public:
     /// @param problem with targets   @param map of the planner's own model; nullptr for none
@@ -57,7 +57,7 @@ class LegTable {
     struct Place {
         Visit visit;
         Goal goal;
-        Configuration at;            ///< in the goal region, until a leg ends there
+        Configuration at;             ///< in the goal region, until a leg ends there
         std::optional<Course> hover;  ///< at the end of the first leg to it
     };
     struct LegState {
@@ -79,7 +79,7 @@ class LegTable {
     const SolveOptions& options_;
     LegSearch search_;
     std::vector<std::unique_ptr<Bounds>> bounds_;  ///< of the ways to each place
-    std::vector<Place> places_;  ///< the last one is the place to return to, if there is one
+    std::vector<Place> places_;                    ///< the last one is the place to return to, if there is one
     Course start_;
     std::vector<LegState> legs_;
     LegCosts estimates_;

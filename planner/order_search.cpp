@@ -58,7 +58,8 @@ class ExactSearch {
         const std::size_t bit = std::size_t{1} << costs_.target_of(next);
         const LegCost& leg = costs_.leg(last, next);
         const bool is_limited = std::isfinite(costs_.energy_budget_j);
-        const Label longer{way.cost + leg.cost, is_limited ? way.energy_j + leg.energy_j : 0, next, label, way.count + 1};
+        const Label longer{way.cost + leg.cost, is_limited ? way.energy_j + leg.energy_j : 0, next, label,
+                           way.count + 1};
         if ((set & bit) != 0 || !std::isfinite(longer.cost) || longer.energy_j > costs_.energy_budget_j) {
             return;
         }

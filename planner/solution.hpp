@@ -37,7 +37,7 @@ struct Solution {
     std::shared_ptr<const AeroMap> map;      ///< that the search flew in, for SolveOptions::map of another; empty: none
     std::vector<TreeNode> tree;              ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;                ///< empty with Status::none
-    std::optional<VisitOrder> order;  ///< in which the plan visits targets; empty where the problem has none
+    std::optional<VisitOrder> order;         ///< in which the plan visits targets; empty where the problem has none
     std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
     std::optional<Execution> execution;             ///< the whole plan flown from the start with direct aerodynamics

@@ -97,9 +97,9 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
     }
     const Problem flown = solution.order && solution.plan ? in_order(problem, *solution.order) : problem;
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
-        solution.execution =
-            planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan, goals_of(flown),
-                                       flown.energy_budget_j, solution.planning.flight_wall_s, end_of_last_flight(options.stop));
+        solution.execution = planning::execute_directly(
+            *model, start_state(*model, problem.start), *solution.plan, goals_of(flown), flown.energy_budget_j,
+            solution.planning.flight_wall_s, end_of_last_flight(options.stop));
     }
     if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
         // The others know nothing of worlds: what becomes of their plan is for comparison.

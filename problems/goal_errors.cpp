@@ -109,8 +109,7 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
             }
             const auto& pose = goal.configuration;
             if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
-                return {{pose_key(key),
-                         "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
+                return {{pose_key(key), "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
             }
             if (pose && ((pose->tolerance_x_m && !pose->x_m) || (pose->tolerance_z_m && !pose->z_m))) {
                 const std::string axis = pose->tolerance_x_m && !pose->x_m ? "x_m" : "z_m";
@@ -154,8 +153,9 @@ std::vector<KeyError> configurations_outside_bounds(const Problem& p) {
         const auto check = [&](const char* key, const std::optional<double>& value, double tolerance_m, double low,
                                double high) {
             if (value && (*value < low - tolerance_m || *value > high + tolerance_m)) {
-                errors.push_back({pose_key(goal_key) + key, "is " + to_text(*value) + ", outside the bounds: expected " +
-                                                      to_text(low) + " to " + to_text(high)});
+                errors.push_back({pose_key(goal_key) + key, "is " + to_text(*value) +
+                                                                ", outside the bounds: expected " + to_text(low) +
+                                                                " to " + to_text(high)});
             }
         };
         const GoalTolerance tolerance = tolerance_of(goal);
@@ -171,8 +171,7 @@ std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
             arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad, tolerance_of(goal).usable().angle_rad)) {
             return {};
         }
-        return {
-            {pose_key(key) + ".arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
+        return {{pose_key(key) + ".arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
     });
 }
 

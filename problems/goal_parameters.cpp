@@ -95,7 +95,8 @@ void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
             path,
             "the vehicle and its arm", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).configuration; })
             .is_exclusive());
-    add_pose(rows, path, [goal](auto& p, std::size_t i) -> auto& { return *goal(p, i).configuration; });
+    add_pose(
+        rows, path, [goal](auto& p, std::size_t i) -> auto& { return *goal(p, i).configuration; });
 }
 
 /// Every kind of goal, of which exactly one is given.
@@ -163,10 +164,10 @@ void add_any_order(Rows& rows) {
                        [](auto& p) -> auto& { return p.targets; })
                        .is_exclusive());
     add_goal_or_choice(rows, "goal.in_any_order[]", target);
-    rows.push_back(hold("goal.in_any_order[]", target)
-                       .only("without any_of", [target](const Problem& p, std::size_t i) {
-                           return target(p, i).any_of.empty();
-                       }));
+    rows.push_back(
+        hold("goal.in_any_order[]", target).only("without any_of", [target](const Problem& p, std::size_t i) {
+            return target(p, i).any_of.empty();
+        }));
     rows.push_back(parameters::group<Problem>(
                        "goal.return_to", "where the flight must end and stay after the last target",
                        [](const Problem& p, std::size_t) { return p.return_to.has_value(); },
@@ -177,8 +178,10 @@ void add_any_order(Rows& rows) {
                            }
                        })
                        .only(with_targets, has_targets));
-    add_pose(rows, "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to->configuration; });
-    rows.push_back(hold("goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to; }));
+    add_pose(
+        rows, "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to->configuration; });
+    rows.push_back(hold(
+        "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to; }));
     rows.push_back(parameters::number<Problem>(
                        "goal.energy_budget_j",
                        "energy that no flight may exceed: targets for which it is not enough are left out",

@@ -83,9 +83,11 @@ struct Problem {
     Start start;
     std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
     Goal goal;
-    std::vector<Goal> targets;  ///< goals in an order that the planner chooses; if there are any, they replace the above
-    std::optional<Goal> return_to;          ///< configuration to be reached and held after the targets
-    std::optional<double> energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
+    std::vector<Goal>
+        targets;  ///< goals in an order that the planner chooses; if there are any, they replace the above
+    std::optional<Goal> return_to;  ///< configuration to be reached and held after the targets
+    std::optional<double>
+        energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
     MotionLimits motion;
     PlannerSettings planner;
 };

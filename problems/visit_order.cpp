@@ -34,4 +34,21 @@ Problem in_order(Problem problem, const VisitOrder& order) {
     return problem;
 }
 
+std::vector<std::string> goal_names(const Problem& problem, const std::optional<VisitOrder>& order) {
+    std::vector<std::string> names;
+    if (problem.targets.empty()) {
+        for (std::size_t i = 0; i <= problem.stops.size() && !problem.stops.empty(); ++i) {
+            names.push_back("goal " + std::to_string(i + 1));
+        }
+        return names.empty() ? std::vector<std::string>{"goal"} : names;
+    }
+    for (const Visit& visit : order.value_or(given_order(problem)).visits) {
+        names.push_back("target " + std::to_string(visit.target + 1));
+    }
+    if (problem.return_to) {
+        names.emplace_back("the place to return to");
+    }
+    return names;
+}
+
 }  // namespace downwash

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,9 +47,9 @@ struct LeftOutTarget {
 struct VisitOrder {
     std::vector<Visit> visits;
     std::vector<LeftOutTarget> left_out;  ///< by number
-    bool is_best = false;      ///< no other order is cheaper by the legs that were flown and lower bounds of the others
-    std::uint64_t legs = 0;    ///< flown between two places each to compare orders
-    double cost_of_legs = 0;   ///< of this order, one by one; the flight of the plan costs something else
+    bool is_best = false;     ///< no other order is cheaper by the legs that were flown and lower bounds of the others
+    std::uint64_t legs = 0;   ///< flown between two places each to compare orders
+    double cost_of_legs = 0;  ///< of this order, one by one; the flight of the plan costs something else
 
     friend bool operator==(const VisitOrder&, const VisitOrder&) = default;
 };
@@ -60,5 +61,10 @@ struct VisitOrder {
 /// without targets is what it was.
 /// @pre all numbers are of the problem, and there is a visit or a place to return to
 [[nodiscard]] DOWNWASH_EXPORT Problem in_order(Problem problem, const VisitOrder& order);
+
+/// What people call the goals of goals_of(problem) or, with an order, of goals_of(in_order(problem, order)): "goal" of
+/// one alone, "goal 2", or "target 3" and "the place to return to".
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::string> goal_names(const Problem& problem,
+                                                                  const std::optional<VisitOrder>& order);
 
 }  // namespace downwash

@@ -20,8 +20,8 @@ using Given = controllers::Actuation<double>;
 /// Few: among thousands of obstacles a tick takes milliseconds.
 constexpr std::int64_t ticks_between_questions = 8;
 
-constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed",
-                                              "over_budget"};
+constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unstable", "left_flyable_area",
+                                              "goal_missed", "over_budget"};
 
 /// Writes the log of one flight while it is flown.
 template <class Factor>

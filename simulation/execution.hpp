@@ -24,7 +24,8 @@ enum class Outcome : std::uint8_t {
     over_budget,  ///< met its goals, but took more energy than it may
 };
 
-inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcome::unstable, Outcome::left_flyable_area,
+inline constexpr std::array all_outcomes{Outcome::ok,          Outcome::collision,
+                                         Outcome::unstable,    Outcome::left_flyable_area,
                                          Outcome::goal_missed, Outcome::over_budget};
 
 /// The outcome's name in files, for example "left_flyable_area".
