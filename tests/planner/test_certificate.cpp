@@ -218,6 +218,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     planning::ProblemWorlds worlds(problem, model, map, options);
     std::vector<std::optional<std::size_t>> named;
     Solution solution;
+    std::uint64_t attempts = 0;
     planning::solve_in_turn(
         problem, *model, map.get(), options,
         [&](const Problem& part, const SolveOptions& of_part, const planning::Course& before, Solution& found) {
@@ -230,7 +231,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
             }
             return weak;
         },
-        solution);
+        attempts, solution);
     CHECK(solution.status == Status::approximate);
     REQUIRE_FALSE(named.empty());
     CHECK(named.front() == std::optional<std::size_t>(0));
