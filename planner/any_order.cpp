@@ -52,6 +52,7 @@ class AnyOrder {
     void search();
     [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
     [[nodiscard]] PlaceOrder chosen() const;
+    [[nodiscard]] SearchBudget share_of_left(double share) const;
     void compare_orders(SearchBudget budget);
     [[nodiscard]] bool fly_leg(std::size_t from, std::size_t to, const SearchBudget& slice, SearchBudget& budget);
     [[nodiscard]] bool fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget);
@@ -78,6 +79,7 @@ class AnyOrder {
     Stopwatch clock_;
     double spent_at_s_ = 0;       ///< when time was last taken from what is left
     std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
+    PlaceOrder failed_;           ///< in which the last search for a flight failed
     PlaceOrder best_;             ///< of the solution; empty without one
 };
 
@@ -105,13 +107,9 @@ void AnyOrder::search() {
     bool has_grown = false;
     for (PlaceOrder order = chosen(); !is_done() && is_order(order);) {
         const bool is_known = has_way() && order.places == best_.places;
-        if (!is_known && !attempt(order, left_.part(share_of_try), true)) {
+        if (!is_known && !attempt(order, share_of_left(share_of_try), true)) {
             compare_orders(left_.part(share_of_more_legs));
-            const PlaceOrder next = chosen();
-            if (next.places == order.places) {
-                break;
-            }
-            order = next;
+            order = chosen();
             continue;
         }
         if (!has_grown && leaves_energy(order)) {
@@ -125,6 +123,12 @@ void AnyOrder::search() {
         static_cast<void>(attempt(best_, left_, options_.stop_at_first_solution));
         break;
     }
+}
+
+/// Of the limits, but no crumbs.
+SearchBudget AnyOrder::share_of_left(double share) const {
+    constexpr double least = 0.1;
+    return left_.part(share).at_least(SearchBudget(problem_.planner).part(least)).at_most(left_);
 }
 
 void AnyOrder::run() {
@@ -202,7 +206,8 @@ bool AnyOrder::fly_missing_legs(const PlaceOrder& order, const SearchBudget& sli
 /// So that no order that is chosen costs more than this one: each time to the place that costs least by flown legs.
 void AnyOrder::fly_nearest_first(const SearchBudget& slice, SearchBudget& budget) {
     while (!is_over() && !budget.is_used_up()) {
-        if (!fly_missing_legs(nearest_first(limited(table_.estimates())), slice, budget)) {
+        const PlaceOrder order = nearest_first(limited(table_.estimates()));
+        if (!is_order(order) || !fly_missing_legs(order, slice, budget)) {
             return;
         }
     }
@@ -215,7 +220,8 @@ VisitOrder AnyOrder::described(const PlaceOrder& order) const {
     }
     described.is_best = order.is_best;
     described.legs = table_.legs_flown();
-    described.cost_of_legs = order_of(table_.estimates(), order.places).cost;
+    const double cost = order_of(table_.estimates(), order.places).cost;
+    described.cost_of_legs = std::isfinite(cost) ? cost : order.cost;
     return described;
 }
 
@@ -277,7 +283,8 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
     return inner;
 }
 
-/// What does not fly as a whole is not to be chosen again.
+/// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails for
+/// the second time.
 void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& failed) {
     if (options_.stop.stop_requested()) {
         return;
@@ -289,6 +296,10 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& faile
     if (is_too_much) {
         constexpr double less = 0.98;
         energy_limit_j_ = less * std::min(energy_limit_j_, order.energy_j);
+        return;
+    }
+    if (order.places != failed_.places) {
+        failed_ = order;  // it is tried once more: luck differs between searches
         return;
     }
     const std::size_t goal = failed.planning.goal.value_or(1);

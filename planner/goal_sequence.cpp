@@ -150,7 +150,8 @@ bool GoalSequence::give_up(Round& round) {
 /// ones find more than one long one; each that is given up allows the next one twice as much.
 SearchBudget GoalSequence::slice(std::size_t part) const {
     constexpr double longest_first_s = 2.5;
-    const double first_share = 0.25 / static_cast<double>(goals_.size());
+    // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
+    const double first_share = (problem_.energy_budget_j ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
     return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
 }
@@ -231,7 +232,7 @@ bool GoalSequence::search_part(Round& round) {
 /// Options under which a part reports its progress as that of the whole.
 SolveOptions GoalSequence::options_of_part(const Round& round) {
     SolveOptions inner = options_;
-    // Its first plan is far from the cheapest: where energy is limited a part may take its slice.
+    // A first plan is far from the cheapest.
     inner.stop_at_first_solution = !has_way() && !problem_.energy_budget_j;
     const std::size_t number = round.part_costs.size();
     const bool is_last = number + 1 == goals_.size();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/order_search.hpp"
 #include "downwash/planner/search_budget.hpp"
@@ -20,7 +21,7 @@ using LegSearch = std::function<void(const Problem& leg, const SolveOptions&, co
 /// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is
 /// flown by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its
 /// cost is a lower bound: that of straight motion in free air to the goal region, and the hold there.
-class LegTable {
+class DOWNWASH_EXPORT LegTable {
  public:
     /// @param problem with targets   @param map of the planner's own model; nullptr for none
     /// @param options for threads and stop   @pre all outlive it
@@ -66,9 +67,9 @@ class LegTable {
     };
     class Bounds;
 
-    [[nodiscard]] LegState& leg(std::size_t from, std::size_t to) { return legs_[from * (places_.size() + 1) + to]; }
+    [[nodiscard]] LegState& leg(std::size_t from, std::size_t to) { return legs_[from * (estimates_.outside() + 1) + to]; }
     [[nodiscard]] const LegState& leg(std::size_t from, std::size_t to) const {
-        return legs_[from * (places_.size() + 1) + to];
+        return legs_[from * (estimates_.outside() + 1) + to];
     }
     [[nodiscard]] bool is_leg(std::size_t from, std::size_t to) const;
     void bound_legs_from(std::size_t from);

@@ -15,7 +15,7 @@ struct LegCost {
 };
 
 /// Places to be visited in any order, of each target one place at most, and the costs between them.
-class LegCosts {
+class DOWNWASH_EXPORT LegCosts {
  public:
     /// @param target_of the target of each place, from 0
     explicit LegCosts(std::vector<std::size_t> target_of);

@@ -42,6 +42,16 @@ class SearchBudget {
         return less;
     }
 
+    /// This budget, or another one where that is more.
+    [[nodiscard]] SearchBudget at_least(const SearchBudget& other) const {
+        SearchBudget more = *this;
+        if (iterations_) {
+            more.iterations_ = std::max(*iterations_, *other.iterations_);
+        }
+        more.time_s_ = std::max(time_s_, other.time_s_);
+        return more;
+    }
+
     /// This budget, but no more than so many seconds; one of iterations stays.
     [[nodiscard]] SearchBudget within_s(double most_s) const {
         SearchBudget less = *this;

@@ -82,6 +82,7 @@ TEST_CASE("of the alternatives of a target the flight takes the one on its way")
 TEST_CASE("an energy budget is kept: targets for which it is not enough are left out, with what they would take") {
     Problem problem = line_of_targets(Variant::mp_arm_ada);
     problem.return_to = place(-4, 2);
+    problem.planner.max_iterations = 2000;
     const Solution all = solve(problem);
     REQUIRE(all.status == Status::solved);
     problem.energy_budget_j = 0.6 * all.execution->energy_j;

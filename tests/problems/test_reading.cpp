@@ -1,6 +1,7 @@
 #include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
