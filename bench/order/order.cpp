@@ -82,6 +82,7 @@ Problem random_scene(const Options& options, unsigned seed) {
     }
     problem.planner.time_limit_s = options.limit_s;
     problem.planner.max_iterations.reset();
+    problem.uncertainty.reset();
     return problem;
 }
 
@@ -173,7 +174,7 @@ Row measured(const Problem& problem, const Options& options, unsigned scene) {
 void print(const std::vector<Row>& rows, const Options& options) {
     fmt::print(
         "# Targets in any order\n\nCommit {}, g++ {}, {}, {} threads, seed {}. `bench/order.sh` writes this page.\n\n"
-        "{} random scenes with six blocks and {} targets, objective energy, {:g} s a search. The exact order is the "
+        "{} random scenes with six blocks and {} targets, everything as believed, objective energy, {:g} s a search. The exact order is the "
         "cheapest of all by a matrix of\nlegs that were flown one by one, each for up to {:g} s after the search; "
         "nearest-first goes by the same matrix. *By legs*: cost of the chosen order by\nthat matrix over the cost of "
         "another one. *Executed*: cost of the executed flight over that of the flight in the other order, which the "
@@ -201,11 +202,10 @@ void print(const std::vector<Row>& rows, const Options& options) {
         }
     }
     fmt::print(
-        "\nThe chosen order costs at most {:.1f} % more than the exact one by legs, and {:.1f} % when executed. By legs "
-        "it costs more than nearest-first in {} of {} scenes;\nexecuted it costs at most {:.3f} of it. Without a flight "
+        "\nAt most, the chosen order costs {:.3f} of the exact one by legs, {:.3f} of it when executed, and {:.3f} of "
+        "nearest-first when executed. By legs it costs\nmore than nearest-first in {} of {} scenes. Without a flight "
         "through all targets: {} of {} scenes.\n",
-        100 * (worst - 1), 100 * (worst_executed - 1), dearer_than_nearest, rows.size(), worst_nearest, failures,
-        rows.size());
+        worst, worst_executed, worst_nearest, dearer_than_nearest, rows.size(), failures, rows.size());
 }
 
 }  // namespace
