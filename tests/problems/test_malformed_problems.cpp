@@ -136,9 +136,9 @@ const Edit edits[] = {
      "14:70: goal.any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
     {tip, "configuration: {z_m: 3, tolerance_x_m: 0.1}",
      "14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
-    {goal, "goal: {in_any_order: []}\n", "13:8: goal.in_any_order is empty: expected one element at least"},
+    {goal, "goal: {in_any_order: []}\n", "13:22: goal.in_any_order is empty: expected one element at least"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {any_of: [{configuration: {x_m: 1}}, {hold_s: 0}]}]\n",
-     "14:87: goal.in_any_order[1].any_of[1] needs exactly one of <stops>\n14:88: "
+     "14:82: goal.in_any_order[1].any_of[1] needs exactly one of <stops>\n14:91: "
      "goal.in_any_order[1].any_of[1].hold_s is 0: expected a number in s from 1 to 3600"},
     {tip_and_hold,
      "  in_any_order: [{configuration: {x_m: 1}}, {any_of: [{configuration: {x_m: 1}}, {configuration: {x_m: 30}}]}]\n",
@@ -146,7 +146,7 @@ const Edit edits[] = {
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n  energy_budget_j: 0\n",
      "16:20: goal.energy_budget_j is 0: expected a number in J above 0 and at most 1000000000000, or null"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n",
-     "15:21: goal.return_to.x_m is 9, outside the bounds: expected -6 to 6"},
+     "15:20: goal.return_to.x_m is 9, outside the bounds: expected -6 to 6"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {hold_s: 2}\n",
      "15:3: goal.return_to is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"  hold_s: 5\n", "  hold_s: 5\n  return_to: {x_m: 1}\n",
