@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/order_comparison.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -25,7 +26,7 @@ class AnyOrder {
           solution_(solution),
           table_(problem, model, map, silent_, search_leg),
           left_(problem.planner),
-          energy_limit_j_(table_.estimates().energy_budget_j) {}
+          comparison_(table_, [this] { return is_over(); }) {}
 
     void run();
 
@@ -40,32 +41,19 @@ class AnyOrder {
     [[nodiscard]] bool is_limited() const { return problem_.energy_budget_j.has_value(); }
 
     [[nodiscard]] bool is_done() const { return is_over() || (options_.stop_at_first_solution && has_way()); }
-    [[nodiscard]] static bool is_order(const PlaceOrder& order) {
-        return std::isfinite(order.cost) && !order.places.empty();
-    }
-    /// With the limit of energy.
-    [[nodiscard]] LegCosts limited(LegCosts costs) const {
-        costs.energy_budget_j = energy_limit_j_;
-        return costs;
-    }
-
     void search();
     [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
-    [[nodiscard]] PlaceOrder chosen() const;
     [[nodiscard]] SearchBudget share_of_left(double share) const;
-    void compare_orders(SearchBudget budget);
-    [[nodiscard]] bool fly_leg(std::size_t from, std::size_t to, const SearchBudget& slice, SearchBudget& budget);
-    [[nodiscard]] bool fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget);
-    void fly_nearest_first(const SearchBudget& slice, SearchBudget& budget);
+    void compare_orders(const SearchBudget& budget);
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
     [[nodiscard]] double cost_of_way(const Solution& way) const;
-    [[nodiscard]] bool attempt(const PlaceOrder& order, SearchBudget budget, bool is_first_only);
+    [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
     [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
     void learn_from_failure(const PlaceOrder& order, const Solution& failed);
     void take_if_better(const PlaceOrder& order, Solution found, double begun_at_s, std::uint64_t iterations_before);
     void explain();
     [[nodiscard]] double energy_with(std::size_t target) const;
-    void spend(SearchBudget& budget, std::uint64_t iterations_before);
+    void spend(std::uint64_t iterations_before);
 
     const Problem& problem_;
     const FlightModel& model_;
@@ -75,7 +63,7 @@ class AnyOrder {
     Solution& solution_;
     LegTable table_;
     SearchBudget left_;
-    double energy_limit_j_;  ///< of the legs of an order together: what they say of a whole flight is not exact
+    OrderComparison comparison_;
     Stopwatch clock_;
     double spent_at_s_ = 0;       ///< when time was last taken from what is left
     std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
@@ -83,21 +71,20 @@ class AnyOrder {
     PlaceOrder best_;             ///< of the solution; empty without one
 };
 
-/// Takes what has passed since it was called last from what is left, and from a part of it.
-void AnyOrder::spend(SearchBudget& budget, std::uint64_t iterations_before) {
+/// Takes what has passed since it was called last from what is left.
+void AnyOrder::spend(std::uint64_t iterations_before) {
     SearchRecord work;
     const double now_s = clock_.seconds();
     work.wall_s = now_s - std::exchange(spent_at_s_, now_s);
     work.iterations = solution_.planning.iterations - iterations_before;
     left_.spend(work);
-    budget.spend(work);
 }
 
 /// First a flight through all in the order that looks best; then orders are compared; then a flight in the best of
 /// them or, where there is none, in the next one.
 void AnyOrder::search() {
-    constexpr double share_of_first = 0.15, share_of_legs = 0.45, share_of_try = 0.35, share_of_more_legs = 0.2;
-    const PlaceOrder likely = best_order(limited(table_.estimates()));
+    constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_of_try = 0.35, share_of_more_legs = 0.2;
+    const PlaceOrder likely = comparison_.likely();
     if (!is_limited() && is_order(likely)) {
         static_cast<void>(attempt(likely, left_.part(share_of_first), true));
     }
@@ -105,17 +92,17 @@ void AnyOrder::search() {
         compare_orders(left_.part(share_of_legs));
     }
     bool has_grown = false;
-    for (PlaceOrder order = chosen(); !is_done() && is_order(order);) {
+    for (PlaceOrder order = comparison_.chosen(); !is_done() && is_order(order);) {
         const bool is_known = has_way() && order.places == best_.places;
         if (!is_known && !attempt(order, share_of_left(share_of_try), true)) {
             compare_orders(left_.part(share_of_more_legs));
-            order = chosen();
+            order = comparison_.chosen();
             continue;
         }
         if (!has_grown && leaves_energy(order)) {
             has_grown = true;
             compare_orders(left_.part(share_of_more_legs));
-            if (PlaceOrder more = chosen(); more.places.size() > order.places.size()) {
+            if (PlaceOrder more = comparison_.chosen(); more.places.size() > order.places.size()) {
                 order = std::move(more);
                 continue;
             }
@@ -144,73 +131,14 @@ bool AnyOrder::leaves_energy(const PlaceOrder& order) {
     if (!is_limited() || order.places.size() == problem_.targets.size() || !solution_.execution) {
         return false;
     }
-    energy_limit_j_ = *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
+    comparison_.energy_limit_j = *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
     return true;
 }
 
-/// The best order of flown legs or, where others may visit more, of those.
-PlaceOrder AnyOrder::chosen() const {
-    PlaceOrder flown = best_order(limited(table_.flown_costs()), best_.places);
-    PlaceOrder likely = best_order(limited(table_.estimates()), flown.places);
-    const bool is_flown = is_order(flown) && flown.places.size() >= likely.places.size();
-    // Lower bounds show that no order with other legs is cheaper.
-    flown.is_best = likely.is_best && flown.cost <= likely.cost * (1 + 1e-9);
-    likely.is_best = false;
-    return is_flown ? flown : likely;
-}
-
-/// Flies the legs of the order that is the best by what is known, until it has none that are not flown.
-void AnyOrder::compare_orders(SearchBudget budget) {
-    const auto targets = static_cast<double>(problem_.targets.size());
-    const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
-    const SearchBudget slice = budget.part(1 / legs);
-    fly_nearest_first(slice, budget);
-    std::vector<std::size_t> hint;
-    while (!is_over() && !budget.is_used_up()) {
-        const PlaceOrder order = best_order(limited(table_.estimates()), hint);
-        if (!is_order(order) || !fly_missing_legs(order, slice, budget)) {
-            return;
-        }
-        hint = order.places;
-    }
-}
-
-bool AnyOrder::fly_leg(std::size_t from, std::size_t to, const SearchBudget& slice, SearchBudget& budget) {
+void AnyOrder::compare_orders(const SearchBudget& budget) {
     const std::uint64_t iterations = solution_.planning.iterations;
-    const bool is_flown = table_.fly(from, to, slice.at_most(budget), solution_.planning);
-    spend(budget, iterations);
-    return is_flown;
-}
-
-/// @return false if none was missing. One to which no flight is found ends it: another order may be better then
-bool AnyOrder::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget) {
-    bool was_missing = false;
-    std::size_t from = table_.estimates().outside();
-    std::vector<std::size_t> stations = order.places;
-    stations.push_back(from);
-    for (const std::size_t to : stations) {
-        if (is_over() || budget.is_used_up()) {
-            break;
-        }
-        if (!table_.is_flown(from, to)) {
-            was_missing = true;
-            if (!fly_leg(from, to, slice, budget)) {
-                break;
-            }
-        }
-        from = to;
-    }
-    return was_missing;
-}
-
-/// So that no order that is chosen costs more than this one: each time to the place that costs least by flown legs.
-void AnyOrder::fly_nearest_first(const SearchBudget& slice, SearchBudget& budget) {
-    while (!is_over() && !budget.is_used_up()) {
-        const PlaceOrder order = nearest_first(limited(table_.estimates()));
-        if (!is_order(order) || !fly_missing_legs(order, slice, budget)) {
-            return;
-        }
-    }
+    comparison_.compare(budget, solution_.planning);
+    spend(iterations);
 }
 
 VisitOrder AnyOrder::described(const PlaceOrder& order) const {
@@ -230,7 +158,7 @@ double AnyOrder::cost_of_way(const Solution& way) const {
 }
 
 /// Searches for a flight in an order. @return whether there is one
-bool AnyOrder::attempt(const PlaceOrder& order, SearchBudget budget, bool is_first_only) {
+bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only) {
     Problem part = in_order(problem_, described(order));
     budget.limit(part.planner);
     Solution found;
@@ -248,7 +176,7 @@ bool AnyOrder::attempt(const PlaceOrder& order, SearchBudget budget, bool is_fir
         }
     }
     add_work(solution_.planning, found.planning);
-    spend(budget, iterations);
+    spend(iterations);
     if (found.status != Status::solved) {
         learn_from_failure(order, found);
     }
@@ -295,7 +223,7 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& faile
         (failed.certificate && failed.certificate->causes.contains(std::string(name_of(Outcome::over_budget))));
     if (is_too_much) {
         constexpr double less = 0.98;
-        energy_limit_j_ = less * std::min(energy_limit_j_, order.energy_j);
+        comparison_.energy_limit_j = less * std::min(comparison_.energy_limit_j, order.energy_j);
         return;
     }
     if (order.places != failed_.places) {
@@ -356,7 +284,7 @@ void AnyOrder::take_if_better(const PlaceOrder& order, Solution found, double be
 void AnyOrder::explain() {
     PlaceOrder order = best_;
     if (has_way() && !best_.is_best) {
-        const PlaceOrder known = chosen();
+        const PlaceOrder known = comparison_.chosen();
         order.is_best = known.is_best && known.places == best_.places;
     }
     VisitOrder described = this->described(order);

@@ -124,7 +124,7 @@ void LegTable::bound_legs_from(std::size_t from) {
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
         if (!is_leg(from, to)) {
             estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};
-        } else if (!leg(from, to).is_flown && leg(from, to).failures < most_failures) {
+        } else if (!leg(from, to).is_known && leg(from, to).failures < most_failures) {
             estimates_.leg(from, to) = bounds_[to]->from(at);
         }
     }
@@ -138,20 +138,33 @@ bool LegTable::is_leg(std::size_t from, std::size_t to) const {
     return from == estimates_.outside() || places_[from].visit.target != places_[to].visit.target;
 }
 
-LegCosts LegTable::flown_costs() const {
-    LegCosts flown = estimates_;
-    for (std::size_t from = 0; from <= flown.outside(); ++from) {
-        for (std::size_t to = 0; to <= flown.outside(); ++to) {
-            if (is_leg(from, to) && !is_flown(from, to)) {
-                flown.leg(from, to) = {};
+LegCosts LegTable::costs_or(const std::optional<LegCost>& other) const {
+    LegCosts costs = estimates_;
+    for (std::size_t from = 0; from <= costs.outside(); ++from) {
+        for (std::size_t to = 0; to <= costs.outside(); ++to) {
+            const LegState& state = leg(from, to);
+            if (std::isfinite(state.flown.cost)) {
+                costs.leg(from, to) = state.flown;
+            } else if (is_leg(from, to) && other) {
+                costs.leg(from, to) = *other;
             }
         }
     }
-    return flown;
+    return costs;
 }
 
-bool LegTable::is_flown(std::size_t from, std::size_t to) const {
-    return !is_leg(from, to) || leg(from, to).is_flown;
+void LegTable::begin_pass() {
+    ++pass_;
+    for (LegState& state : legs_) {
+        state.is_known = false;
+    }
+    for (std::size_t from = 0; from <= estimates_.outside(); ++from) {
+        bound_legs_from(from);
+    }
+}
+
+bool LegTable::is_known(std::size_t from, std::size_t to) const {
+    return !is_leg(from, to) || leg(from, to).is_known;
 }
 
 bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget, SearchRecord& work) {
@@ -170,7 +183,9 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
         part.start.z_m = places_[from].at.z_m;
         part.start.arm_rad = places_[from].at.arm_rad;
     }
-    part.planner.seed += searches_++;
+    const std::size_t legs = legs_.size();
+    part.planner.seed += static_cast<std::uint32_t>((pass_ + static_cast<std::uint32_t>(state.failures)) * legs +
+                                                    from * (estimates_.outside() + 1) + to);
     const SearchBudget mine = budget.part(std::ldexp(1.0, state.failures));
     mine.limit(part.planner);
     SolveOptions options = options_;
@@ -181,6 +196,11 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
     search_(part, options, *before, found);
     if (found.status != Status::solved) {
         add_work(work, found.planning);
+        if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
+            state.is_known = true;
+            estimates_.leg(from, to) = state.flown;
+            return true;
+        }
         if (!options_.stop.stop_requested() && ++state.failures == most_failures) {
             estimates_.leg(from, to) = {};
         }
@@ -196,9 +216,10 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
         const double duration_s = hover.plan.duration_s();
         cost.energy_j = bounds_[to]->hover_energy_j(found.plan->last(), duration_s);
     }
-    state.is_flown = true;
-    estimates_.leg(from, to) = cost;
-    ++legs_flown_;
+    legs_flown_ += std::isfinite(state.flown.cost) ? 0 : 1;
+    state.flown = cost.cost < state.flown.cost ? cost : state.flown;
+    state.is_known = true;
+    estimates_.leg(from, to) = state.flown;
     if (!place.hover) {
         place.at = found.plan->last();
         hover.goals.clear();
@@ -214,7 +235,7 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
 }
 
 void LegTable::give_up(std::size_t from, std::size_t to) {
-    leg(from, to) = {false, most_failures};
+    leg(from, to) = {false, most_failures, {}};
     estimates_.leg(from, to) = {};
 }
 

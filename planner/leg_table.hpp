@@ -31,13 +31,18 @@ class DOWNWASH_EXPORT LegTable {
     LegTable(const LegTable&) = delete;
     LegTable& operator=(const LegTable&) = delete;
 
-    /// Flown costs, and lower bounds of the others; legs to which no flight was found are infinite.
+    /// Costs of the legs that were flown in this pass, and lower bounds of the others; legs to which no flight was found
+    /// are infinite.
     [[nodiscard]] const LegCosts& estimates() const noexcept { return estimates_; }
-    /// The flown costs alone.
-    [[nodiscard]] LegCosts flown_costs() const;
+    /// The cheapest flights of all passes alone: other legs are infinite.
+    [[nodiscard]] LegCosts flown_costs() const { return costs_or({}); }
+    /// The same with lower bounds of the others.
+    [[nodiscard]] LegCosts lower_bounds() const { return costs_or(std::nullopt); }
+    /// Begins a pass: legs are to be flown anew, those that were not found are not.
+    void begin_pass();
 
-    /// Whether the cost of a leg is that of a flight.
-    [[nodiscard]] bool is_flown(std::size_t from, std::size_t to) const;
+    /// Whether a leg was flown in this pass, or is none.
+    [[nodiscard]] bool is_known(std::size_t from, std::size_t to) const;
     /// Legs that were flown.
     [[nodiscard]] std::uint64_t legs_flown() const noexcept { return legs_flown_; }
 
@@ -62,8 +67,9 @@ class DOWNWASH_EXPORT LegTable {
         std::optional<Course> hover;  ///< at the end of the first leg to it
     };
     struct LegState {
-        bool is_flown = false;
+        bool is_known = false;  ///< in this pass
         int failures = 0;
+        LegCost flown = {};  ///< the cheapest flight of all passes; infinite without one
     };
     class Bounds;
 
@@ -73,6 +79,8 @@ class DOWNWASH_EXPORT LegTable {
     }
     [[nodiscard]] bool is_leg(std::size_t from, std::size_t to) const;
     void bound_legs_from(std::size_t from);
+    /// The cheapest flights, and of legs without one their estimates or another cost.
+    [[nodiscard]] LegCosts costs_or(const std::optional<LegCost>& other) const;
 
     const Problem& problem_;
     const FlightModel& model_;
@@ -85,7 +93,7 @@ class DOWNWASH_EXPORT LegTable {
     std::vector<LegState> legs_;
     LegCosts estimates_;
     std::uint64_t legs_flown_ = 0;
-    std::uint32_t searches_ = 0;  ///< each draws other samples
+    std::uint32_t pass_ = 0;  ///< in each one the searches draw other samples
 };
 
 }  // namespace downwash::planning

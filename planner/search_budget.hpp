@@ -68,6 +68,14 @@ class SearchBudget {
         return std::min(share, 1.0);
     }
 
+    /// What part of this budget was spent until another one was left of it.
+    [[nodiscard]] double share_between(const SearchBudget& left) const {
+        SearchRecord spent;
+        spent.iterations = iterations_ ? *iterations_ - *left.iterations_ : 0;
+        spent.wall_s = time_s_ - left.time_s_;
+        return share_of(spent);
+    }
+
     void limit(PlannerSettings& settings) const {
         constexpr double min_s = 1e-6;
         settings.max_iterations = iterations_;

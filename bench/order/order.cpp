@@ -15,7 +15,7 @@
 #include "../support/measuring.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/planner/flight_search.hpp"
-#include "downwash/planner/leg_table.hpp"
+#include "downwash/planner/order_comparison.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -30,8 +30,8 @@ struct Options {
     std::string problem;
     unsigned scenes = 20;
     std::size_t targets = 8;
-    double limit_s = 10;
-    double leg_limit_s = 0.1;
+    std::uint64_t iterations = 20000;
+    std::uint64_t leg_iterations = 200;
     int threads = 2;
     unsigned seed = 1;
 };
@@ -80,40 +80,50 @@ Problem random_scene(const Options& options, unsigned seed) {
             problem.targets.push_back(target);
         }
     }
-    problem.planner.time_limit_s = options.limit_s;
-    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s.reset();
+    problem.planner.max_iterations = options.iterations;
     problem.uncertainty.reset();
     return problem;
 }
 
-/// What every leg costs in a flight of its own.
-LegCosts flown_costs(const Problem& problem, const Options& options) {
+/// Orders by the same flown legs: that which the planner chooses, and all that there are.
+struct Orders {
+    PlaceOrder chosen;
+    LegCosts costs;          ///< of all legs, those that the planner flew the same
+    std::uint64_t legs = 0;  ///< that it flew
+};
+
+Orders orders_of(const Problem& problem, const Options& options) {
     const auto model = make_flight_model(problem);
     const auto map = problem.aero.enabled ? model->make_map(problem.bounds, options.threads) : nullptr;
     SolveOptions how;
     how.threads = options.threads;
-    planning::LegTable table(problem, *model, map.get(), how,
-                             [&](const Problem& leg, const SolveOptions& of_leg, const planning::Course& before,
-                                 Solution& into) {
-                                 static_cast<void>(planning::search_flights(leg, leg, *model, map.get(), before,
-                                                                            nullptr, of_leg, into));
-                             });
+    planning::LegTable table(
+        problem, *model, map.get(), how,
+        [&](const Problem& leg, const SolveOptions& of_leg, const planning::Course& before, Solution& into) {
+            static_cast<void>(planning::search_flights(leg, leg, *model, map.get(), before, nullptr, of_leg, into));
+        });
+    planning::OrderComparison comparison(table, [] { return false; });
     PlannerSettings settings;
-    settings.time_limit_s = options.leg_limit_s;
-    const planning::SearchBudget budget(settings);
-    const std::size_t outside = table.estimates().outside();
+    settings.max_iterations = options.leg_iterations * options.targets * 6;
     SearchRecord work;
-    for (std::size_t to = 0; to < outside; ++to) {
-        for (int i = 0; i < 4 && !table.fly(outside, to, budget, work); ++i) {
-        }
-    }
-    for (std::size_t from = 0; from < outside; ++from) {
-        for (std::size_t to = 0; to < outside; ++to) {
-            for (int i = 0; i < 4 && !table.is_flown(from, to) && !table.fly(from, to, budget, work); ++i) {
+    comparison.compare(planning::SearchBudget(settings), work);
+    Orders orders{comparison.chosen(), table.flown_costs(), table.legs_flown()};
+    settings.max_iterations = options.leg_iterations;
+    const planning::SearchBudget of_leg(settings);
+    const std::size_t outside = table.estimates().outside();
+    for (const bool has_hovers : {false, true}) {
+        for (std::size_t from = has_hovers ? 0 : outside; from <= outside; ++from) {
+            for (std::size_t to = 0; to < outside; ++to) {
+                for (int i = 0; i < 2 && std::isinf(orders.costs.leg(from, to).cost) && !table.is_known(from, to) &&
+                                !table.fly(from, to, of_leg, work);
+                     ++i) {
+                }
             }
         }
     }
-    return table.flown_costs();
+    orders.costs = table.flown_costs();
+    return orders;
 }
 
 /// The executed cost of the flight in an order; empty without one.
@@ -148,20 +158,17 @@ Row measured(const Problem& problem, const Options& options, unsigned scene) {
     Row row;
     row.scene = scene;
     const Solution solution = solve(problem, how);
-    std::vector<std::size_t> chosen;
-    for (const Visit& visit : solution.order->visits) {
-        chosen.push_back(visit.target);
-    }
-    row.legs = solution.order->legs;
     if (solution.status == Status::solved) {
         row.chosen = solution.execution_cost;
     }
-    const LegCosts costs = flown_costs(problem, options);
+    const Orders orders = orders_of(problem, options);
+    const LegCosts& costs = orders.costs;
     const PlaceOrder exact = planning::best_order(costs);
     const PlaceOrder nearest = planning::nearest_first(costs);
     std::vector<std::size_t> given(options.targets);
     std::iota(given.begin(), given.end(), 0);
-    row.legs_chosen = planning::order_of(costs, chosen).cost;
+    row.legs_chosen = planning::order_of(costs, orders.chosen.places).cost;
+    row.legs = orders.legs;
     row.legs_exact = exact.cost;
     row.legs_nearest = nearest.cost;
     row.legs_given = planning::order_of(costs, given).cost;
@@ -174,16 +181,16 @@ Row measured(const Problem& problem, const Options& options, unsigned scene) {
 void print(const std::vector<Row>& rows, const Options& options) {
     fmt::print(
         "# Targets in any order\n\nCommit {}, g++ {}, {}, {} threads, seed {}. `bench/order.sh` writes this page.\n\n"
-        "{} random scenes with six blocks and {} targets, everything as believed, objective energy, {:g} s a search. The exact order is the "
-        "cheapest of all by a matrix of\nlegs that were flown one by one, each for up to {:g} s after the search; "
-        "nearest-first goes by the same matrix. *By legs*: cost of the chosen order by\nthat matrix over the cost of "
-        "another one. *Executed*: cost of the executed flight over that of the flight in the other order, which the "
-        "planner\nwas given as a list, with the same time and seed. Below 1 the chosen order is cheaper. `legs`: flown "
-        "to choose the order, of {} that there are.\n\n"
+        "{} random scenes with six blocks and {} targets, everything as believed, objective energy, {} iterations a "
+        "search.\n*By legs*: the planner's comparison flies the legs that it needs, at first for up to {} iterations; "
+        "then all others of the {} are flown for as\nlong. The cost of the order that it chose by these legs is divided "
+        "by that of the cheapest of all orders (exact), of nearest-first and of the given\norder. *Executed*: the cost "
+        "of the executed flight of `in_any_order`, divided by that of the flight in the other order, which the planner "
+        "was given as\na list, with as many iterations and the same seed. Below 1 the chosen order is cheaper.\n\n"
         "| scene | legs | by legs: exact | nearest-first | given | executed: exact | nearest-first | given |\n"
         "|---|---|---|---|---|---|---|---|\n",
         source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.threads, options.seed, options.scenes,
-        options.targets, options.limit_s, options.leg_limit_s, options.targets * options.targets);
+        options.targets, options.iterations, options.leg_iterations, options.targets * options.targets);
     double worst = 0, worst_executed = 0, worst_nearest = 0;
     int failures = 0, dearer_than_nearest = 0;
     for (const Row& row : rows) {
@@ -216,7 +223,7 @@ int main(int argc, char** argv) {
     app.add_option("problem", options.problem, "problem file of which robot and settings are taken")->required();
     app.add_option("--scenes", options.scenes, "random scenes")->check(CLI::PositiveNumber);
     app.add_option("--targets", options.targets, "targets in each")->check(CLI::Range(1, 10));
-    app.add_option("--time-limit", options.limit_s, "of every search [s]")->check(CLI::PositiveNumber);
+    app.add_option("--iterations", options.iterations, "of every search")->check(CLI::PositiveNumber);
     app.add_option("--threads", options.threads, "of every search")->check(CLI::PositiveNumber);
     app.add_option("--seed", options.seed, "of the first scene");
     return run_program(app, argc, argv, [&options] {
