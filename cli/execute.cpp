@@ -134,7 +134,7 @@ ExitCode run(const ExecuteArguments& given) {
     require_whole_plan(given.plan);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
-    RunFolder folder(folder_for(given, read), read, given.problem, given.force);
+    RunFolder folder = claimed_folder(folder_for(given, read), read, given.problem, given.force);
     const bool is_other = is_of_another_problem(plan_file(given.plan), solution, read);
     if (is_other) {
         solution.certificate.reset();
@@ -152,7 +152,7 @@ ExitCode run(const ExecuteArguments& given) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
     interruption.expect_results();
-    const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
+    const RunRecord record = folder.write(read, given.problem, warnings, solution);
     write_page(folder.path(), record, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
                                    : summary_of(verdict_on_flight(*solution.execution), read, solution, folder.path()));

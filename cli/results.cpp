@@ -4,21 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <vector>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/run_folder.hpp"
 
 namespace downwash::cli {
 namespace {
-
-/// A flight that was not flown, for the header of its file.
-Execution no_flight(const Robot& robot) {
-    Execution execution;
-    execution.rotor_count = static_cast<int>(robot.rotors.positions_m.size());
-    execution.has_rotor_lag = robot.rotors.time_constant_s > 0;
-    return execution;
-}
 
 /// A line of a table with two columns.
 std::string row(std::string_view name, const std::string& value) {
@@ -102,6 +96,14 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     text += row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += row("goal error", millimetres(flight.goal_error_m));
+    if (flight.touch) {
+        const TouchRecord& touch = *flight.touch;
+        text += row("contact",
+                    touch.touched_s > 0
+                        ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
+                                      touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
+                        : "none: the surface was not found");
+    }
     if (flight.goals.size() > 1) {
         const auto met =
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
@@ -122,22 +124,6 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
 std::filesystem::path default_folder(const Problem& problem) {
     return std::filesystem::path("downwash-out") /
            fmt::format("{}-{}-{}", problem.name, name_of(problem.planner.variant), problem.planner.seed);
-}
-
-RunRecord write_results(RunFolder& folder, const Problem& problem, const std::string& problem_file,
-                        const std::vector<LocatedError>& warnings, const Solution& solution) {
-    const Execution flight = solution.execution.value_or(no_flight(problem.robot));
-    RunRecord record = run_record(problem, solution, flight);
-    NamedTexts files = run_files(problem, problem_file, solution, flight, folder.path(), warnings);
-    folder.write(files);
-    for (auto& [name, content] : files) {
-        if (name == "effective.yaml") {
-            record.problem_text = std::move(content);
-        } else if (name == "solution.json") {
-            record.solution_text = std::move(content);
-        }
-    }
-    return record;
 }
 
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include "downwash/base/whole_folder.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/results/run_folder.hpp"
 #include "downwash/results/run_record.hpp"
 
 namespace CLI {
@@ -14,30 +14,12 @@ class App;
 
 namespace downwash::cli {
 
-/// The page in the folder of a run.
-inline constexpr char run_page_name[] = "report.html";
-
 /// Adds --force.
 void add_force(CLI::App& command, bool& force);
 
-/// The folder for the results of a run. They appear as one; see WholeFolder.
-class RunFolder {
- public:
-    /// Claims the folder before anything is computed.
-    /// @param problem_file as the user gave it   @param force whether anything that is there may be replaced
-    /// @throws UsageError if it cannot be written, another process is going to write it, or it holds a run of another
-    /// problem: one from another file, and with another digest
-    RunFolder(std::filesystem::path path, const Problem& problem, const std::string& problem_file, bool force);
-
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-
-    /// Replaces the run in the folder, its page included. @throws FolderError
-    void write(const NamedTexts& files) { whole_.write(files); }
-
- private:
-    std::filesystem::path path_;
-    WholeFolder whole_;
-};
+/// The folder for the results of a run. @throws UsageError with remedies if RunFolder cannot be made
+[[nodiscard]] RunFolder claimed_folder(const std::filesystem::path& path, const Problem& problem,
+                                       const std::string& problem_file, bool force);
 
 /// A file from which others are made, as it was read.
 struct SourceFile {

@@ -76,7 +76,7 @@ ExitCode run(const SolveArguments& given) {
     const Problem& read = plannable.problem;
     const std::filesystem::path out = given.out ? std::filesystem::path(*given.out) : default_folder(read);
     require_readable_again(read, out);
-    RunFolder folder(out, read, given.problem, given.force);
+    RunFolder folder = claimed_folder(out, read, given.problem, given.force);
 
     SolveOptions options;
     options.threads = given.threads;
@@ -93,7 +93,7 @@ ExitCode run(const SolveArguments& given) {
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }
-    const RunRecord record = write_results(folder, read, given.problem, warnings, solution);
+    const RunRecord record = folder.write(read, given.problem, warnings, solution);
     if (solution.map != nullptr || !solution.interrupted) {  // without a map there was no search to be shown yet
         write_page(folder.path(), record, given.threads);
     }

@@ -27,6 +27,7 @@ fitting:     base effects
 exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
 report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
 studies:     base scene dynamics effects grids aeromap controllers simulation problems search planner results report
+python:      base scene dynamics effects grids aeromap controllers simulation problems search planner results judge fitting exports report studies
 cli:         *
 bench:       *
 docs:        *
@@ -41,7 +42,7 @@ one_library='search rivals planner ompl'
 # and the random numbers of worlds, and nothing else.
 judge_may='controllers/plan.hpp controllers/configuration.hpp controllers/reference_point.hpp dynamics/plant.hpp
 dynamics/plant_model.hpp scene/planar_pose.hpp scene/plane_of_motion.hpp scene/shapes.hpp simulation/flight_model.hpp
-simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/uncertainty.hpp simulation/world.hpp results/claims.hpp'
+simulation/contact_goal.hpp simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/uncertainty.hpp simulation/world.hpp results/claims.hpp'
 
 # The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
 private_headers() {
@@ -88,7 +89,7 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
         module = FILENAME
         sub(/\/.*/, "", module)
         everything = (module, "*") in may
-        shown = FILENAME ~ /\.hpp$/ && !(FILENAME in kept) && !everything
+        shown = FILENAME ~ /\.hpp$/ && !(FILENAME in kept) && !everything && module != "python" # which installs no header
         if (!(module in known)) error("the folder \"" module "\" has no place in the layering; give it one in cmake/check_layers.sh")
     }
     /^[ \t]*#[ \t]*include[ \t]*[<"]/ {

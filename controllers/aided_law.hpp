@@ -94,6 +94,22 @@ struct Aided {
         return memory;
     }
 
+    /// A memory whose integrals stand still. The observer goes on: see hold_estimate().
+    template <class T>
+    [[nodiscard]] static Memory<T> with_integrals_of(const Memory<T>& before, Memory<T> now) {
+        now.loops = Law::with_integrals_of(before.loops, now.loops);
+        return now;
+    }
+
+    /// Lets the observer estimate at the next tick what it estimated at this one, whatever pushes in between.
+    /// @param before memory of this tick   @param change of the nominal momentum over the tick
+    template <class T>
+    void hold_estimate(const Memory<T>& before, const T change[4], double tick_s, Memory<T>& now) const {
+        if (law.aids.observer) {
+            controllers::hold_estimate(*law.aids.observer, tick_s, change, before.observed, now.observed);
+        }
+    }
+
     /// One control step: that of the law. @param map see read_ratios()
     template <class T, class Map>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,

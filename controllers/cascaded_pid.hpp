@@ -69,6 +69,21 @@ struct CascadedPid {
         T previous_pitch_rate;   ///< [rad/s]
     };
 
+    /// A memory whose integrals stand still, as those of a vehicle that touches something.
+    template <class T>
+    [[nodiscard]] static Memory<T> with_integrals_of(const Memory<T>& before, Memory<T> now) {
+        now.velocity_integral[0] = before.velocity_integral[0];
+        now.velocity_integral[1] = before.velocity_integral[1];
+        now.rate_integral = before.rate_integral;
+        now.joint_integral = before.joint_integral;
+        return now;
+    }
+
+    /// What the law answers to an error of the position along x (axis 0) or z (1) [1/s2].
+    [[nodiscard]] double position_stiffness_1_s2(int axis) const {
+        return axis_gains(axis).position_kp * axis_gains(axis).velocity_kp;
+    }
+
     /// The memory of a vehicle that has hovered like this in free air: the integrals carry the weight of its arm.
     template <class T>
     [[nodiscard]] Memory<T> rested(const PlantModel& nominal, const dynamics::PlantState<T>& state) const {

@@ -83,4 +83,15 @@ void start_observing(const DisturbanceObserver& observer, double tick_s, const P
     }
 }
 
+/// The memory with which the estimate stands still over a tick. It is made from what the tick before remembered, not
+/// from what the law saw: noise does not add up.
+/// @param change of the nominal momentum over the tick   @param before memory at its start
+template <class T>
+void hold_estimate(const DisturbanceObserver& observer, double tick_s, const T change[4], const T before[4],
+                   T kept[4]) {
+    for (int i = 0; i < 4; ++i) {
+        kept[i] = before[i] - T(observed_share(observer.gain_1_s, tick_s) / tick_s) * change[i];
+    }
+}
+
 }  // namespace downwash::controllers

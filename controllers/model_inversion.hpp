@@ -66,6 +66,19 @@ struct ModelInversion {
         T rate_reference;        ///< u5_ref of the previous tick [rad/s]
     };
 
+    /// A memory whose integrals stand still, as those of a vehicle that touches something.
+    template <class T>
+    [[nodiscard]] static Memory<T> with_integrals_of(const Memory<T>& before, Memory<T> now) {
+        now.position_integral[0] = before.position_integral[0];
+        now.position_integral[1] = before.position_integral[1];
+        now.pitch_rate_integral = before.pitch_rate_integral;
+        now.arm_integral = before.arm_integral;
+        return now;
+    }
+
+    /// What the law answers to an error of the position along x (axis 0) or z (1) [1/s2].
+    [[nodiscard]] double position_stiffness_1_s2(int axis) const { return axis_gains(axis).kp; }
+
     /// What comes of one control step before any limit.
     template <class T>
     struct Step {

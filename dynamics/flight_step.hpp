@@ -140,7 +140,7 @@ T rotor_power(const Model& model, const T thrust_n[max_rotors]) {
 /// du/dt of the plant under the free-air thrusts of its rotors.
 /// @param q,u coordinates [m, m, rad, rad] and their speeds   @param motion at q and u: motion_at(model, q, u)
 /// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench(); there is drag only where it
-/// says how fast the air is, by `wind()` [m/s]
+/// says how fast the air is, by `wind()` [m/s], and other forces only where it adds them, by `add_load()`
 /// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
 template <class T, class Factor, class P>
 void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], const Motion<T>& motion,
@@ -156,6 +156,9 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
         if (model.has_drag) {
             add_drag(model, a, u, factor.wind(), force);
         }
+    }
+    if constexpr (requires { factor.add_load(q, u, a, force); }) {
+        factor.add_load(q, u, a, force);
     }
     forward_dynamics(model, motion.equations, force, du);
 }

@@ -307,6 +307,16 @@ ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
     return rotors;
 }
 
+void ControlLaw::stand_still(const ControlMemory& before, const Motion& from, const Motion& to,
+                             ControlMemory& memory) const {
+    memory.position_integral = before.position_integral;
+    memory.pitch_rate_integral = before.pitch_rate_integral;
+    memory.arm_integral = before.arm_integral;
+    memory.velocity_integral = before.velocity_integral;
+    memory.joint_integral = before.joint_integral;
+    memory.observed = observer_.held(before.observed, from, to);
+}
+
 Command ControlLaw::command(const Motion& seen, const std::array<double, max_rotors>& rotor_n,
                             const ReferencePoint& reference, const Surroundings& believed,
                             ControlMemory& memory) const {

@@ -51,6 +51,10 @@ class ControlLaw {
                                                   const ReferencePoint& reference, const Surroundings& believed,
                                                   ControlMemory& memory) const;
 
+    /// Lets integrals and the observer stand still over a tick, as those of a vehicle that touches something.
+    /// @param before memory of before the tick   @param from,to motion at its ends, about the point of the robot file
+    void stand_still(const ControlMemory& before, const Motion& from, const Motion& to, ControlMemory& memory) const;
+
  private:
     struct Inversion;
     struct Demand;

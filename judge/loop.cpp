@@ -25,7 +25,7 @@ Loop::Loop(const ControlLaw& law, const Surroundings& believed, const Plant& pla
            const Robot& robot, const PlantState& state, const ControlMemory& memory)
     : law_(law),
       believed_(believed),
-      plant_(plant),
+      plant_(&plant),
       world_(world),
       sensors_(world, robot, of_file_point(plant.vehicle(), state.motion)),
       gusts_(world, law.tick_s()),
@@ -33,22 +33,26 @@ Loop::Loop(const ControlLaw& law, const Surroundings& believed, const Plant& pla
       memory_(memory) {}
 
 Motion Loop::motion() const {
-    return of_file_point(plant_.vehicle(), state_.motion);
+    return of_file_point(plant_->vehicle(), state_.motion);
 }
 
 void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
     const Tape tape = tape_at(world_, tick);
     const Motion now = motion();
     before_ = state_;
+    const ControlMemory memory_before = memory_;
     command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, believed_, memory_);
     wind_ = gusts_.wind();
-    state_ = plant_.after(state_, command_, wind_, law_.tick_s());
+    state_ = plant_->after(state_, command_, wind_, law_.tick_s());
+    if (state_.contact_n > 0) {
+        law_.stand_still(memory_before, now, motion(), memory_);
+    }
     sensors_.remember(now);
     gusts_.next(tape);
 }
 
 Motion Loop::motion_within(double since_s) const {
-    return of_file_point(plant_.vehicle(), plant_.after(before_, command_, wind_, since_s).motion);
+    return of_file_point(plant_->vehicle(), plant_->after(before_, command_, wind_, since_s).motion);
 }
 
 Motion motion_of(const Start& s) {

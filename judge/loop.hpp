@@ -20,6 +20,10 @@ class Loop {
     /// Of the point of the robot file.
     [[nodiscard]] Motion motion() const;
 
+    /// Another plant from here on: one that touches something. @pre it outlives the loop
+    void fly_with(const Plant& plant) noexcept { plant_ = &plant; }
+    [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
+
     /// Goes on by a tick. @param tick from the start of the flight
     void next(std::int64_t tick, const ReferencePoint& reference);
 
@@ -29,7 +33,7 @@ class Loop {
  private:
     const ControlLaw& law_;
     const Surroundings& believed_;
-    const Plant& plant_;
+    const Plant* plant_;
     const World& world_;
     Sensors sensors_;
     Gusts gusts_;

@@ -91,4 +91,13 @@ void Observer::expect(const Motion& seen, double thrust_n, double pitch_torque_n
     }
 }
 
+ObserverMemory Observer::held(ObserverMemory memory, const Motion& from, const Motion& to) const {
+    const Four start = momentum_of(believed_, from);
+    const Four end = momentum_of(believed_, to);
+    for (std::size_t i = 0; i < 4; ++i) {
+        memory.expected_momentum[i] += end[i] - start[i];
+    }
+    return memory;
+}
+
 }  // namespace downwash::judge

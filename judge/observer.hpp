@@ -37,6 +37,9 @@ class Observer {
     /// @param thrust_n,pitch_torque_nm that are believed to act in mid-tick
     void expect(const Motion& seen, double thrust_n, double pitch_torque_nm, double joint_torque_nm,
                 ObserverMemory& memory) const;
+    /// The memory with which the next look finds what the last one found, whatever pushed in between.
+    /// @param memory of before the last look   @param from,to motion at both ends of the tick
+    [[nodiscard]] ObserverMemory held(ObserverMemory memory, const Motion& from, const Motion& to) const;
 
  private:
     Vehicle believed_;

@@ -7,6 +7,7 @@
 #include "downwash/judge/loop.hpp"
 #include "downwash/judge/obstacles.hpp"
 #include "downwash/judge/reference.hpp"
+#include "downwash/judge/touching.hpp"
 #include "downwash/judge/umpire.hpp"
 #include "downwash/problems/problem_model.hpp"
 
@@ -18,6 +19,22 @@ constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unst
 
 /// Of a vehicle in a world, docs/model.md 9.
 constexpr double hover_before_start_s = 20;
+
+/// The alternative at which a plan ends, if a touch follows there.
+const Goal* touching_goal(const Goal& goal, const Plan& plan, const Problem& problem) {
+    const ReferencePoint& last = plan.reference.back().point;
+    const PlanarPose level{last.position[0], last.position[1], 0, last.position[2]};
+    const Goal* nearest = nullptr;
+    double least = 0;
+    for (const Goal& each : goal.any_of) {
+        const double share = goal_distance(each, problem.robot.arm, level).used_share;
+        if (each.touch && (nearest == nullptr || share < least)) {
+            nearest = &each;
+            least = share;
+        }
+    }
+    return nearest;
+}
 
 }  // namespace
 
@@ -102,7 +119,25 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         now = reference.at(tick + 1);
         goes_on = umpire.sees(loop, now);
     }
-    umpire.sees_goals(goals, hovers);
+    std::vector<std::int64_t> ends = hovers;
+    const Goal* const touching =
+        goes_on && hovers.size() == goals.size() ? touching_goal(goals.back(), plan, problem) : nullptr;
+    if (touching != nullptr) {
+        const TouchSurface surface(*touching->touch, world);
+        const Plant touched(vehicle, surroundings, &surface);
+        loop.fly_with(touched);
+        TouchCourse course(*touching->touch, now, problem.robot);
+        std::int64_t tick = end;
+        for (; goes_on && !course.is_over(); ++tick) {
+            loop.next(tick, course.reference());
+            course.next(loop.state().contact_n);
+            goes_on = umpire.sees_touch(loop, course.reference(), surface);
+        }
+        umpire.sees_hold(*touching->touch, course.hold());
+        umpire.sees_goals(goals, hovers);
+        ends.back() = tick;  // back where it touched from
+    }
+    umpire.sees_goals(goals, ends);
     return flight;
 }
 

@@ -41,7 +41,8 @@ struct JudgedFlight {
     double clearance_integral = 0;  ///< [s/m]
     double goal_error_m = 0;        ///< worst of all goals over the last second of its hover
     double max_tracking_error_m = 0;
-    std::vector<JudgedRow> rows;  ///< one per control tick
+    std::optional<double> touch_force_n;  ///< mean normal force over the hold of a touch; 0 if it was not held
+    std::vector<JudgedRow> rows;          ///< one per control tick
 
     /// By an objective.
     [[nodiscard]] double cost(const CostFunction& objective) const noexcept {

@@ -9,9 +9,9 @@ namespace downwash::judge {
 namespace {
 
 constexpr double tolerance = 1e-8;
-constexpr std::size_t first_thrust = 9;
+constexpr std::size_t first_thrust = 10;
 
-/// x, z, pitch, arm; their rates; energy; thrusts.
+/// x, z, pitch, arm; their rates; energy; normal impulse of a surface; thrusts.
 using Numbers = std::array<double, first_thrust + max_rotors>;
 
 Motion motion_of(const Numbers& y) {
@@ -20,8 +20,8 @@ Motion motion_of(const Numbers& y) {
 
 Numbers numbers_of(const PlantState& state) {
     const Motion& m = state.motion;
-    Numbers y{m.position_m.x,   m.position_m.z,     m.pitch_rad,      m.arm_rad,     m.velocity_m_s.x,
-              m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s, state.energy_j};
+    Numbers y{m.position_m.x,   m.position_m.z,     m.pitch_rad,      m.arm_rad,      m.velocity_m_s.x,
+              m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s, state.energy_j, 0};
     std::copy(state.thrust_n.begin(), state.thrust_n.end(), y.begin() + first_thrust);
     return y;
 }
@@ -38,7 +38,7 @@ double rotor_power_w(const Vehicle& vehicle, const std::array<double, max_rotors
 }
 
 Acceleration Plant::acceleration(const Motion& motion, const std::array<double, max_rotors>& thrust_n,
-                                 double joint_torque_nm, Planar wind_m_s) const {
+                                 double joint_torque_nm, Planar wind_m_s, double* contact_n) const {
     const Planar up = from_body({0, 1}, motion.pitch_rad);  // b3
     Loads loads;
     loads.joint_torque_nm = joint_torque_nm;
@@ -61,6 +61,10 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
     loads.body_force_n = loads.body_force_n + Planar{wall.force_x_n, 0};
     loads.body_moment_nm += wall.moment_nm;
     add_drag(vehicle_, motion, wind_m_s, loads);
+    const double normal_n = touched_ != nullptr ? touched_->push(vehicle_, motion, loads) : 0;
+    if (contact_n != nullptr) {
+        *contact_n = normal_n;
+    }
     return acceleration_of(vehicle_, motion, loads);
 }
 
@@ -77,7 +81,7 @@ PlantState Plant::after(const PlantState& state, const Command& command, Planar 
                 dy[first_thrust + i] = (command.thrust_n[i] - thrust_n[i]) / vehicle_.rotor_time_constant_s;
             }
         }
-        const Acceleration a = acceleration(motion, thrust_n, command.joint_torque_nm, wind_m_s);
+        const Acceleration a = acceleration(motion, thrust_n, command.joint_torque_nm, wind_m_s, &dy[9]);
         std::copy_n(y.begin() + 4, 4, dy.begin());
         dy[4] = a.position_m_s2.x;
         dy[5] = a.position_m_s2.z;
@@ -91,6 +95,7 @@ PlantState Plant::after(const PlantState& state, const Command& command, Planar 
     PlantState next;
     next.motion = motion_of(y);
     next.energy_j = y[8];
+    next.contact_n = y[9] / duration_s;
     if (has_lag) {
         std::copy(y.begin() + first_thrust, y.end(), next.thrust_n.begin());
     } else {

@@ -88,6 +88,41 @@ bool Umpire::sees(const Loop& loop, const ReferencePoint& reference) {
     return flight_.outcome == Outcome::ok;
 }
 
+bool Umpire::sees_touch(const Loop& loop, const ReferencePoint& reference, const TouchSurface& surface) {
+    constexpr double max_depth_m = 0.002;
+    constexpr double air_m = 5e-4;
+    const Motion motion = loop.motion();
+    if (!is_usable(motion) || !(loop.state().energy_j <= max_number)) {
+        flight_.outcome = Outcome::unstable;
+        return false;
+    }
+    const double depth_m = surface.depth_m(loop.plant().vehicle(), loop.state().motion);
+    const double back_m = std::max(0.0, depth_m + air_m);
+    PlanarPose beside = among_obstacles(motion);
+    beside.x_m += back_m * surface.touch().normal.x;
+    beside.z_m += back_m * surface.touch().normal.z;
+    const double before_m = flight_.min_clearance_m;
+    add_row(motion, reference, obstacles_.clearance_m(among_obstacles(motion)), loop.state().energy_j);
+    flight_.min_clearance_m = before_m;  // the touch does not count
+    if (!is_stable(motion, reference)) {
+        flight_.outcome = Outcome::unstable;
+    } else if (depth_m > max_depth_m || obstacles_.clearance_m(beside) <= 0) {
+        flight_.outcome = Outcome::collision;
+        flight_.min_clearance_m = 0;
+    } else if (!is_flyable(motion)) {
+        flight_.outcome = Outcome::left_flyable_area;
+    }
+    is_apart_ = depth_m < 0;
+    return flight_.outcome == Outcome::ok;
+}
+
+void Umpire::sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold) {
+    flight_.touch_force_n = hold ? hold->mean_n : 0;
+    if (flight_.outcome == Outcome::ok && !(hold && hold->worst_second_n <= touch.force_tolerance_n && is_apart_)) {
+        flight_.outcome = Outcome::goal_missed;
+    }
+}
+
 void Umpire::sees_goals(const std::vector<Goal>& goals, const std::vector<std::int64_t>& ends) {
     const auto ticks = static_cast<std::int64_t>(flight_.rows.size());
     const std::int64_t settling = std::llround(settling_s / tick_s_);

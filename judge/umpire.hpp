@@ -24,6 +24,12 @@ class Umpire {
     /// Looks at the vehicle at a tick; false if the flight ends here.
     bool sees(const Loop& loop, const ReferencePoint& reference);
 
+    /// Looks at a vehicle that may touch a surface with the part that is meant to.
+    bool sees_touch(const Loop& loop, const ReferencePoint& reference, const TouchSurface& surface);
+
+    /// Says how a touch ended. @param hold empty: the force was not held
+    void sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold);
+
     /// Goes through the goals at the end of a flight.
     void sees_goals(const std::vector<Goal>& goals, const std::vector<std::int64_t>& ends);
 
@@ -60,6 +66,7 @@ class Umpire {
     double tick_s_;
     JudgedFlight& flight_;
     Motion last_;
+    bool is_apart_ = false;  ///< from a surface that is touched
 };
 
 }  // namespace downwash::judge

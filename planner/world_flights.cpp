@@ -5,8 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/touch.hpp"
 
 namespace downwash {
 namespace {
@@ -163,7 +165,34 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
             min_clearance_m(jobs[i]),
             misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers)};
     }
+    if (visits == goals_.size() && !misses_a_goal) {
+        touch(jobs, held, world_of, flights, is_over);
+    }
     return flights;
+}
+
+void WorldFlights::touch(const std::vector<FlightJob>& jobs, const Plan& held, const std::vector<std::size_t>& world_of,
+                         std::vector<WorldFlight>& flights, const StopCondition& is_over) {
+    const ReferenceKnot& last = held.reference.back();
+    const PlantModel& plant = model_->tick().plant;
+    const Touch* const touch = touch_at(goals_.back(), plant, level_at(configuration_of(last.point)));
+    if (touch == nullptr) {
+        return;
+    }
+    run_parallel(jobs.size(), threads_, [&](std::size_t i) {
+        WorldFlight& flight = flights[world_of[i]];
+        if (flight.rejection != Rejection::none || (is_over && is_over())) {
+            return;
+        }
+        FlightState state = jobs[i].end();
+        flight.rejection =
+            fly_touch(*model_, map_.get(), *touch, last.point, state, {jobs[i].world, last.tick}).rejection;
+        if (flight.rejection == Rejection::none && !meets_goal(goals_.back(), plant, state)) {
+            flight.rejection = Rejection::goal_missed;
+        }
+        flight.goal = flight.rejection == Rejection::none ? flight.goal : goals_.size() - 1;
+    });
+    throw_if_over(is_over);
 }
 
 }  // namespace downwash

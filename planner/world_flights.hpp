@@ -54,6 +54,11 @@ class DOWNWASH_EXPORT WorldFlights {
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
 
  private:
+    /// How flights that hover where the last goal has its touch go on, and end.
+    /// @param jobs flown up to that hover   @param flights,world_of of each job; what comes of the touch is entered
+    void touch(const std::vector<FlightJob>& jobs, const Plan& held, const std::vector<std::size_t>& world_of,
+               std::vector<WorldFlight>& flights, const StopCondition& is_over);
+
     /// The pool of flights to a goal, made when first needed.
     FlightPool& pool(std::size_t goal);
 

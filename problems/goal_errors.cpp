@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/goal_reach.hpp"
+#include "downwash/problems/touch_places.hpp"
 
 namespace downwash {
 namespace {
@@ -47,6 +49,9 @@ void for_each_goal(const Problem& p, const Visit& visit) {
     }
     for (std::size_t i = 0; i < p.stops.size(); ++i) {
         visit(p.stops[i], name("goal", i));
+    }
+    if (p.goal.contact) {  // its alternatives stand in no file
+        return;
     }
     if (!p.stops.empty()) {
         visit(p.goal, name("goal", p.stops.size()));
@@ -91,13 +96,16 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
     }
     for (std::size_t i = 0; i < p.targets.size(); ++i) {
         const Goal& target = p.targets[i];
+        const std::string key = "goal.in_any_order[" + std::to_string(i) + "]";
         if (!target.any_of.empty() && (target.end_effector || target.configuration)) {
-            errors.push_back({"goal.in_any_order[" + std::to_string(i) + "]",
-                              "needs exactly one of end_effector, configuration or any_of"});
+            errors.push_back({key, "needs exactly one of end_effector, configuration or any_of"});
         }
     }
-    if (may_choose && !p.goal.any_of.empty() && (p.goal.end_effector || p.goal.configuration)) {
-        errors.push_back({"goal", "needs exactly one of end_effector, configuration or any_of"});
+    if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && (p.goal.end_effector || p.goal.configuration)) {
+        errors.push_back({"goal", "needs exactly one of end_effector, configuration, any_of or contact"});
+    }
+    if (p.goal.contact && !(p.stops.empty() && p.targets.empty())) {
+        errors.push_back({"goal", "asks for contact as one of several goals: expected contact for the only goal"});
     }
     append(
         errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
@@ -236,7 +244,25 @@ std::vector<KeyError> end_effectors_out_of_reach(const ProblemCheck& check) {
     });
 }
 
-const std::array<Check<ProblemCheck>, 7> checks{{
+std::vector<KeyError> contacts_without_place(const ProblemCheck& check) {
+    const Problem& p = check.problem();
+    if (!p.goal.contact) {
+        return {};
+    }
+    std::vector<std::string_view> names;
+    for (const Obstacle& obstacle : p.obstacles) {
+        names.push_back(obstacle.name);
+    }
+    const std::string& wanted = p.goal.contact->obstacle;
+    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+        return {{"goal.contact.obstacle",
+                 "is '" + excerpt(wanted) + "': expected the name of an obstacle" + did_you_mean(wanted, names)}};
+    }
+    const std::string reason = find_touches(check).reason;
+    return reason.empty() ? std::vector<KeyError>() : std::vector<KeyError>{{"goal.contact", reason}};
+}
+
+const std::array<Check<ProblemCheck>, 8> checks{{
     {{"goal"}, too_many_goals},
     {{"goal"}, unclear_goals},
     {{"goal", "robot.controller"}, holds_beyond_longest_plan},
@@ -246,6 +272,7 @@ const std::array<Check<ProblemCheck>, 7> checks{{
      configurations_in_collision},
     {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
      end_effectors_out_of_reach},
+    {{"goal", "start", "environment", "robot", "aero", "planner.safety_margin_m"}, contacts_without_place},
 }};
 
 }  // namespace

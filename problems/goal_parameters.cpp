@@ -107,6 +107,64 @@ void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
     add_configuration(rows, path + ".configuration", goal);
 }
 
+/// A goal that asks for contact; only where it is the only one.
+void add_contact(Rows& rows) {
+    rows.push_back(parameters::optional_group<Problem>(
+                       "goal.contact", "a surface to touch and press on for hold_s, from where the robot fits best",
+                       [](auto& p, std::size_t) -> auto& { return p.goal.contact; })
+                       .is_exclusive());
+    const auto contact = [](auto& p, std::size_t) -> auto& {
+        return *p.goal.contact;
+    };
+    const auto length = [&](std::string_view name, std::string_view description, auto member) {
+        return parameters::number<Problem>("goal.contact." + std::string(name), description, member);
+    };
+    rows.push_back(
+        parameters::text<Problem>(
+            "goal.contact.obstacle",
+            "name of the obstacle", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).obstacle; })
+            .is_required());
+    rows.push_back(
+        length(
+            "force_n",
+            "normal force that is held", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_n; })
+            .above(0)
+            .at_most(1000)
+            .is_required());
+    rows.push_back(parameters::choice<Problem, TouchingPart>(
+        "goal.contact.part",
+        "what touches: the top of the multirotor, from below, or the end of the arm, along the arm",
+        {{TouchingPart::frame, "frame"}, {TouchingPart::end_effector, "end_effector"}},
+        [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).part; }));
+    rows.push_back(position(
+        "goal.contact.x_m",
+        "where on an underside or a top; null: anywhere", [contact](auto& p, std::size_t i) -> auto& {
+            return contact(p, i).x_m;
+        }));
+    rows.push_back(position(
+        "goal.contact.z_m",
+        "where on a side; null: anywhere", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).z_m; }));
+    rows.push_back(tolerance(
+        "goal.contact.tolerance_m", "of the place from which it touches",
+        100, [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).tolerance_m; }));
+    rows.push_back(length(
+                       "force_tolerance_n", "what the mean force of a second may be off by; null: a fifth of force_n",
+                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_tolerance_n; })
+                       .above(0)
+                       .at_most(1000));
+    rows.push_back(length(
+                       "standoff_m", "distance from the surface before and after",
+                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).standoff_m; })
+                       .above(0)
+                       .at_most(10));
+    rows.push_back(
+        length(
+            "speed_m_s",
+            "of approach and leaving", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).speed_m_s; })
+            .above(0)
+            .at_most(1));
+}
+
 template <class GoalMember>
 Parameter<Problem> hold(const std::string& path, GoalMember goal) {
     return parameters::number<Problem>(
@@ -137,11 +195,15 @@ Parameter<Problem> goal_group() {
 template <class GoalMember>
 void add_goal_or_choice(Rows& rows, const std::string& path, GoalMember goal) {
     add_kinds(rows, path, goal);
-    rows.push_back(
+    auto any_of =
         parameters::list<Problem>(
             path + ".any_of",
             "goals of which any will do", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).any_of; })
-            .is_exclusive());
+            .is_exclusive();
+    any_of.count = [goal](const Problem& p, std::size_t i) {
+        return goal(p, i).contact ? 0 : goal(p, i).any_of.size();
+    };
+    rows.push_back(std::move(any_of));
     const auto alternative = [goal](auto& p, std::size_t i) -> auto& {
         return goal(p, outer_element(i)).any_of[inner_element(i)];
     };
@@ -198,10 +260,11 @@ void add_goal_rows(Rows& rows) {
         return p.goal;
     };
     rows.push_back(goal_group());
+    add_contact(rows);
     add_goal_or_choice(rows, "goal", only);
     add_any_order(rows);
     rows.push_back(hold("goal", only).only("without any_of and in_any_order", [](const Problem& p, std::size_t) {
-        return p.goal.any_of.empty() && p.targets.empty();
+        return (p.goal.any_of.empty() || p.goal.contact) && p.targets.empty();
     }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {

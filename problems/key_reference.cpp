@@ -32,6 +32,7 @@ Problem with_everything<Problem>() {
     problem.goal.any_of = {problem.goal};
     problem.targets = {problem.goal};
     problem.return_to.emplace().configuration.emplace();
+    problem.goal.contact.emplace();
     problem.obstacles = {{"", Box{}, {}, {}},
                          {"", Cylinder{}, {}, {}},
                          {"", Sphere{}, {}, {}},

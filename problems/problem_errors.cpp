@@ -18,6 +18,7 @@
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/touch_places.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -371,7 +372,7 @@ PlannableProblem plannable(Problem problem) {
         throw InputError(std::move(errors));
     }
     auto model = model_of(check);
-    return {std::move(problem), std::move(model)};
+    return {with_touches(std::move(problem)), std::move(model)};
 }
 
 }  // namespace downwash

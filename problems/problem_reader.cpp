@@ -4,6 +4,7 @@
 
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/touch_places.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -39,6 +40,7 @@ ProblemCheck read_checked(ProblemTreeReader& reader, const std::filesystem::path
         reader.add(further_errors(check, reader.wrong_keys()));
     }
     throw_errors(reader);
+    reader.adjust([](Problem& problem) { problem = with_touches(std::move(problem)); });
     return check;
 }
 

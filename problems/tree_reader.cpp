@@ -52,6 +52,13 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
         }
         return;
     }
+    read_text(text, file, path);
+    file_ = referring_file;
+}
+
+/// Reads the text of a file as the group `path`.
+template <class Model>
+void TreeReader<Model>::read_text(const std::string& text, const std::filesystem::path& file, const std::string& path) {
     files_.push_back({file, path});
     file_ = files_.size() - 1;
     places_[path] = {file_, {}};
@@ -65,7 +72,6 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
     } catch (const YamlError& error) {
         report(path, error.mark, error.what());
     }
-    file_ = referring_file;
 }
 
 /// Under another schema every key could mean something else: nothing more is read then.
@@ -199,7 +205,9 @@ void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model
         return;
     }
     if (parameter.applies && !parameter.applies(model_, group.index)) {
-        report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        if (!leaves_out_inapplicable_) {
+            report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
+        }
         return;
     }
     switch (parameter.kind) {

@@ -24,6 +24,11 @@ class TreeReader {
     /// Reads a file, and those that it refers to. Errors are collected, never thrown.
     /// @param group key of the group that the file holds ("robot"); empty for the whole model
     void read(const std::filesystem::path& file, const std::string& group = "") { read_document(file, group, {}); }
+    /// The same from the text of a file of the whole model. @param file names it, and is what its paths are relative to
+    void read_text(const std::string& text, const std::filesystem::path& file) { read_text(text, file, ""); }
+
+    /// From now on leaves out keys that have no meaning beside the others, which are errors otherwise.
+    void leave_out_inapplicable() { leaves_out_inapplicable_ = true; }
 
     [[nodiscard]] const Model& model() const noexcept { return model_; }
     void adjust(const std::function<void(Model&)>& change) { change(model_); }
@@ -57,6 +62,7 @@ class TreeReader {
     };
 
     void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
+    void read_text(const std::string& text, const std::filesystem::path& file, const std::string& path);
     bool has_supported_schema(const YamlNode& root, const std::string& path);
     void read_keys(Group group);
     void find_entries(Group& group);
@@ -85,6 +91,7 @@ class TreeReader {
         std::string root;  ///< key of the group that the file is
     };
     std::vector<File> files_;
+    bool leaves_out_inapplicable_ = false;
     std::size_t file_ = 0;  ///< the one that is read now
     std::map<std::string, Place, std::less<>> places_;
     struct Found {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/report/figure_colors.hpp"
 #include "downwash/report/gnuplot.hpp"
 #include "downwash/report/picture_text.hpp"
 
@@ -63,7 +64,7 @@ GnuplotScript::GnuplotScript(const PictureSettings& settings, double height_px)
     }
     const double font_size = text_unit(settings.format) * font_px;
     add("set encoding utf8");
-    add("set terminal {} noenhanced font 'DejaVu Sans,{}' background '#ffffff'", terminal(settings, height_px_),
+    add("set terminal {} noenhanced font '{},{}' background '#ffffff'", terminal(settings, height_px_), figure_font,
         font_size);
     add("set border linewidth 1 linecolor rgb '#333333'");
     add("set tics nomirror out scale 0.5 textcolor rgb '#333333'");

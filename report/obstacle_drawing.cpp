@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "downwash/report/figure_colors.hpp"
 #include "downwash/report/picture_text.hpp"
 #include "downwash/report/planar_geometry.hpp"
 
@@ -15,8 +16,6 @@ namespace downwash {
 namespace {
 
 constexpr double label_height_px = 18;
-constexpr char obstacle_color[] = "'#6e6e6e'";
-constexpr char outline_color[] = "'#303030'";
 
 /// All rings as one closed line. The connections between rings run there and back and enclose nothing, so that holes,
 /// which run in the opposite sense, stay open.
@@ -136,14 +135,14 @@ void add_obstacles(Plot& plot, const std::vector<VisibleOutline>& outlines) {
         }
         if (!outlines[i].fill.empty()) {
             plot.add_fill(fmt::format("$fill{}", i),
-                          fmt::format("fillstyle solid noborder fillcolor rgb {}", obstacle_color),
+                          fmt::format("fillstyle solid noborder fillcolor rgb {}", in_quotes(obstacle_color)),
                           std::exchange(has_cut, true) ? "" : "obstacle");
         }
         // An octree with many cubes is drawn as one shape.
         constexpr std::size_t max_outlined = 30;
         plot.add_lines(edge, outline.rings.size() <= max_outlined
-                                 ? fmt::format("linewidth 1 linecolor rgb {}", outline_color)
-                                 : fmt::format("linewidth 0.5 linecolor rgb {}", obstacle_color));
+                                 ? fmt::format("linewidth 1 linecolor rgb {}", in_quotes(outline_color))
+                                 : fmt::format("linewidth 0.5 linecolor rgb {}", in_quotes(obstacle_color)));
     }
 }
 
@@ -230,11 +229,11 @@ void add_obstacle_names(GnuplotScript& script, const FieldFigure& figure, const 
         if (label.leader) {
             const auto& [from, to] = *label.leader;
             script.add("set arrow from {:.9g},{:.9g} to {:.9g},{:.9g} nohead front linecolor rgb {} linewidth 0.8",
-                       from.x_m, from.z_m, to.x_m, to.z_m, outline_color);
+                       from.x_m, from.z_m, to.x_m, to.z_m, in_quotes(outline_color));
         }
         script.add("set label {} at {:.9g},{:.9g} center front textcolor rgb {}", in_quotes(names[label.shape]),
                    (label.box.x_low_m + label.box.x_high_m) / 2, (label.box.z_low_m + label.box.z_high_m) / 2,
-                   label.is_inside ? "'#ffffff'" : outline_color);
+                   label.is_inside ? "'#ffffff'" : in_quotes(outline_color));
     }
 }
 

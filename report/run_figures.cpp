@@ -12,15 +12,13 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/report/factor_field.hpp"
+#include "downwash/report/figure_colors.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 
 namespace downwash {
 namespace {
 
 using Pieces = std::vector<Ring>;
-
-constexpr Color flown_color = color_of(0xd55e00), planned_color = color_of(0x555555),
-                end_effector_color = color_of(0x00805e), goal_color = color_of(0xa3397a);
 
 void require_flight(const RunRecord& run) {
     if (run.flight.rows() < 2) {

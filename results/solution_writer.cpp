@@ -145,6 +145,17 @@ Json execution_json(const Solution& solution) {
                       {"max_saturation", number(flight.max_saturation)},
                       {"goal_error_m", number(flight.goal_error_m)},
                       {"goals", std::move(goals)}};
+    if (flight.touch) {
+        const TouchRecord& touch = *flight.touch;
+        execution["contact"] = {{"met", touch.is_met},
+                                {"touched_s", touch.touched_s > 0 ? Json(touch.touched_s) : Json()},
+                                {"left_s", touch.left_s > 0 ? Json(touch.left_s) : Json()},
+                                {"force_n", number(touch.force_n)},
+                                {"force_error_n", number(touch.force_error_n)},
+                                {"peak_force_n", number(touch.peak_force_n)},
+                                {"max_depth_m", number(touch.max_depth_m)},
+                                {"power_w", number(touch.power_w)}};
+    }
     if (solution.execution_world) {
         execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};
     }

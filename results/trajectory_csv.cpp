@@ -23,7 +23,7 @@ std::string header(const Execution& execution) {
             names += rotor + "_lag_n";
         }
     }
-    return names;
+    return names + (execution.touch ? ",contact_force_n" : "");
 }
 constexpr std::size_t clearance_column = 19;
 
@@ -52,6 +52,9 @@ std::vector<double> numbers_of(const Execution& execution, const FlightRow& row)
         if (execution.has_rotor_lag) {
             numbers.push_back(row.rotor_lag_n[i]);
         }
+    }
+    if (execution.touch) {
+        numbers.push_back(row.contact_force_n);
     }
     return numbers;
 }

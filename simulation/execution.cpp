@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "downwash/base/numbers.hpp"
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/touch_flight.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
@@ -36,6 +38,10 @@ class Recorder {
                         model.tick().tilt_loss),
           execution_(execution) {}
 
+    /// From here on the vehicle may touch a surface: rows tell the force, and obstacles see the vehicle a little off
+    /// it.
+    void expect(const Touch& touch) { touch_ = &touch; }
+
     /// Flown so far.
     [[nodiscard]] std::int64_t ticks() const noexcept { return tick_; }
 
@@ -53,22 +59,27 @@ class Recorder {
     }
 
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
-    /// @param before one tick ago; nullptr at the start
-    Rejection judge(const FlightState& state, const ReferencePoint& reference, const FlightState* before = nullptr) {
-        const double clearance_before_m = clearance_m_;
+    Rejection judge(const FlightState& state, const ReferencePoint& reference, bool is_first = false) {
         const PlanarPose pose = among_obstacles(pose_of(state), world_);
         clearance_m_ = model_.collisions().clearance_m(pose);
-        execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
+        const PlanarPose checked = touch_ != nullptr ? simulation::off_surface(pose, *touch_, depth_m_) : pose;
+        const double checked_m = touch_ != nullptr ? model_.collisions().clearance_m(checked) : clearance_m_;
+        const PlanarPose checked_before = std::exchange(checked_, checked);
+        const double checked_before_m = std::exchange(checked_m_, checked_m);
+        if (touch_ == nullptr) {
+            execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
+        }
         execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
         if (!is_stable(state, reference)) {
             return Rejection::unstable;
         }
-        if (clearance_m_ <= 0) {
+        if (checked_m <= 0) {
+            execution_.min_clearance_m = std::min(execution_.min_clearance_m, checked_m);
             return Rejection::collision;
         }
-        if (before != nullptr) {
-            const double between_m = simulation::least_clearance_between_m(
-                model_, among_obstacles(pose_of(*before), world_), clearance_before_m, pose, clearance_m_);
+        if (!is_first) {
+            const double between_m =
+                simulation::least_clearance_between_m(model_, checked_before, checked_before_m, checked, checked_m);
             if (between_m <= 0) {
                 execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
                 return Rejection::collision;
@@ -80,13 +91,24 @@ class Recorder {
         return Rejection::none;
     }
 
+    /// The same of a tick beside the surface that is touched.
+    Rejection after_touching_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
+                                  const FlightState& next, const ReferencePoint& next_reference,
+                                  const dynamics::ContactTickRecord& contact) {
+        // The row is that of the state before, and of the tick that led to it.
+        depth_m_ = contact.depth_m;
+        const Rejection rejection = after_tick(before, reference, given, next, next_reference);
+        contact_force_n_ = contact.normal_impulse_n_s / model_.tick().tick_s;
+        return rejection;
+    }
+
     Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
                          const FlightState& next, const ReferencePoint& next_reference) {
         if (!add_row(before, reference, given) || !are_within(next.plant, max_state)) {
             return Rejection::unstable;
         }
         simulation::add_tick(execution_, plant_, before, next);
-        const Rejection rejection = judge(next, next_reference, &before);
+        const Rejection rejection = judge(next, next_reference);
         execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
         return rejection;
     }
@@ -124,6 +146,7 @@ class Recorder {
         row.end_effector_z_m = tip.z;
         row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
         row.energy_j = state.plant.energy_j;
+        row.contact_force_n = contact_force_n_;
         return row;
     }
 
@@ -134,6 +157,11 @@ class Recorder {
     Execution& execution_;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
+    PlanarPose checked_;    ///< for collisions, at the last state
+    double checked_m_ = 0;  ///< its clearance
+    const Touch* touch_ = nullptr;
+    double depth_m_ = 0;          ///< of the deepest point in the surface that is touched, at the last state
+    double contact_force_n_ = 0;  ///< over the last tick
 };
 
 std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot>& knots, std::int64_t hold,
@@ -159,11 +187,11 @@ std::vector<std::int64_t> end_ticks(const FlightModel& model, const std::vector<
 }
 
 /// What became of a goal that was held up to a tick; of one that was not, where the flight ended.
-GoalVisit visit_of(const Goal& goal, std::optional<std::int64_t> end, const FlightModel& model,
-                   const std::vector<FlightRow>& rows) {
+/// @param end beyond all rows: it was not
+GoalVisit visit_of(const Goal& goal, std::int64_t end, const FlightModel& model, const std::vector<FlightRow>& rows) {
     GoalVisit visit;
-    visit.is_met = end && *end < static_cast<std::int64_t>(rows.size());
-    const std::int64_t last = visit.is_met ? *end : static_cast<std::int64_t>(rows.size()) - 1;
+    visit.is_met = end < static_cast<std::int64_t>(rows.size());
+    const std::int64_t last = visit.is_met ? end : static_cast<std::int64_t>(rows.size()) - 1;
     const std::int64_t settling = visit.is_met ? std::llround(goal_settling_s / model.tick().tick_s) : 0;
     for (std::int64_t i = std::max<std::int64_t>(0, last - settling); i <= last; ++i) {
         const FlightRow& row = rows[static_cast<std::size_t>(i)];
@@ -179,8 +207,14 @@ GoalVisit visit_of(const Goal& goal, std::optional<std::int64_t> end, const Flig
 void judge_goals(const FlightModel& model, std::span<const Goal> goals, const std::vector<std::int64_t>& ends,
                  Execution& execution) {
     for (std::size_t i = 0; i < goals.size(); ++i) {
-        const auto end = i < ends.size() ? std::optional(ends[i]) : std::nullopt;
-        const GoalVisit visit = visit_of(goals[i], end, model, execution.rows);
+        const std::int64_t end = i < ends.size() ? ends[i] : std::numeric_limits<std::int64_t>::max();
+        GoalVisit visit = visit_of(goals[i], end, model, execution.rows);
+        if (execution.touch && i + 1 == goals.size()) {  // back where it touched from
+            const auto last = static_cast<std::int64_t>(execution.rows.size()) - 1;
+            const GoalVisit after = visit_of(goals[i], last, model, execution.rows);
+            visit.is_met = visit.is_met && after.is_met && execution.touch->is_met;
+            visit.error_m = std::max(visit.error_m, after.error_m);
+        }
         execution.goal_error_m = std::max(execution.goal_error_m, visit.error_m);
         if (execution.outcome == Outcome::ok && !visit.is_met) {
             execution.outcome = Outcome::goal_missed;
@@ -203,7 +237,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     Recorder<Factor> recorder(model, world, factor, execution);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
-    Rejection rejection = recorder.judge(state, reference);
+    Rejection rejection = recorder.judge(state, reference, true);
     const std::vector<std::int64_t> ends = end_ticks(model, knots, goals);
     const std::int64_t hold = ends.back() - knots.back().tick;
     for (const ReferenceSegment& segment : segments_with_hold(knots, hold, model.tick().tick_s)) {
@@ -222,6 +256,23 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
                         ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state, after)
                         : simulation::fly_ticks(model.tick(), *world, in.first_tick + recorder.ticks(), segment, factor,
                                                 dynamics::RefinedStep{}, state, after);
+    }
+    const Touch* const touch = ends.size() == goals.size()
+                                   ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference)))
+                                   : nullptr;
+    if (touch != nullptr && rejection == Rejection::none) {
+        recorder.expect(*touch);
+        execution.touch.emplace();
+        rejection = simulation::fly_touch_ticks(
+            model, world, in.first_tick + recorder.ticks(), *touch, reference, factor, state, *execution.touch,
+            [&](const FlightState& before, const ReferencePoint& at, const Given& given, const FlightState& next,
+                const ReferencePoint& next_reference, const dynamics::ContactTickRecord& contact) {
+                if (recorder.ticks() % ticks_between_questions == 0) {
+                    throw_if_over(is_over);
+                }
+                reference = next_reference;
+                return recorder.after_touching_tick(before, at, given, next, next_reference, contact);
+            });
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     if (execution.rows.empty() || are_within(state.plant, max_state)) {

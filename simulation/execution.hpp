@@ -62,7 +62,8 @@ struct FlightRow {
     double end_effector_x_m = 0;
     double end_effector_z_m = 0;
     double power_w = 0;
-    double energy_j = 0;  ///< spent since the start
+    double energy_j = 0;         ///< spent since the start
+    double contact_force_n = 0;  ///< normal force of a surface that the robot touches, mean over the tick before
 };
 
 /// The outcome of one goal of a flight.
@@ -75,14 +76,15 @@ struct GoalVisit {
 struct Execution : FlightSums {
     bool aero = true;  ///< whether surfaces acted on the rotors
     Outcome outcome = Outcome::ok;
-    double min_clearance_m = 0;  ///< infinity without obstacles
+    double min_clearance_m = 0;  ///< infinity without obstacles; a touch does not count
     double energy_j = 0;
     double duration_s = 0;
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
-    double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped
-    double goal_error_m = 0;       ///< the worst of all goals
-    std::vector<GoalVisit> goals;  ///< one for each, in their order
+    double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;           ///< the worst of all goals
+    std::vector<GoalVisit> goals;      ///< one for each, in their order
+    std::optional<TouchRecord> touch;  ///< of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;
     bool has_rotor_lag = false;
     /// One per control tick, the last one at the end of the flight, or one tick before where its numbers at the end are
@@ -90,7 +92,8 @@ struct Execution : FlightSums {
     std::vector<FlightRow> rows;
 };
 
-/// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly.
+/// Flies a reference from its first knot to its last and holds there, with surface effects evaluated directly. Where
+/// the last goal asks for a touch, the vehicle touches after that hover.
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
 /// @param goals at least one, in the order of the visits. The vehicle hovers at the last one after the last knot. It
 /// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold

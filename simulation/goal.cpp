@@ -110,4 +110,9 @@ double motion_within_goal_m(const Goal& goal, const PlantModel& model, const Pla
     return level_arm_rad(nearest) ? std::min(distance_left_m, angle_left_m) : distance_left_m;
 }
 
+const Touch* touch_at(const Goal& goal, const PlantModel& model, const PlanarPose& level) {
+    const Goal& nearest = nearest_goal(goal, model, level);
+    return nearest.touch ? &*nearest.touch : nullptr;
+}
+
 }  // namespace downwash

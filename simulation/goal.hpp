@@ -7,6 +7,7 @@
 #include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/simulation/contact_goal.hpp"
 #include "downwash/simulation/pose.hpp"
 
 namespace downwash {
@@ -31,14 +32,20 @@ struct ConfigurationGoal {
     std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
-/// Where the flight must end and stay. Exactly one of end_effector, configuration and any_of is set.
+/// Where the flight must end and stay. Exactly one of end_effector, configuration, any_of and contact is set; to
+/// contact belong the alternatives that with_touches() finds.
 struct Goal {
     std::optional<EndEffectorGoal> end_effector;
     std::optional<ConfigurationGoal> configuration;
-    double hold_s = 5;  ///< the last reference point is held for so long, >= 1
+    std::optional<ContactGoal> contact;  ///< the force is held for hold_s
+    double hold_s = 5;                   ///< the last reference point is held for so long, >= 1
     std::vector<Goal>
         any_of;  ///< alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested
+    std::optional<Touch> touch;  ///< follows the hover, where an alternative belongs to a contact
 };
+
+/// The touch that follows when a reference ends at a point; nullptr where none does.
+[[nodiscard]] DOWNWASH_EXPORT const Touch* touch_at(const Goal& goal, const PlantModel& model, const PlanarPose& level);
 
 /// The alternatives of a goal: the goal itself if it names none.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const Goal> alternatives(const Goal& goal) noexcept;

@@ -284,3 +284,25 @@ TEST_CASE("A flight that takes more energy than the budget is over it, for the j
     CHECK(judge::PlanJudge(in_order(problem, given_order(problem))).fly(plan, {}).outcome ==
           judge::Outcome::goal_missed);
 }
+
+TEST_CASE("the judge and the planner agree about touches, as believed and in worlds") {
+    for (const char* name : {"contact/deck_with_frame", "contact/pier_with_arm"}) {
+        CAPTURE(name);
+        const Problem problem = shipped(name);
+        const Plan plan = plan_of(problem, 300);
+        const judge::PlanJudge judge(problem);
+        for (std::uint64_t index = 0; index <= 6; ++index) {
+            CAPTURE(index);
+            const std::optional<World> world =
+                index == 0 ? std::nullopt : std::optional(draw_world(*problem.uncertainty, problem.robot, 11, index));
+            const std::optional<Execution> flight = executed(problem, plan, true, world);
+            REQUIRE(flight);
+            REQUIRE(flight->touch);
+            const judge::JudgedFlight judged = judge.fly(plan, {true, world});
+            CHECK(name_of(judged.outcome) == name_of(flight->outcome));
+            REQUIRE(judged.touch_force_n);
+            CHECK(*judged.touch_force_n == Approx(flight->touch->force_n).epsilon(0.02));
+            CHECK(judged.energy_j == Approx(flight->energy_j).epsilon(0.01));
+        }
+    }
+}

@@ -142,6 +142,10 @@ function figures_of(model) {
                 report.limits?.safety_margin_m > 0 ? `margin ${place(report.limits.safety_margin_m)}` :
                                                      "");
         add("Goal error", meters(execution.goal_error_m), tolerance_text(model).trim() || "largest at the end");
+        if (execution.contact) {
+            add("Contact force", quantity(execution.contact.force_n, ".2f", "N"),
+                `off by ${quantity(execution.contact.force_error_n, ".2f", "N")} at most`);
+        }
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"),
             execution.max_saturation > 1 ? "clipped: above 1" : "demand over limit");

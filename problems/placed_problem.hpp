@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/problems/problem_reader.hpp"
+
+namespace downwash {
+
+/// A problem together with the places of its keys, for programs that change it and read it again.
+struct PlacedProblem {
+    PlannableProblem plannable;
+    std::vector<LocatedError> outdated;  ///< keys that were read under a former name
+    std::vector<LocatedError> warnings;  ///< what problem_warnings() finds
+    /// Gives remarks on keys the place of the key, or of the nearest key around it, in what was read.
+    std::function<std::vector<LocatedError>(const std::vector<KeyError>&)> placed;
+};
+
+/// Reads a problem file; see read_problem(). @throws ProblemFileError
+[[nodiscard]] DOWNWASH_EXPORT PlacedProblem read_placed_problem(const std::filesystem::path& file);
+
+/// Reads a problem from the text of a problem file.
+/// @param file names the text in messages; paths in the text are relative to its folder
+/// @param leaves_out_inapplicable whether keys that have no meaning beside the others are left out, not errors: for
+/// documents with every default, of which a group was changed
+/// @throws ProblemFileError as read_problem()
+[[nodiscard]] DOWNWASH_EXPORT PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file,
+                                                          bool leaves_out_inapplicable = false);
+
+/// A new value of a key.
+struct KeyChange {
+    std::string key;   ///< with the indices of lists: "planner.seed" or "environment.obstacles[0].box.size_m"
+    std::string yaml;  ///< the value as a problem file would have it, in the units of the file; JSON will do
+};
+
+/// The problem with other values, read and checked as a whole.
+/// @throws InputError with every change that is none: an unknown key, one that has no single value, a wrong value
+/// @throws ProblemFileError with every reason why the changed problem cannot be planned
+[[nodiscard]] DOWNWASH_EXPORT PlacedProblem changed_problem(const PlacedProblem& before,
+                                                            std::span<const KeyChange> changes);
+
+/// The document of effective_yaml() as JSON.
+[[nodiscard]] DOWNWASH_EXPORT std::string effective_json(const Problem& problem, const std::filesystem::path& folder);
+
+}  // namespace downwash

@@ -1,0 +1,52 @@
+#include "downwash/python/columns.hpp"
+
+#include <string>
+
+#include "downwash/base/key_error.hpp"
+
+namespace downwash::python {
+
+py::dict columns_of(NumberTable table) {
+    py::dict columns;
+    for (std::size_t i = 0; i < table.names.size(); ++i) {
+        columns[py::str(table.names[i])] = array_of(std::move(table.columns[i]));
+    }
+    return columns;
+}
+
+NumberTable knot_table(const Plan& plan) {
+    NumberTable table;
+    table.names = {"t_s",
+                   "x_m",
+                   "z_m",
+                   "arm_rad",
+                   "vx_m_s",
+                   "vz_m_s",
+                   "arm_rate_rad_s",
+                   "ax_m_s2",
+                   "az_m_s2",
+                   "arm_acceleration_rad_s2"};
+    table.columns.resize(table.names.size());
+    for (const ReferenceKnot& knot : plan.reference) {
+        const auto& [at, velocity, acceleration] = knot.point;
+        table.add_row({static_cast<double>(knot.tick) * plan.tick_s, at[0], at[1], at[2], velocity[0], velocity[1],
+                       velocity[2], acceleration[0], acceleration[1], acceleration[2]});
+    }
+    return table;
+}
+
+std::size_t count_points(const Points& points, bool may_be_in_world) {
+    const bool is_list = points.ndim() == 2;
+    if (!is_list || !(points.shape(1) == 2 || (may_be_in_world && points.shape(1) == 3))) {
+        std::string shape;
+        for (py::ssize_t i = 0; i < points.ndim(); ++i) {
+            shape += (i > 0 ? ", " : "") + std::to_string(points.shape(i));
+        }
+        throw_input_error("is an array of shape (" + shape + "): expected (n, 2), plane coordinates x, z in m" +
+                              (may_be_in_world ? ", or (n, 3), world coordinates x, y, z in m" : ""),
+                          "points");
+    }
+    return static_cast<std::size_t>(points.shape(0));
+}
+
+}  // namespace downwash::python

@@ -1,0 +1,78 @@
+#include "downwash/python/core_solution.hpp"
+
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <utility>
+
+#include "downwash/base/files.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/python/columns.hpp"
+#include "downwash/results/run_folder.hpp"
+#include "downwash/results/solution_file.hpp"
+#include "downwash/results/trajectory_csv.hpp"
+#include "downwash/results/tree_csv.hpp"
+#ifdef DOWNWASH_WITH_REPORT
+#include "downwash/report/run_page.hpp"
+#endif
+
+namespace downwash::python {
+namespace {
+
+std::string json_of(const CoreSolution& of) {
+    const Problem& problem = of.of->problem();
+    return solution_json(of.solution, {problem.name, of.of->file, problem_sha256(problem), of.of->placed.warnings});
+}
+
+/// Writes the page of a run, if this build brings pages.
+void write_page(const std::filesystem::path& folder, const RunRecord& record, const FlightModel& model, int threads) {
+#ifdef DOWNWASH_WITH_REPORT
+    if (has_pages()) {
+        const std::string page = run_page(record, model, threads);
+        const FolderLock lock(folder);
+        write_file(folder / run_page_name, page);
+    }
+#else
+    static_cast<void>(folder), static_cast<void>(record), static_cast<void>(model), static_cast<void>(threads);
+#endif
+}
+
+void write(const CoreSolution& of, const std::string& path, bool force) {
+    const py::gil_scoped_release released;
+    const Problem& problem = of.of->problem();
+    require_readable_again(problem, path);
+    RunFolder folder(path, problem, of.of->file, force);
+    const RunRecord record = folder.write(problem, of.of->file, of.of->placed.warnings, of.solution);
+    if (of.solution.map != nullptr || !of.solution.interrupted) {  // without a map there was no search to be shown yet
+        write_page(folder.path(), record, *of.of->model(), of.solution.threads);
+    }
+}
+
+std::optional<py::dict> plan_columns(const CoreSolution& of) {
+    return of.solution.plan ? std::optional(columns_of(knot_table(*of.solution.plan))) : std::nullopt;
+}
+
+std::optional<py::dict> flight_columns(const CoreSolution& of) {
+    return of.solution.execution ? std::optional(columns_of(trajectory_table(*of.solution.execution))) : std::nullopt;
+}
+
+CoreSolution read(const std::string& file, const std::shared_ptr<CoreProblem>& problem) {
+    return {problem, read_solution(file, problem->problem())};
+}
+
+}  // namespace
+
+void bind_solution(py::module_& module) {
+    py::class_<CoreSolution, std::shared_ptr<CoreSolution>>(module, "Solution")
+        .def_property_readonly("status", [](const CoreSolution& of) { return name_of(of.solution.status); })
+        .def_property_readonly("interrupted", [](const CoreSolution& of) { return of.solution.interrupted; })
+        .def_property_readonly("cost", [](const CoreSolution& of) { return of.solution.cost; })
+        .def("json", json_of)
+        .def("plan", plan_columns)
+        .def("flight", flight_columns)
+        .def("tree", [](const CoreSolution& of) { return columns_of(tree_table(of.solution.tree)); })
+        .def("write", write);
+    module.def("read_solution", read);
+}
+
+}  // namespace downwash::python

@@ -1,0 +1,105 @@
+"""Whether a vehicle can hover, and what an independent simulator says about a plan."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .problem import Problem
+from .solution import Solution, StopSignal
+
+__all__ = ["Validation", "draw_worlds", "hold", "validate"]
+
+
+def hold(
+    problem: Problem, points: npt.ArrayLike, *, arm_deg: float | None = None, threads: int | None = None
+) -> Dict[str, npt.NDArray[Any]]:
+    """Analyses whether the vehicle can hover with its centre of mass at points (n, 2) in plane coordinates [m].
+
+    arm_deg: arm angle relative to the multirotor [deg]; default: that of the problem's start
+    threads: number of threads; default: one per processor
+
+    Returns columns with the names of `downwash aeromap hold --json` (docs/hold.md): `verdict`, `limit`, the effect of
+    the surfaces, the trim and the stability. What a verdict leaves undefined is NaN.
+    """
+    columns, verdicts, limits = _core.hold(problem._core, np.asarray(points, dtype=np.float64), arm_deg, threads or 0)
+    table: Dict[str, npt.NDArray[Any]] = dict(columns)
+    table["verdict"] = np.array(verdicts, dtype=str)
+    table["limit"] = np.array(limits, dtype=str)
+    return table
+
+
+def draw_worlds(problem: Problem, count: int, *, seed: int | None = None) -> Dict[str, npt.NDArray[Any]]:
+    """What the worlds 1 to `count` of the problem's uncertainty have otherwise than believed.
+
+    seed: of the worlds; default: that of the problem
+
+    Returns the column `world`, and one for every parameter that worlds draw, with its name in `validate`'s sensitivity:
+    differences, or relative changes, in SI units and radians. The rows are those of `Validation.flights`.
+    """
+    table: Dict[str, npt.NDArray[Any]] = dict(_core.draw_worlds(problem._core, count, seed))
+    table["world"] = table["world"].astype(np.int64)
+    return table
+
+
+class Validation:
+    """What an independent simulator says about a plan."""
+
+    def __init__(self, record: dict[str, Any], flights: Dict[str, npt.NDArray[Any]] | None) -> None:
+        self.record = record
+        """With the names of `downwash validate --json`."""
+        self.flights = flights
+        """Columns world, outcome, min_clearance_m, max_tracking_error_m, energy_j; None without worlds."""
+
+    @property
+    def outcome(self) -> str:
+        """Of the undisturbed flight, or of that in the one world that was asked for."""
+        return str(self.record["outcome"])
+
+    @property
+    def failures(self) -> int | None:
+        """Worlds in which the flight failed; None without worlds."""
+        failures: int | None = self.record.get("failures")
+        return failures
+
+    @property
+    def failure_probability(self) -> dict[str, float] | None:
+        """estimate, low and high: the share of failures and its 95 % interval; None without worlds."""
+        probability: dict[str, float] | None = self.record.get("failure_probability")
+        return probability
+
+    def __repr__(self) -> str:
+        return f"<downwash.Validation {self.outcome}, {self.failures} failures of {self.record.get('runs', 0)}>"
+
+
+def validate(
+    problem: Problem,
+    solution: Solution,
+    *,
+    runs: int = 0,
+    world: int | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    on_progress: Callable[[float], object] | None = None,
+    stop: StopSignal | None = None,
+) -> Validation:
+    """Flies the plan of a solution in the independent simulator of `downwash validate`.
+
+    runs: fly in the worlds 1 to `runs` of the problem's uncertainty as well
+    world: the one world to fly in; default: the undisturbed one
+    seed: of the worlds; default: that of the problem
+    threads: number of threads, on which the result does not depend; default: one per processor
+    on_progress: called with the share of the worlds that is done, by the calling thread
+    stop: a threading.Event; when it ends the runs, there are no statistics
+    """
+    record, flights = _core.validate(problem._core, solution._core, runs, world, seed, threads or 0, on_progress, stop)
+    if flights is None:
+        return Validation(record, None)
+    columns, outcomes = flights
+    table: Dict[str, npt.NDArray[Any]] = dict(columns)
+    table["world"] = table["world"].astype(np.int64)
+    table["outcome"] = np.array(outcomes, dtype=str)
+    return Validation(record, table)

@@ -1,0 +1,139 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../support/test_problem.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/touch_places.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/touch.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+/// A vehicle that hovers where it may touch the ceiling with its frame, or a wall with the end of its arm.
+Problem touching_problem(TouchingPart part, double force_n) {
+    Problem problem = ceiling_problem();
+    // Gains of a real vehicle, which is stiff against the suction of a ceiling and soft in pitch.
+    ModelInversion& gains = gains_of(problem.robot);
+    gains.height_kp = 12;
+    gains.height_kd = 7;
+    gains.height_ki = 6;
+    gains.attitude_kp = 2;
+    gains.attitude_rate_kp = 14;
+    gains.attitude_rate_ki = 8;
+    gains.pitch_rate_filter_s = 0.25;
+    gains.arm_kp = 34;
+    gains.arm_kd = 9.5;
+    gains.arm_ki = 10;
+    problem.robot.body = {{Box{{1.04, 1.04, 0.22}}, {0, 0, 0}}};  // a frame that reaches 5 cm over the rotors
+    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4.5, 0, 2.5}));
+    problem.goal = Goal{};
+    ContactGoal& contact = problem.goal.contact.emplace();
+    contact.obstacle = part == TouchingPart::frame ? "ceiling" : "wall";
+    contact.part = part;
+    contact.force_n = force_n;
+    (part == TouchingPart::frame ? contact.x_m : contact.z_m) = part == TouchingPart::frame ? -1 : 2;
+    problem.goal.hold_s = 4;
+    problem.aero.min_distance_radii = 0.05;
+    problem = with_touches(problem);
+    REQUIRE(problem.goal.any_of.size() == 1);
+    return problem;
+}
+
+Execution touch_from_hover(const Problem& problem, const FlightWorld& in = {}, bool aero = true) {
+    const auto model = make_flight_model(problem);
+    const Goal& place = problem.goal.any_of.front();
+    Configuration at{0, 0, quarter_turn};
+    if (place.end_effector) {
+        at.arm_rad = *place.end_effector->direction_rad;
+    }
+    at = placed_at(place, model->tick().plant, at, 0, 0);
+    const std::vector<ReferenceKnot> knots{{0, at_rest(at)}};
+    return execute(*model, model->state_at(level_at(at)), knots, std::span(&problem.goal, 1), aero, in);
+}
+
+}  // namespace
+
+TEST_CASE("a vehicle presses on a ceiling and on a wall with the force that is asked for, and leaves") {
+    const auto part = GENERATE(TouchingPart::frame, TouchingPart::end_effector);
+    const double force_n = GENERATE(3.0, 8.0);
+    CAPTURE(static_cast<int>(part), force_n);
+    const Execution flight = touch_from_hover(touching_problem(part, force_n));
+    CHECK(flight.outcome == Outcome::ok);
+    REQUIRE(flight.touch);
+    CHECK(flight.touch->is_met);
+    CHECK(flight.touch->force_n == Approx(force_n).epsilon(0.05));
+    CHECK(flight.touch->max_depth_m < max_touch_depth_m);
+    CHECK(flight.touch->left_s - flight.touch->touched_s > 5 / (0.4 * std::sqrt(12.0)) + 4);
+    CHECK(flight.min_clearance_m > 0.1);  // the touch does not count
+    CHECK(flight.rows.back().contact_force_n == 0);
+}
+
+TEST_CASE("the thrust under a ceiling that is touched carries the weight and the force, with its K") {
+    const Execution flight = touch_from_hover(touching_problem(TouchingPart::frame, 5));
+    REQUIRE(flight.touch);
+    const double weight_n = (4.5 + 0.45) * standard_gravity_m_s2;
+    int held = 0;
+    for (const FlightRow& row : flight.rows) {
+        if (row.t_s > flight.touch->left_s - 4 && row.t_s < flight.touch->left_s - 1) {
+            CHECK(row.thrust_n == Approx(weight_n + row.contact_force_n).epsilon(0.01));
+            CHECK(row.thrust_command_n < 0.9 * weight_n);
+            ++held;
+        }
+    }
+    CHECK(held > 100);
+}
+
+TEST_CASE("a surface that is not where it is believed to be is found by touch, up to half a metre behind") {
+    const Problem problem = touching_problem(TouchingPart::end_effector, 5);
+    const auto touched = [&](double scene_x_m) {
+        World world;
+        world.scene_x_m = scene_x_m;
+        const FlownWorld flown = make_world(problem.robot, world);
+        return touch_from_hover(problem, {&flown});
+    };
+    for (const double scene_x_m : {-0.05, 0.05, 0.3}) {
+        CAPTURE(scene_x_m);
+        const Execution flight = touched(scene_x_m);
+        CHECK(flight.outcome == Outcome::ok);
+        CHECK(flight.touch->force_n == Approx(5).epsilon(0.05));
+    }
+    const Execution missed = touched(0.8);
+    CHECK(missed.outcome == Outcome::goal_missed);
+    CHECK_FALSE(missed.touch->is_met);
+    CHECK(missed.touch->touched_s == 0);
+}
+
+TEST_CASE("a touch that is too fast, or not with the part that is meant to, is a collision") {
+    Problem problem = touching_problem(TouchingPart::end_effector, 5);
+    problem.goal.any_of.front().touch->speed_m_s = 0.8;
+    problem.goal.any_of.front().touch->standoff_m = 0.3;
+    CHECK(touch_from_hover(problem).outcome == Outcome::collision);
+
+    problem = touching_problem(TouchingPart::frame, 5);
+    problem.obstacles.push_back(box("lamp", {0.1, 0.1, 0.05}, {-1, 0, 4.975}));  // between the rotors
+    CHECK(touch_from_hover(problem).outcome == Outcome::collision);
+}
+
+TEST_CASE("a touch through the map of a planner ends as the one with effects evaluated directly") {
+    for (const TouchingPart part : {TouchingPart::frame, TouchingPart::end_effector}) {
+        const Problem problem = touching_problem(part, 5);
+        const auto model = make_flight_model(problem);
+        const auto map = model->make_map(problem.bounds);
+        const Goal& place = problem.goal.any_of.front();
+        Configuration at{0, 0, place.end_effector ? *place.end_effector->direction_rad : quarter_turn};
+        at = placed_at(place, model->tick().plant, at, 0, 0);
+        // Both begin as the hover before has left the vehicle.
+        const Execution direct = touch_from_hover(problem);
+        FlightState state = model->state_at(level_at(at));
+        const ReferenceSegment hover(at_rest(at), at_rest(at), 200, model->tick().tick_s);
+        static_cast<void>(fly(*model, map.get(), rules_of_execution(), hover, state));
+        const TouchFlight flight = fly_touch(*model, map.get(), *place.touch, at_rest(at), state, {nullptr, 200});
+        CHECK(flight.rejection == Rejection::none);
+        CHECK(flight.record.force_n == Approx(direct.touch->force_n).epsilon(0.01));
+        CHECK(flight.record.touched_s == Approx(direct.touch->touched_s).margin(0.05));
+        CHECK(flight.record.power_w == Approx(direct.touch->power_w).epsilon(0.02));
+    }
+}
