@@ -107,7 +107,7 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
 
 void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
-    const Problem flown = solution.order ? in_order(problem, *solution.order) : problem;
+    const Problem flown = in_order(problem, solution.order);
     const auto model = make_flight_model(problem);
     const FlightWorld in{world ? &*world : nullptr, 0};
     FlightState believed = start_state(*model, problem.start);

@@ -222,7 +222,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += order_rows(*solution.order, problem.energy_budget_j);
     }
     if (solution.execution) {
-        text += flight_rows(goals_of(solution.order ? in_order(problem, *solution.order) : problem), solution,
+        text += flight_rows(goals_of(in_order(problem, solution.order)), solution,
                             *solution.execution);
     }
     if (solution.certificate) {

@@ -87,7 +87,7 @@ ExitCode run(const ValidateArguments& given) {
     const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
-    const Problem flown = claims.order ? in_order(problem, *claims.order) : problem;
+    const Problem flown = in_order(problem, claims.order);
     const judge::PlanJudge judge(flown);
     Validation validation;
     judge::FlightConditions conditions;

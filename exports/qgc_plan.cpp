@@ -85,7 +85,7 @@ std::vector<Corner> corners_of(const RunRecord& run) {
         }
     }
     const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
-    const Problem flown = run.order ? in_order(run.problem, *run.order) : run.problem;
+    const Problem flown = in_order(run.problem, run.order);
     corners.back().hold_s += end_s > plan.duration_s() ? end_s - plan.duration_s() : flown.goal.hold_s;
     return corners;
 }

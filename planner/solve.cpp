@@ -95,7 +95,7 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
             },
             solution);
     }
-    const Problem flown = solution.order && solution.plan ? in_order(problem, *solution.order) : problem;
+    const Problem flown = in_order(problem, solution.order);
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
         solution.execution = planning::execute_directly(
             *model, start_state(*model, problem.start), *solution.plan, goals_of(flown), flown.energy_budget_j,

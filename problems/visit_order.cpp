@@ -16,13 +16,13 @@ VisitOrder given_order(const Problem& problem) {
     return order;
 }
 
-Problem in_order(Problem problem, const VisitOrder& order) {
-    if (problem.targets.empty()) {
+Problem in_order(Problem problem, const std::optional<VisitOrder>& order) {
+    if (problem.targets.empty() || !order || (order->visits.empty() && !problem.return_to)) {
         return problem;
     }
     const std::vector<Goal> targets = std::exchange(problem.targets, {});
     problem.stops.clear();
-    for (const Visit& visit : order.visits) {
+    for (const Visit& visit : order->visits) {
         const Goal& target = targets[visit.target];
         problem.stops.push_back(visit.alternative ? target.any_of[*visit.alternative] : target);
     }
@@ -42,7 +42,8 @@ std::vector<std::string> goal_names(const Problem& problem, const std::optional<
         }
         return names.empty() ? std::vector<std::string>{"goal"} : names;
     }
-    for (const Visit& visit : order.value_or(given_order(problem)).visits) {
+    const bool is_flown = order && (!order->visits.empty() || problem.return_to);
+    for (const Visit& visit : (is_flown ? *order : given_order(problem)).visits) {
         names.push_back("target " + std::to_string(visit.target + 1));
     }
     if (problem.return_to) {

@@ -58,9 +58,9 @@ struct VisitOrder {
 [[nodiscard]] DOWNWASH_EXPORT VisitOrder given_order(const Problem& problem);
 
 /// The problem in which the goals are visited in this order, one after the other; its energy budget stays. A problem
-/// without targets is what it was.
-/// @pre all numbers are of the problem, and there is a visit or a place to return to
-[[nodiscard]] DOWNWASH_EXPORT Problem in_order(Problem problem, const VisitOrder& order);
+/// without targets stays what it is, and so does one without an order, or with one that visits nothing.
+/// @pre all numbers are of the problem
+[[nodiscard]] DOWNWASH_EXPORT Problem in_order(Problem problem, const std::optional<VisitOrder>& order);
 
 /// What people call the goals of goals_of(problem) or, with an order, of goals_of(in_order(problem, order)): "goal" of
 /// one alone, "goal 2", or "target 3" and "the place to return to".

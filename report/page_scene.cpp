@@ -181,7 +181,8 @@ Json robot_json(const Robot& robot) {
 /// Those that are visited, in their order, then those that are left out, which are held for no time.
 Json goals_json(const Problem& problem, const std::optional<VisitOrder>& order) {
     const std::vector<std::string> names = goal_names(problem, order);
-    const std::vector<Goal> visited = goals_of(order ? in_order(problem, *order) : problem);
+    const Problem flown = in_order(problem, order);
+    const std::vector<Goal> visited = goals_of(flown);
     Json goals = Json::array();
     const auto add = [&](const Goal& target, const std::string& name, bool is_left_out) {
         for (const Goal& goal : alternatives(target)) {
@@ -197,7 +198,7 @@ Json goals_json(const Problem& problem, const std::optional<VisitOrder>& order) 
     for (std::size_t i = 0; i < visited.size(); ++i) {
         add(visited[i], names[i], false);
     }
-    if (order) {
+    if (order && flown.targets.empty()) {
         for (const LeftOutTarget& each : order->left_out) {
             add(problem.targets[each.target], "target " + std::to_string(each.target + 1) + ", left out", true);
         }
@@ -208,7 +209,7 @@ Json goals_json(const Problem& problem, const std::optional<VisitOrder>& order) 
 /// Whether goals are visited in turn or are alternatives.
 std::string_view goal_order(const Problem& problem, const std::optional<VisitOrder>& order) {
     if (!problem.targets.empty()) {
-        return order ? "in_turn" : "any_order";
+        return in_order(problem, order).targets.empty() ? "in_turn" : "any_order";
     }
     return !problem.stops.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
 }

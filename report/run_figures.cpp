@@ -153,11 +153,6 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     return extent;
 }
 
-/// With its goals in the order in which the plan visits them.
-Problem flown_problem(const RunRecord& run) {
-    return run.order ? in_order(run.problem, *run.order) : run.problem;
-}
-
 /// The goals that are a point of the plane; several in turn with their numbers.
 std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<std::string>& names) {
     FigurePoints goals{"goal of the end effector", {}, goal_color};
@@ -278,10 +273,11 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
                      LineDash::dash_dotted},
                     {"flown", flown, flown_color, 1.6},
                     {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
-    if (Pieces regions = goal_regions(flown_problem(run)); !regions.empty()) {
+    const Problem visited = in_order(run.problem, run.order);
+    if (Pieces regions = goal_regions(visited); !regions.empty()) {
         figure.lines.push_back({"tolerance of the goal", std::move(regions), goal_color, 1});
     }
-    figure.points = goal_points(flown_problem(run), goal_names(run.problem, run.order));
+    figure.points = goal_points(visited, goal_names(run.problem, run.order));
     return figure;
 }
 
