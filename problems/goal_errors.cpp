@@ -90,6 +90,7 @@ std::vector<KeyError> too_many_goals(const Problem& p) {
 
 std::vector<KeyError> unclear_goals(const Problem& p) {
     const bool may_choose = p.stops.empty();
+    const auto names_a_place = [](const Goal& goal) { return goal.end_effector || goal.configuration; };
     std::vector<KeyError> errors;
     if (p.targets.empty() && (p.return_to || p.energy_budget_j)) {
         errors.push_back({"goal", "has a place to return to or an energy budget, and no targets in any order"});
@@ -97,11 +98,14 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
     for (std::size_t i = 0; i < p.targets.size(); ++i) {
         const Goal& target = p.targets[i];
         const std::string key = "goal.in_any_order[" + std::to_string(i) + "]";
-        if (!target.any_of.empty() && (target.end_effector || target.configuration)) {
+        if (!target.any_of.empty() && names_a_place(target)) {
             errors.push_back({key, "needs exactly one of end_effector, configuration or any_of"});
         }
+        if (target.contact) {
+            errors.push_back({key, "asks for contact as one of several goals: expected contact for the only goal"});
+        }
     }
-    if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && (p.goal.end_effector || p.goal.configuration)) {
+    if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && names_a_place(p.goal)) {
         errors.push_back({"goal", "needs exactly one of end_effector, configuration, any_of or contact"});
     }
     if (p.goal.contact && !(p.stops.empty() && p.targets.empty())) {
