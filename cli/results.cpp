@@ -69,10 +69,11 @@ std::string order_rows(const VisitOrder& order, const std::optional<double>& ene
         visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
         visits += visit.alternative ? fmt::format(" (alternative {})", *visit.alternative + 1) : "";
     }
-    std::string text =
-        row("order", visits.empty() ? "none" : "targets " + visits) +
-        row("", order.is_best ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
+    std::string text = row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
+    if (!visits.empty()) {
+        text += row("", order.is_best ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
                               : fmt::format("the cheapest that was found by {} flown legs", order.legs));
+    }
     for (const LeftOutTarget& each : order.left_out) {
         std::string why = "no flight to it was found";
         if (each.energy_j) {
@@ -205,6 +206,11 @@ std::string verdict_on_search(const Solution& solution) {
         const auto& off_m = solution.planning.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to " + missed_goal(solution) +
                (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
+    }
+    const auto is_for_energy = [](const LeftOutTarget& each) { return each.reason == LeftOutReason::energy_budget; };
+    if (solution.order && solution.order->visits.empty() &&
+        std::ranges::all_of(solution.order->left_out, is_for_energy)) {
+        return stopped + "No solution: the energy budget is not enough for any target.";
     }
     return stopped + "No solution within the limits.";
 }

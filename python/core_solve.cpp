@@ -7,7 +7,6 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/problems/visit_order.hpp"
 #include "downwash/python/core_aeromap.hpp"
 #include "downwash/python/core_solution.hpp"
 #include "downwash/python/interruptible.hpp"
@@ -82,7 +81,7 @@ CoreSolution executed(const CoreSolution& of, const std::shared_ptr<CoreProblem>
         if (!start) {
             throw_input_error("has a vehicle that cannot hover at its start: its controller diverges there", "world");
         }
-        const Problem flown = in_order(problem->problem(), solution.order);
+        const Problem flown = as_visited(problem->problem(), solution);
         return execute(model, *start, solution.plan->reference, goals_of(flown), aero, in,
                        [token = attendance.token()] { return token.stop_requested(); }, flown.energy_budget_j);
     });

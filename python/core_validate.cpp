@@ -6,7 +6,6 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/judge/world_runs.hpp"
-#include "downwash/problems/visit_order.hpp"
 #include "downwash/python/columns.hpp"
 #include "downwash/python/core_solution.hpp"
 #include "downwash/python/interruptible.hpp"
@@ -75,7 +74,7 @@ py::tuple validate(const std::shared_ptr<CoreProblem>& problem, const CoreSoluti
     const Plan& plan = *of.solution.plan;
     judge::JudgedFlight flight;
     const std::optional<judge::WorldRuns> worlds = interruptible(stop, [&](Attendance& attendance) {
-        const judge::PlanJudge judge(in_order(problem->problem(), of.solution.order));
+        const judge::PlanJudge judge(as_visited(problem->problem(), of.solution));
         judge::FlightConditions conditions;
         if (world) {
             conditions.world = draw_world(*problem->problem().uncertainty, problem->problem().robot, seed, *world);
