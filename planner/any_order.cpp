@@ -165,7 +165,9 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
     const double begun_at_s = clock_.seconds();
     const std::uint64_t iterations = solution_.planning.iterations;
     SolveOptions options = options_of_attempt(is_first_only, order);
-    search_sequence_(part, options, attempts_, found);
+    // Short rounds are for a first flight, and there is one.
+    constexpr double least_round = 0.22;  // two rounds then, of 22 and 78 %
+    search_sequence_(part, options, has_way() ? least_round : 0, attempts_, found);
     if (found.status == Status::solved && is_limited() && !found.execution) {
         double wall_s = 0;
         found.execution =

@@ -9,9 +9,10 @@
 namespace downwash::planning {
 
 /// Plans a problem without targets: its goals one after the other. Fills what it finds into the solution.
+/// @param least_round as for solve_in_turn()
 /// @param attempts plans that asked for a certificate before, and then with those of this search
-using SequenceSearch =
-    std::function<void(const Problem& in_order, const SolveOptions&, std::uint64_t& attempts, Solution&)>;
+using SequenceSearch = std::function<void(const Problem& in_order, const SolveOptions&, double least_round,
+                                          std::uint64_t& attempts, Solution&)>;
 
 /// Chooses in which order the targets of a problem are visited, which of their alternatives are approached and, under
 /// an energy budget, which targets are left out; and plans the flight. First a whole flight in the order that is best

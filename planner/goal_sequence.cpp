@@ -41,12 +41,13 @@ void add(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
 class GoalSequence {
  public:
     GoalSequence(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                 const PartSearch& search, std::uint64_t& attempts, Solution& solution)
+                 const PartSearch& search, double least_round, std::uint64_t& attempts, Solution& solution)
         : problem_(problem),
           model_(model),
           map_(map),
           options_(options),
           search_(search),
+          least_round_(least_round),
           solution_(solution),
           goals_(goals_of(problem)),
           searches_(goals_.size()),
@@ -86,6 +87,7 @@ class GoalSequence {
     const AeroMap* map_;
     const SolveOptions& options_;
     const PartSearch& search_;
+    double least_round_;  ///< see solve_in_turn()
     Solution& solution_;
     std::vector<Goal> goals_;
     std::vector<std::uint32_t> searches_;  ///< for the way to each goal so far; each draws other samples
@@ -111,6 +113,7 @@ void GoalSequence::run() {
     SearchRecord work = solution_.planning;
     work.iterations = std::max(work.iterations, least_iterations);
     work.wall_s = std::max(work.wall_s, least_s);
+    whole_.part(least_round_ / 2).charge(work);
     bool is_last = false;
     while (!is_last && !is_over()) {
         ++round_;
@@ -381,8 +384,8 @@ Plan Course::continued_by(const Plan& next) const {
 }
 
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                   const PartSearch& search, std::uint64_t& attempts, Solution& solution) {
-    GoalSequence(problem, model, map, options, search, attempts, solution).run();
+                   const PartSearch& search, double least_round, std::uint64_t& attempts, Solution& solution) {
+    GoalSequence(problem, model, map, options, search, least_round, attempts, solution).run();
 }
 
 }  // namespace downwash::planning

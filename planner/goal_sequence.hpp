@@ -46,9 +46,10 @@ using PartSearch = std::function<std::optional<std::size_t>(const Problem& part,
 /// cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the best of all
 /// ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none
+/// @param least_round share of the limits that a round after the first takes at least
 /// @param attempts plans that asked for a certificate before, and then with those of this search
 DOWNWASH_EXPORT void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                                   const SolveOptions& options, const PartSearch& search, std::uint64_t& attempts,
+                                   const SolveOptions& options, const PartSearch& search, double least_round, std::uint64_t& attempts,
                                    Solution& solution);
 
 }  // namespace downwash::planning

@@ -34,10 +34,11 @@ std::optional<std::size_t> search_part(const Problem& part, const Problem& whole
     return planning::search_flights(part, whole, model, map, before, worlds, options, into);
 }
 
-/// One goal, or several in their order. @param attempts plans that asked for a certificate so far
+/// One goal, or several in their order.
+/// @param least_round see solve_in_turn()   @param attempts plans that asked for a certificate so far
 void plan_goals(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
-                const std::shared_ptr<const AeroMap>& map, const SolveOptions& options, std::uint64_t& attempts,
-                Solution& solution) {
+                const std::shared_ptr<const AeroMap>& map, const SolveOptions& options, double least_round,
+                std::uint64_t& attempts, Solution& solution) {
     std::optional<planning::ProblemWorlds> worlds;
     if (problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada) {
         const planning::Stopwatch clock;
@@ -49,7 +50,7 @@ void plan_goals(const Problem& problem, const std::shared_ptr<const FlightModel>
         return search_part(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how, into);
     };
     if (!problem.stops.empty()) {
-        planning::solve_in_turn(problem, *model, map.get(), options, search, attempts, solution);
+        planning::solve_in_turn(problem, *model, map.get(), options, search, least_round, attempts, solution);
         return;
     }
     planning::Course start = planning::Course::from_start(problem, *model);
@@ -83,15 +84,16 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
     solution.planning.setup_wall_s = since_call.seconds();
     if (problem.targets.empty()) {
         std::uint64_t attempts = 0;
-        plan_goals(problem, model, map, options, attempts, solution);
+        plan_goals(problem, model, map, options, 0, attempts, solution);
     } else {
         planning::solve_in_any_order(
             problem, *model, map.get(), options,
             [&](const Problem& leg, const SolveOptions& how, const planning::Course& before, Solution& into) {
                 static_cast<void>(search_part(leg, leg, *model, map.get(), before, nullptr, how, into));
             },
-            [&](const Problem& in_order, const SolveOptions& how, std::uint64_t& attempts, Solution& into) {
-                plan_goals(in_order, model, map, how, attempts, into);
+            [&](const Problem& in_order, const SolveOptions& how, double least_round, std::uint64_t& attempts,
+                Solution& into) {
+                plan_goals(in_order, model, map, how, least_round, attempts, into);
             },
             solution);
     }
