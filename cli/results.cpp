@@ -71,8 +71,9 @@ std::string order_rows(const VisitOrder& order, const std::optional<double>& ene
     }
     std::string text = row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
     if (!visits.empty()) {
-        text += row("", order.is_best ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
-                              : fmt::format("the cheapest that was found by {} flown legs", order.legs));
+        text += row("", order.is_best
+                            ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
+                            : fmt::format("the cheapest that was found by {} flown legs", order.legs));
     }
     for (const LeftOutTarget& each : order.left_out) {
         std::string why = "no flight to it was found";
@@ -228,8 +229,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += order_rows(*solution.order, problem.energy_budget_j);
     }
     if (solution.execution) {
-        text += flight_rows(goals_of(in_order(problem, solution.order)), solution,
-                            *solution.execution);
+        text += flight_rows(goals_of(in_order(problem, solution.order)), solution, *solution.execution);
     }
     if (solution.certificate) {
         text += certificate_rows(*solution.certificate, folder);

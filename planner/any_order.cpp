@@ -131,7 +131,8 @@ bool AnyOrder::leaves_energy(const PlaceOrder& order) {
     if (!is_limited() || order.places.size() == problem_.targets.size() || !solution_.execution) {
         return false;
     }
-    comparison_.energy_limit_j = *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
+    comparison_.energy_limit_j =
+        *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
     return true;
 }
 
@@ -213,8 +214,8 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
     return inner;
 }
 
-/// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails for
-/// the second time.
+/// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails
+/// for the second time.
 void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& failed) {
     if (options_.stop.stop_requested()) {
         return;

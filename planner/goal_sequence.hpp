@@ -49,7 +49,7 @@ using PartSearch = std::function<std::optional<std::size_t>(const Problem& part,
 /// @param least_round share of the limits that a round after the first takes at least
 /// @param attempts plans that asked for a certificate before, and then with those of this search
 DOWNWASH_EXPORT void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                                   const SolveOptions& options, const PartSearch& search, double least_round, std::uint64_t& attempts,
-                                   Solution& solution);
+                                   const SolveOptions& options, const PartSearch& search, double least_round,
+                                   std::uint64_t& attempts, Solution& solution);
 
 }  // namespace downwash::planning

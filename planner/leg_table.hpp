@@ -31,8 +31,8 @@ class DOWNWASH_EXPORT LegTable {
     LegTable(const LegTable&) = delete;
     LegTable& operator=(const LegTable&) = delete;
 
-    /// Costs of the legs that were flown in this pass, and lower bounds of the others; legs to which no flight was found
-    /// are infinite.
+    /// Costs of the legs that were flown in this pass, and lower bounds of the others; legs to which no flight was
+    /// found are infinite.
     [[nodiscard]] const LegCosts& estimates() const noexcept { return estimates_; }
     /// The cheapest flights of all passes alone: other legs are infinite.
     [[nodiscard]] LegCosts flown_costs() const { return costs_or({}); }
@@ -73,7 +73,9 @@ class DOWNWASH_EXPORT LegTable {
     };
     class Bounds;
 
-    [[nodiscard]] LegState& leg(std::size_t from, std::size_t to) { return legs_[from * (estimates_.outside() + 1) + to]; }
+    [[nodiscard]] LegState& leg(std::size_t from, std::size_t to) {
+        return legs_[from * (estimates_.outside() + 1) + to];
+    }
     [[nodiscard]] const LegState& leg(std::size_t from, std::size_t to) const {
         return legs_[from * (estimates_.outside() + 1) + to];
     }

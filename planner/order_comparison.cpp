@@ -36,8 +36,8 @@ bool OrderComparison::is_converged(const SearchBudget& slice, SearchBudget& budg
     bool is_nearest_first = true;
     std::vector<std::size_t> hint;
     while (!is_stopped_() && !budget.is_used_up()) {
-        const PlaceOrder order =
-            is_nearest_first ? nearest_first(limited(table_.estimates())) : best_order(limited(table_.estimates()), hint);
+        const PlaceOrder order = is_nearest_first ? nearest_first(limited(table_.estimates()))
+                                                  : best_order(limited(table_.estimates()), hint);
         const bool is_flown = !is_order(order) || !fly_missing_legs(order, slice, budget, work);
         if (is_flown && !std::exchange(is_nearest_first, false)) {
             return true;

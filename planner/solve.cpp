@@ -92,9 +92,7 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
                 static_cast<void>(search_part(leg, leg, *model, map.get(), before, nullptr, how, into));
             },
             [&](const Problem& in_order, const SolveOptions& how, double least_round, std::uint64_t& attempts,
-                Solution& into) {
-                plan_goals(in_order, model, map, how, least_round, attempts, into);
-            },
+                Solution& into) { plan_goals(in_order, model, map, how, least_round, attempts, into); },
             solution);
     }
     const Problem flown = in_order(problem, solution.order);

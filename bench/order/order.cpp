@@ -1,11 +1,12 @@
-// Orders of targets that the planner chooses against the given order, nearest-first and the exact order over flown legs,
-// in random scenes. Prints Markdown; every scene counts.
+// Orders of targets that the planner chooses against the given order, nearest-first and the exact order over flown
+// legs, in random scenes. Prints Markdown; every scene counts.
 
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -15,15 +16,11 @@
 #include "../support/measuring.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/bench/machine.hpp"
-#include "downwash/planner/flight_search.hpp"
-#include "downwash/planner/leg_table.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
 using namespace downwash;
 using namespace downwash::bench;
-using planning::LegCosts;
-using planning::PlaceOrder;
 
 namespace {
 
@@ -53,10 +50,8 @@ Problem random_scene(const Options& options, unsigned seed) {
         const double x_m = random.uniform(-9, 9), z_m = random.uniform(2, 10);
         const double width_m = random.uniform(0.5, 2.5), height_m = random.uniform(0.5, 2.5);
         if (std::abs(x_m - problem.start.x_m) > 3 || std::abs(z_m - problem.start.z_m) > 2.5) {
-            problem.obstacles.push_back({fmt::format("block_{}", problem.obstacles.size()),
-                                         Box{{width_m, 6, height_m}},
-                                         {x_m, 0, z_m},
-                                         {}});
+            problem.obstacles.push_back(
+                {fmt::format("block_{}", problem.obstacles.size()), Box{{width_m, 6, height_m}}, {x_m, 0, z_m}, {}});
         }
     }
     const auto is_free = [&](double x_m, double z_m) {
@@ -87,46 +82,92 @@ Problem random_scene(const Options& options, unsigned seed) {
     return problem;
 }
 
-/// What all legs cost: for each the cheaper flight of two searches of its own, all of which take as long.
-LegCosts reference_costs(const Problem& problem, const Options& options) {
-    const auto model = make_flight_model(problem);
-    const auto map = problem.aero.enabled ? model->make_map(problem.bounds, 1) : nullptr;
-    const SolveOptions how;
-    planning::LegTable table(
-        problem, *model, map.get(), how,
-        [&](const Problem& leg, const SolveOptions& of_leg, const planning::Course& before, Solution& into) {
-            static_cast<void>(planning::search_flights(leg, leg, *model, map.get(), before, nullptr, of_leg, into));
-        });
-    PlannerSettings settings;
-    settings.max_iterations = options.leg_iterations;
-    const planning::SearchBudget of_leg(settings);
-    SearchRecord work;
-    const std::size_t outside = table.estimates().outside();
-    const auto fly_from = [&](std::size_t from) {
-        for (std::size_t to = 0; to < outside; ++to) {
-            while (!table.is_known(from, to) && !table.fly(from, to, of_leg, work) &&
-                   std::isfinite(table.estimates().leg(from, to).cost)) {
+using Order = std::vector<std::size_t>;  ///< of targets, from 0
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+/// What all legs cost when executed, the hover at the target included.
+struct Legs {
+    std::vector<double> from_start;            ///< to each target
+    std::vector<std::vector<double>> between;  ///< from each target to each
+
+    [[nodiscard]] double cost_of(const Order& order) const {
+        double sum = from_start[order.front()];
+        for (std::size_t i = 1; i < order.size(); ++i) {
+            sum += between[order[i - 1]][order[i]];
+        }
+        return sum;
+    }
+    [[nodiscard]] Order exact() const {
+        Order order = as_given();
+        Order best = order;
+        while (std::ranges::next_permutation(order).found) {
+            if (cost_of(order) < cost_of(best)) {
+                best = order;
             }
         }
-    };
-    for (const bool is_second : {false, true}) {
-        if (is_second) {
-            table.begin_pass();
+        return best;
+    }
+    [[nodiscard]] Order nearest_first() const {
+        Order left = as_given(), order;
+        while (!left.empty()) {
+            const std::vector<double>& costs = order.empty() ? from_start : between[order.back()];
+            const auto next = std::ranges::min_element(left, {}, [&](std::size_t target) { return costs[target]; });
+            order.push_back(*next);
+            left.erase(next);
         }
-        fly_from(outside);  // what comes to a place from the start hovers there for the legs from it
-        for (std::size_t from = 0; from < outside; ++from) {
-            fly_from(from);
+        return order;
+    }
+    [[nodiscard]] Order as_given() const {
+        Order order(from_start.size());
+        std::iota(order.begin(), order.end(), 0);
+        return order;
+    }
+};
+
+/// Each leg is planned as a problem of its own, by two searches of which the cheaper flight counts. Those from a target
+/// begin where that from the start ended.
+Legs flown_legs(const Problem& problem, const Options& options, const SolveOptions& how) {
+    Problem leg = problem;
+    leg.targets.clear();
+    leg.planner.max_iterations = options.leg_iterations;
+    std::vector<Start> hovers(problem.targets.size(), problem.start);
+    const auto fly = [&](const Start& start, std::size_t to) {
+        leg.start = start;
+        leg.goal = problem.targets[to];
+        double cost = none;
+        for (const unsigned seed : {1U, 2U}) {
+            leg.planner.seed = seed;
+            const Solution found = solve(leg, how);
+            if (found.status == Status::solved && found.execution_cost < cost) {
+                cost = found.execution_cost;
+                const Configuration end = found.plan->last();
+                hovers[to] = {.x_m = end.x_m, .z_m = end.z_m, .arm_rad = end.arm_rad};
+            }
+        }
+        return cost;
+    };
+    Legs legs;
+    for (std::size_t to = 0; to < problem.targets.size(); ++to) {
+        legs.from_start.push_back(fly(problem.start, to));
+    }
+    const std::vector<Start> starts = hovers;
+    for (std::size_t from = 0; from < starts.size(); ++from) {
+        legs.between.emplace_back(starts.size(), none);
+        for (std::size_t to = 0; to < starts.size(); ++to) {
+            if (to != from) {
+                legs.between[from][to] = fly(starts[from], to);
+            }
         }
     }
-    return table.flown_costs();
+    return legs;
 }
 
 /// The executed cost of the flight in an order; empty without one.
-std::optional<double> executed_cost(const Problem& problem, const std::vector<std::size_t>& places,
-                                    const SolveOptions& how) {
+std::optional<double> executed_cost(const Problem& problem, const Order& targets, const SolveOptions& how) {
     VisitOrder order;
-    for (const std::size_t place : places) {
-        order.visits.push_back({place, std::nullopt});
+    for (const std::size_t target : targets) {
+        order.visits.push_back({target, std::nullopt});
     }
     const Solution solution = solve(in_order(problem, order), how);
     return solution.status == Status::solved ? std::optional(solution.execution_cost) : std::nullopt;
@@ -136,8 +177,8 @@ struct Row {
     unsigned scene = 0;
     std::uint64_t legs = 0;  ///< that the planner flew to compare orders
     double wall_s = 0;       ///< of its search
-    double legs_chosen = 0, legs_exact = 0, legs_nearest = 0, legs_given = 0;  ///< costs by the reference
-    std::optional<double> chosen, exact, nearest;                              ///< executed
+    double legs_chosen = none, legs_exact = 0, legs_nearest = 0, legs_given = 0;  ///< costs by the reference
+    std::optional<double> chosen, exact, nearest;                                 ///< executed
 };
 
 std::string ratio(double a, double b) {
@@ -149,30 +190,28 @@ std::string ratio(const std::optional<double>& a, const std::optional<double>& b
 }
 
 Row measured(const Problem& problem, const Options& options, unsigned scene) {
-    const SolveOptions how;
-    Row row;
-    row.scene = scene;
+    SolveOptions how;
+    how.map = problem.aero.enabled ? make_flight_model(problem)->make_map(problem.bounds, 1) : nullptr;
     const Solution solution = solve(problem, how);
-    std::vector<std::size_t> chosen;
+    Order chosen;
     for (const Visit& visit : solution.order->visits) {
         chosen.push_back(visit.target);
     }
-    if (solution.status == Status::solved) {
-        row.chosen = solution.execution_cost;
-    }
-    const LegCosts costs = reference_costs(problem, options);
-    const PlaceOrder exact = planning::best_order(costs);
-    const PlaceOrder nearest = planning::nearest_first(costs);
-    std::vector<std::size_t> given(options.targets);
-    std::iota(given.begin(), given.end(), 0);
+    const Legs legs = flown_legs(problem, options, how);
+    const Order exact = legs.exact(), nearest = legs.nearest_first();
+    Row row;
+    row.scene = scene;
     row.legs = solution.order->legs;
     row.wall_s = solution.planning.wall_s;
-    row.legs_chosen = planning::order_of(costs, chosen).cost;
-    row.legs_exact = exact.cost;
-    row.legs_nearest = nearest.cost;
-    row.legs_given = planning::order_of(costs, given).cost;
-    row.exact = executed_cost(problem, exact.places, how);
-    row.nearest = nearest.places == exact.places ? row.exact : executed_cost(problem, nearest.places, how);
+    if (solution.status == Status::solved) {
+        row.chosen = solution.execution_cost;
+        row.legs_chosen = legs.cost_of(chosen);
+    }
+    row.legs_exact = legs.cost_of(exact);
+    row.legs_nearest = legs.cost_of(nearest);
+    row.legs_given = legs.cost_of(legs.as_given());
+    row.exact = executed_cost(problem, exact, how);
+    row.nearest = nearest == exact ? row.exact : executed_cost(problem, nearest, how);
     return row;
 }
 
@@ -184,20 +223,25 @@ double median_wall_s(std::vector<Row> rows) {
 
 void print(const std::vector<Row>& rows, const Options& options) {
     fmt::print(
-        "# Targets in any order\n\nCommit {}, g++ {}, {}, one thread a search, seed {}. `bench/order.sh` writes this page.\n\n"
-        "{} random scenes with six blocks and {} targets, everything as believed, objective energy. The planner gets {} "
+        "# Targets in any order\n\nCommit {}, g++ {}, {}, one thread a search, seed {}. `bench/order.sh` writes this "
+        "page.\n\n"
+        "{} random scenes with six blocks and {} targets, everything as believed, objective energy. The planner gets "
+        "{} "
         "iterations for a scene, which\ntake {:.1f} s in the median. *Legs* is how many it flew to compare orders.\n\n"
-        "*By legs*: all {} legs from the start to a target and between two targets are flown by two searches of {} "
-        "iterations each, of which the cheaper\nflight counts. The planner does not see these searches. The cost of the "
-        "order that it chose, by these legs, is divided by that of the cheapest\nof all orders (exact), of nearest-first "
-        "and of the order of the file.\n\n*Executed*: the cost of the executed flight of `in_any_order`, divided by that of the flight in the "
+        "*By legs*: each of the {} legs from the start to a target and between two targets is planned as a problem of "
+        "its "
+        "own, by two searches of {}\niterations, of which the cheaper flight counts. The planner does not see these "
+        "flights. The cost of the "
+        "order that it chose, by these legs, is\ndivided by that of the cheapest of all orders (exact), of "
+        "nearest-first "
+        "and of the order of the file.\n\n*Executed*: the cost of the executed flight of `in_any_order`, divided by "
+        "that of the flight in the "
         "other order. The planner is given that order as\na list, with as many iterations, of which it needs none to "
         "compare orders. Below 1 the chosen order is cheaper.\n\n"
         "| scene | legs | by legs: exact | nearest-first | given | executed: exact | nearest-first |\n"
         "|---|---|---|---|---|---|---|\n",
-        source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.seed, options.scenes,
-        options.targets, options.iterations, median_wall_s(rows), options.targets * options.targets,
-        options.leg_iterations);
+        source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.seed, options.scenes, options.targets,
+        options.iterations, median_wall_s(rows), options.targets * options.targets, options.leg_iterations);
     constexpr double allowed = 1.03;
     double worst = 0, worst_executed = 0, worst_nearest = 0;
     int failures = 0, dearer_than_nearest = 0, dear = 0, executed_dear = 0, executed_dearer = 0;
@@ -220,8 +264,10 @@ void print(const std::vector<Row>& rows, const Options& options) {
         }
     }
     fmt::print(
-        "\nBy legs, the chosen order costs at most {:.3f} of the exact one, more than {} of it in {} of {} scenes, and more "
-        "than nearest-first in {}.\nExecuted, it costs at most {:.3f} of the exact one, more than {} of it in {} scenes; "
+        "\nBy legs, the chosen order costs at most {:.3f} of the exact one, more than {} of it in {} of {} scenes, and "
+        "more "
+        "than nearest-first in {}.\nExecuted, it costs at most {:.3f} of the exact one, more than {} of it in {} "
+        "scenes; "
         "more than nearest-first in {} scenes, at most {:.3f} of it.\nIn {} of {} scenes no flight through all targets "
         "was found.\n",
         worst, allowed, dear, rows.size(), dearer_than_nearest, worst_executed, allowed, executed_dear, executed_dearer,

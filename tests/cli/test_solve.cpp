@@ -260,7 +260,8 @@ TEST_CASE("A folder that cannot be written is rejected before planning") {
     }
 }
 
-TEST_CASE("Targets in any order: solve names their order and what it leaves out, and the plan is flown and judged in it") {
+TEST_CASE(
+    "Targets in any order: solve names their order and what it leaves out, and the plan is flown and judged in it") {
     const Workspace work;
     const std::string text = problem_text("open_air");
     const std::string head = text.substr(0, text.find("\ngoal:") + 1);
@@ -268,7 +269,8 @@ TEST_CASE("Targets in any order: solve names their order and what it leaves out,
     const std::string targets =
         "goal:\n  in_any_order:\n    - {configuration: {x_m: 4, z_m: 3}, hold_s: 1}\n"
         "    - {configuration: {x_m: -3, z_m: 3}, hold_s: 1}\n"
-        "    - {any_of: [{configuration: {x_m: -5, z_m: 8}, hold_s: 1}, {configuration: {x_m: 0, z_m: 3}, hold_s: 1}]}\n";
+        "    - {any_of: [{configuration: {x_m: -5, z_m: 8}, hold_s: 1}, {configuration: {x_m: 0, z_m: 3}, hold_s: "
+        "1}]}\n";
     write_file(work.in_run("all.yaml"), head + targets + tail);
     const Result all = succeeded(work.run("solve", "all.yaml --out all --quiet"));
     CHECK_THAT(all.out, Contains("order             targets 2, 3 (alternative 2), 1\n") && !Contains("left out"));
@@ -278,7 +280,8 @@ TEST_CASE("Targets in any order: solve names their order and what it leaves out,
     CHECK(work.json("execute", "all.yaml --plan all --out again --json").at("order") == solution.at("order"));
 
     const double energy_j = solution.at("execution").at("energy_j");
-    write_file(work.in_run("some.yaml"), head + targets + "  energy_budget_j: " + std::to_string(0.8 * energy_j) + "\n" + tail);
+    write_file(work.in_run("some.yaml"),
+               head + targets + "  energy_budget_j: " + std::to_string(0.8 * energy_j) + "\n" + tail);
     const Result some = succeeded(work.run("solve", "some.yaml --out some --quiet"));
     CHECK_THAT(some.out, Contains("left out          target 1: with it the flight takes about "));
     CHECK_THAT(succeeded(work.run("validate", "some.yaml --plan some")).out, StartsWith("Valid. "));

@@ -109,7 +109,9 @@ TEST_CASE("of twenty targets the local search finds an order near the best, the 
     // On a circle, the start on it too: the best order goes around, and back to the start.
     constexpr std::size_t count = 20;
     LegCosts costs(one_place_each(count));
-    const auto at = [](std::size_t place) { return 2 * M_PI * static_cast<double>(place * 8 % (count + 1)) / (count + 1); };
+    const auto at = [](std::size_t place) {
+        return 2 * M_PI * static_cast<double>(place * 8 % (count + 1)) / (count + 1);
+    };
     for (std::size_t from = 0; from <= count; ++from) {
         for (std::size_t to = 0; to <= count; ++to) {
             const double length = 2 * std::abs(std::sin((at(from) - at(to)) / 2));

@@ -230,8 +230,7 @@ TEST_CASE("targets in any order are read with their alternatives, the place to r
     CHECK(goals[0].hold_s == 4);
     CHECK(goals[1].configuration->x_m == 1);
     CHECK(goals[2].configuration->x_m == -4);
-    CHECK(goal_names(problem, order) ==
-          std::vector<std::string>{"target 3", "target 1", "the place to return to"});
+    CHECK(goal_names(problem, order) == std::vector<std::string>{"target 3", "target 1", "the place to return to"});
 }
 
 TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {

@@ -168,9 +168,8 @@ TEST_CASE("The order of targets is written and read back, with what is left out 
     const Solution found = read_with_targets(text_with_order());
     REQUIRE(found.order);
     CHECK(found.order->visits == std::vector<Visit>{{2, std::nullopt}, {1, 1}});
-    CHECK(found.order->left_out ==
-          std::vector<LeftOutTarget>{{0, LeftOutReason::energy_budget, 1e5 / 3},
-                                     {3, LeftOutReason::no_flight, std::nullopt}});
+    CHECK(found.order->left_out == std::vector<LeftOutTarget>{{0, LeftOutReason::energy_budget, 1e5 / 3},
+                                                              {3, LeftOutReason::no_flight, std::nullopt}});
     CHECK(solution_json(found, {"open_air", "open_air.yaml", ""}) == text_with_order());
     // A plan that was written by hand visits them as they stand.
     const Solution by_hand = read_with_targets(sample_text());
@@ -182,7 +181,8 @@ TEST_CASE("An order that is none of the problem is rejected with its place") {
     CHECK_THAT(order_error("\"target\": 3", "\"target\": 5"),
                Contains("order.visits[0].target: expected the number of a target of the problem, 1 to 4"));
     CHECK_THAT(order_error("\"target\": 3", "\"target\": 2"), Contains("order.visits[1]: target 2 stands here twice"));
-    CHECK_THAT(order_error("\"target\": 1", "\"target\": 0"), Contains("order.left_out[0].target: expected the number"));
+    CHECK_THAT(order_error("\"target\": 1", "\"target\": 0"),
+               Contains("order.left_out[0].target: expected the number"));
     CHECK_THAT(order_error("\"alternative\": 2", "\"alternative\": 3"),
                Contains("order.visits[1].alternative: expected the number of an alternative of this target, 1 to 2"));
     CHECK_THAT(order_error("\"alternative\": null", "\"alternative\": 1"), Contains("this target has no alternatives"));
