@@ -71,7 +71,7 @@ def test_targets_in_any_order_are_flown_again_in_the_order_of_the_plan(open_air)
     problem = open_air.replace(
         {"goal": {"in_any_order": targets}, "planner.max_iterations": 600, "planner.time_limit_s": None}
     )
-    solution = downwash.solve(problem)
+    solution = downwash.solve(problem, variant="mp-arm-da")
     assert solution.status == "solved"
     assert [visit["target"] for visit in solution.order["visits"]] == [2, 3, 1]
     assert downwash.execute(problem, solution).outcome == "ok"
