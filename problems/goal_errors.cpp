@@ -101,9 +101,6 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
         if (!target.any_of.empty() && names_a_place(target)) {
             errors.push_back({key, "needs exactly one of end_effector, configuration or any_of"});
         }
-        if (target.contact) {
-            errors.push_back({key, "asks for contact as one of several goals: expected contact for the only goal"});
-        }
     }
     if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && names_a_place(p.goal)) {
         errors.push_back({"goal", "needs exactly one of end_effector, configuration, any_of or contact"});
@@ -113,6 +110,9 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
     }
     append(
         errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+            if (goal.contact) {
+                return {{key, "asks for contact as one of several goals: expected contact for the only goal"}};
+            }
             if (!goal.any_of.empty()) {
                 return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
             }

@@ -147,6 +147,12 @@ const Edit edits[] = {
      "16:20: goal.energy_budget_j is 0: expected a number in J above 0 and at most 1000000000000, or null"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n",
      "15:20: goal.return_to.x_m is 9, outside the bounds: expected -6 to 6"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {contact: {obstacle: wall, force_n: 2}}]\n",
+     "14:45: goal.in_any_order[1] needs exactly one of <targets>\n14:46: unknown key 'contact' in "
+     "goal.in_any_order[1]: "
+     "expected <keys of a target>"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  contact: {obstacle: wall, force_n: 2}\n",
+     "15:3: goal has both in_any_order and contact: expected exactly one of <goals>"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {hold_s: 2}\n",
      "15:3: goal.return_to is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
     {"  hold_s: 5\n", "  hold_s: 5\n  return_to: {x_m: 1}\n",
