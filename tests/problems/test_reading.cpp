@@ -231,6 +231,13 @@ TEST_CASE("targets in any order are read with their alternatives, the place to r
     CHECK(goals[1].configuration->x_m == 1);
     CHECK(goals[2].configuration->x_m == -4);
     CHECK(goal_names(problem, order) == std::vector<std::string>{"target 3", "target 1", "the place to return to"});
+
+    // One that visits nothing but the place to return to, and one that visits nothing.
+    Problem other = problem;
+    CHECK(goals_of(in_order(other, VisitOrder{})).size() == 1);
+    other.return_to.reset();
+    CHECK(goals_of(in_order(other, VisitOrder{})).size() == 3);
+    CHECK(goal_names(other, VisitOrder{}).size() == 3);
 }
 
 TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {
