@@ -231,7 +231,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
             }
             return weak;
         },
-        attempts, solution);
+        0, attempts, solution);
     CHECK(solution.status == Status::approximate);
     REQUIRE_FALSE(named.empty());
     CHECK(named.front() == std::optional<std::size_t>(0));

@@ -88,7 +88,7 @@ struct ScriptedTour {
         SolveOptions options;
         options.stop_at_first_solution = true;
         std::uint64_t attempts = 0;
-        planning::solve_in_turn(problem, *model, nullptr, options, search, attempts, solution);
+        planning::solve_in_turn(problem, *model, nullptr, options, search, 0, attempts, solution);
     }
 };
 
