@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/error_of.hpp"
@@ -327,4 +328,16 @@ TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets 
     const auto of_several = try_remedies(problem, options, 10, [&](const Remedy&) { after_one.request_stop(); });
     REQUIRE(of_several.size() == 1);
     CHECK(of_several[0].change == "all goals 0.1 m lower");
+
+    problem.targets = {problem.stops.front(), std::exchange(problem.goal, {})};
+    problem.stops.clear();
+    std::stop_source after_two;
+    options.stop = after_two.get_token();
+    const auto of_targets = try_remedies(problem, options, 10, [&](const Remedy& remedy) {
+        if (remedy.change == "all goals 0.2 m lower") {
+            after_two.request_stop();
+        }
+    });
+    REQUIRE(of_targets.size() == 2);
+    CHECK_THAT(of_targets[1].error, Catch::StartsWith("goal.in_any_order[0].configuration.z_m is 0.35"));
 }
