@@ -190,11 +190,10 @@ Parameter<Problem> goal_group() {
     return goal;
 }
 
-/// A goal, or a choice of several.
-/// @param goal names the Goal
+/// A choice of several goals.
+/// @param goal names the Goal that has them
 template <class GoalMember>
-void add_goal_or_choice(Rows& rows, const std::string& path, GoalMember goal) {
-    add_kinds(rows, path, goal);
+void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
     auto any_of =
         parameters::list<Problem>(
             path + ".any_of",
@@ -225,7 +224,8 @@ void add_any_order(Rows& rows) {
                        "targets: the planner chooses in which order the flight stays at them, and at which alternative",
                        [](auto& p) -> auto& { return p.targets; })
                        .is_exclusive());
-    add_goal_or_choice(rows, "goal.in_any_order[]", target);
+    add_kinds(rows, "goal.in_any_order[]", target);
+    add_choice(rows, "goal.in_any_order[]", target);
     rows.push_back(
         hold("goal.in_any_order[]", target).only("without any_of", [target](const Problem& p, std::size_t i) {
             return target(p, i).any_of.empty();
@@ -260,8 +260,9 @@ void add_goal_rows(Rows& rows) {
         return p.goal;
     };
     rows.push_back(goal_group());
+    add_kinds(rows, "goal", only);
     add_contact(rows);
-    add_goal_or_choice(rows, "goal", only);
+    add_choice(rows, "goal", only);
     add_any_order(rows);
     rows.push_back(hold("goal", only).only("without any_of and in_any_order", [](const Problem& p, std::size_t) {
         return (p.goal.any_of.empty() || p.goal.contact) && p.targets.empty();
