@@ -86,26 +86,40 @@ AeroMap::AeroMap(Empty /*tag*/, std::vector<MapLayer> layers, const PlaneOfMotio
 }
 
 void AeroMap::build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over) {
+    build(threads, on_progress, is_over, nullptr, {0, columns_});
+}
+
+void AeroMap::build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over,
+                    const AeroMap* before, const ColumnRange& changed) {
     std::vector<LayerGrid> grids;
     for (const MapLayer& layer : layers_) {
         grids.push_back({*layer.effect, plane_, layer.lateral_m, extent_.x_low_m, extent_.z_low_m, cell_m_, columns_,
                          rows_, is_over});
     }
     const std::size_t tasks_per_layer = (rows_ + rows_per_task - 1) / rows_per_task;
+    const auto rows_of = [&](std::size_t task) {
+        const std::size_t first = (task % tasks_per_layer) * rows_per_task;
+        return std::pair{first, std::min<std::size_t>(first + rows_per_task, rows_)};
+    };
     std::vector<CellRows> parts(tasks_per_layer * grids.size());
+    std::vector<ColumnRange> columns(parts.size(), ColumnRange{0, columns_});
     run_parallel(
         parts.size(), threads,
         [&](std::size_t task) {
-            const std::size_t first = (task % tasks_per_layer) * rows_per_task;
-            parts[task] =
-                build_rows(grids[task / tasks_per_layer], first, std::min<std::size_t>(first + rows_per_task, rows_));
+            const std::size_t layer = task / tasks_per_layer;
+            const auto [first, last] = rows_of(task);
+            parts[task] = before == nullptr
+                              ? build_rows(grids[layer], first, last)
+                              : rebuild_rows(grids[layer], first, last,
+                                             {changed, before->rasters_[layer]->flyability.data()}, columns[task]);
         },
         on_progress);
 
     for (std::size_t layer = 0; layer < grids.size(); ++layer) {
         Raster raster;
         for (std::size_t task = layer * tasks_per_layer; task < (layer + 1) * tasks_per_layer; ++task) {
-            raster.append(parts[task]);
+            raster.append(parts[task], columns[task], before != nullptr ? before->rasters_[layer].get() : nullptr,
+                          rows_of(task).first, columns_);
             parts[task] = {};
         }
         raster.cells.shrink_to_fit();
@@ -116,28 +130,95 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress,
     }
 }
 
-void AeroMap::Raster::append(const CellRows& rows) {
-    auto values = rows.nodes.begin();
-    for (std::size_t i = 0; i < rows.steps.size(); ++i) {
-        const CellSteps& steps = rows.steps[i];
-        const std::ptrdiff_t kinds = rows.sides[i] == CellSides::both ? 2 : 1;
-        const auto end = values + kinds * (steps.x + 1) * (steps.z + 1);
-        const bool is_as_before =
-            !cells.empty() && cells.back().steps_x == steps.x && cells.back().steps_z == steps.z &&
-            (sides.back() == CellSides::both) == (kinds == 2) &&
-            std::equal(values, end, nodes.begin() + static_cast<std::ptrdiff_t>(cells.back().first_node));
-        const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
-        if (first > std::numeric_limits<std::uint32_t>::max()) {
-            throw_input_error("gives a map of more than 2^32 values; choose smaller bounds", "aero.grid_m");
+AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed, int threads,
+                         const StopCondition& is_over) const {
+    AeroMap next(Empty(), std::move(layers), plane_, extent_);
+    const auto sees_beside = [](const MapLayer& layer) {
+        const DirectEffect& effect = *layer.effect;
+        return effect.is_of_walls() || is_multirotor(effect.settings().ground.model) ||
+               is_multirotor(effect.settings().ceiling.model) || effect.ground().depends_on_wall() ||
+               effect.ceiling().depends_on_wall();
+    };
+    const bool is_same_grid =
+        next.cell_m_ == cell_m_ && next.columns_ == columns_ && next.rows_ == rows_ && layers_.size() == next.layers_.size();
+    if (!is_same_grid || std::any_of(next.layers_.begin(), next.layers_.end(), sees_beside)) {
+        next.build(threads, {}, is_over);
+    } else {
+        next.build(threads, {}, is_over, this, next.columns_beside(changed));
+    }
+    return next;
+}
+
+/// The columns whose discs are over or under some boxes, or so near them that it matters for what is flyable; none
+/// without a box.
+ColumnRange AeroMap::columns_beside(const std::vector<Scene::Bounds>& boxes) const {
+    double low_m = std::numeric_limits<double>::infinity();
+    double high_m = -low_m;
+    for (const Scene::Bounds& box : boxes) {
+        for (const double x_m : {box.low_m[0], box.high_m[0]}) {
+            for (const double y_m : {box.low_m[1], box.high_m[1]}) {
+                const double along_m = plane_.from_world({x_m, y_m, 0})[0];
+                low_m = std::min(low_m, along_m);
+                high_m = std::max(high_m, along_m);
+            }
         }
-        cells.push_back({static_cast<std::uint32_t>(first), steps.x, steps.z});
-        sides.push_back(rows.sides[i]);
-        if (!is_as_before) {
-            nodes.insert(nodes.end(), values, end);
+    }
+    double reach_m = cell_m_;
+    for (const MapLayer& layer : layers_) {
+        reach_m = std::max(
+            reach_m, cell_m_ + layer.effect->column_radius_m() + std::max(0.0, layer.effect->min_clearance_m()));
+    }
+    const auto column_at = [this](double x_m) {
+        return static_cast<std::size_t>(
+            std::clamp((x_m - extent_.x_low_m) * cells_per_m_, 0.0, static_cast<double>(columns_)));
+    };
+    return low_m > high_m ? ColumnRange{columns_, 0} : ColumnRange{column_at(low_m - reach_m), column_at(high_m + reach_m)};
+}
+
+/// Rows of which only some columns were built; the others are those of another raster.
+void AeroMap::Raster::append(const CellRows& rows, const ColumnRange& columns, const Raster* before, std::size_t first,
+                             std::size_t width) {
+    const float* values = rows.nodes.data();
+    std::size_t built = 0;
+    const std::size_t height = rows.flyability.size() / width;
+    for (std::size_t k = 0; k < height; ++k) {
+        for (std::size_t i = 0; i < width; ++i) {
+            if (i >= columns.first && i < columns.last) {
+                append_cell(rows.steps[built].x, rows.steps[built].z, rows.sides[built], values);
+                values += value_count(cells.back(), sides.back());
+                ++built;
+            } else {
+                const std::size_t cell = (first + k) * width + i;
+                const MapCell& same = before->cells[cell];
+                append_cell(same.steps_x, same.steps_z, before->sides[cell], before->nodes.data() + same.first_node);
+            }
         }
-        values = end;
     }
     flyability.insert(flyability.end(), rows.flyability.begin(), rows.flyability.end());
+}
+
+/// Values of all kinds that a cell has.
+std::ptrdiff_t AeroMap::Raster::value_count(const MapCell& cell, CellSides sides) {
+    return static_cast<std::ptrdiff_t>((sides == CellSides::both ? 2 : 1) * node_count(cell));
+}
+
+void AeroMap::Raster::append_cell(std::uint16_t steps_x, std::uint16_t steps_z, CellSides side, const float* values) {
+    MapCell cell{0, steps_x, steps_z};
+    const std::ptrdiff_t count = value_count(cell, side);
+    const bool is_as_before =
+        !cells.empty() && cells.back().steps_x == steps_x && cells.back().steps_z == steps_z &&
+        (sides.back() == CellSides::both) == (side == CellSides::both) &&
+        std::equal(values, values + count, nodes.begin() + static_cast<std::ptrdiff_t>(cells.back().first_node));
+    const std::size_t first = is_as_before ? cells.back().first_node : nodes.size();
+    if (first > std::numeric_limits<std::uint32_t>::max()) {
+        throw_input_error("gives a map of more than 2^32 values; choose smaller bounds", "aero.grid_m");
+    }
+    cell.first_node = static_cast<std::uint32_t>(first);
+    cells.push_back(cell);
+    sides.push_back(side);
+    if (!is_as_before) {
+        nodes.insert(nodes.end(), values, values + count);
+    }
 }
 
 void AeroMap::add_raster(Raster raster) {

@@ -18,6 +18,7 @@
 namespace downwash {
 
 struct CellRows;
+struct ColumnRange;
 
 /// One layer of a map: an effect in the plane of motion shifted sideways.
 struct MapLayer {
@@ -53,6 +54,13 @@ class DOWNWASH_EXPORT AeroMap {
     /// have too many cells
     AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads = 1,
             const std::function<void(double)>& on_progress = {}, const StopCondition& is_over = {});
+
+    /// The map after obstacles came, went or moved: equal to the last bit to one that is built anew, but only the
+    /// columns over and under what changed are evaluated again, if K depends on what is over and under the disc alone.
+    /// @param layers as those of the map, in the new scene   @param changed boxes around what changed, before and after
+    /// @throws WorkStopped when it is over before the map is built
+    [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed,
+                                  int threads = 1, const StopCondition& is_over = {}) const;
 
     /// The content of the map as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
@@ -121,7 +129,10 @@ class DOWNWASH_EXPORT AeroMap {
         std::vector<CellSides> sides;            ///< of each cell
         std::vector<float> nodes;  ///< a cell that has the values of the one before it shares them: most cells do
 
-        void append(const CellRows& rows);
+        void append(const CellRows& rows, const ColumnRange& columns, const Raster* before, std::size_t first,
+                    std::size_t width);
+        void append_cell(std::uint16_t steps_x, std::uint16_t steps_z, CellSides side, const float* values);
+        [[nodiscard]] static std::ptrdiff_t value_count(const MapCell& cell, CellSides sides);
     };
 
     /// A map without values.
@@ -133,6 +144,10 @@ class DOWNWASH_EXPORT AeroMap {
     }
     [[nodiscard]] SidedFactor<double> sided_factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
     void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over);
+    /// @param before in which the columns between were something else; nullptr for a new map
+    void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over,
+               const AeroMap* before, const ColumnRange& changed);
+    [[nodiscard]] ColumnRange columns_beside(const std::vector<Scene::Bounds>& boxes) const;
     void add_raster(Raster raster);
     [[nodiscard]] bool is_sound(const Raster& raster) const;
     [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;

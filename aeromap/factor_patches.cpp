@@ -40,10 +40,12 @@ SidedFactor<double> biquadratic(const std::array<SidedFactor<double>, 9>& values
 
 FactorPatches::FactorPatches(const LayerGrid& grid, std::size_t first) : grid_(grid), first_(first) {}
 
-void FactorPatches::fit(const FlyableCells& flyable) {
+/// A block answers for its left edge, so that the one behind the columns is needed too.
+void FactorPatches::fit(const ColumnRange& columns, const FlyableCells& flyable) {
     blocks_ = (grid_.columns + block_cells - 1) / block_cells;
     nodes_.assign(blocks_, direct);
-    for (std::size_t i = 0; i < blocks_; ++i) {
+    const std::size_t last = std::min(blocks_, columns.last / block_cells + 1);
+    for (std::size_t i = columns.first / block_cells; i < last; ++i) {
         fit(i, {i * block_units, 0, block_units}, false, flyable);
     }
 }

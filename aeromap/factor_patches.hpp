@@ -30,8 +30,10 @@ class FactorPatches {
     /// @param first the strip's first row
     FactorPatches(const LayerGrid& grid, std::size_t first);
 
-    /// Fits parabolas where all cells are flyable. @pre K turns only from one obstacle to the next (shortest_turn_m)
-    void fit(const FlyableCells& flyable);
+    /// Fits parabolas where all cells are flyable.
+    /// @param columns that K is asked in; of whole blocks   @pre K turns only from one obstacle to the next
+    /// (shortest_turn_m)
+    void fit(const ColumnRange& columns, const FlyableCells& flyable);
 
     /// K at a point of the strip, which is taken to the nearest of 2048 in a cell's side; parabolas miss by about
     /// 0.002 at most.

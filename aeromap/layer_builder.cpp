@@ -33,25 +33,61 @@ class RowsBuilder {
     }
 
     CellRows build() {
+        find_flyable();
+        build_columns({0, grid_.columns});
+        return std::move(rows_);
+    }
+
+    CellRows rebuild(const LayerBefore& before, ColumnRange& columns) {
+        find_flyable();
+        columns = not_as_before(before);
+        build_columns(columns);
+        return std::move(rows_);
+    }
+
+ private:
+    void find_flyable() {
         if (grid_.effect.settings().enabled) {
             classify(0, grid_.columns, first_, last_);
             if (grid_.effect.settings().map && min_clearance_m_ >= 0) {
                 ask_given_map();
             }
         }
+    }
+
+    /// The values of some columns, whose blocks of patches are theirs alone.
+    void build_columns(const ColumnRange& columns) {
         if (grid_.effect.settings().enabled && std::isinf(everywhere_.shortest_turn_m)) {
             patches_.fit(
-                [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, first_ + k, n); });
+                columns, [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, first_ + k, n); });
         }
         for (std::size_t k = first_; k < last_; ++k) {
-            for (std::size_t i = 0; i < grid_.columns; ++i) {
+            for (std::size_t i = columns.first; i < columns.last; ++i) {
                 add_cell(i, k);
             }
         }
-        return std::move(rows_);
     }
 
- private:
+    /// Those that may have changed, and those where other cells are flyable; whole blocks of patches, and the block
+    /// before them, whose right edge is theirs.
+    [[nodiscard]] ColumnRange not_as_before(const LayerBefore& before) {
+        ColumnRange columns = before.changed;
+        for (std::size_t k = first_; k < last_; ++k) {
+            for (std::size_t i = 0; i < grid_.columns; ++i) {
+                if (flyability(i, k) != before.flyability[k * grid_.columns + i]) {
+                    columns = {std::min(columns.first, i), std::max(columns.last, i + 1)};
+                }
+            }
+        }
+        if (columns.first >= columns.last) {
+            return {0, 0};
+        }
+        constexpr std::size_t block = FactorPatches::block_cells;
+        const std::size_t first = columns.first / block;
+        const std::size_t last = (columns.last + block - 1) / block;
+        return {(first - std::min<std::size_t>(first, 1)) * block, std::min(grid_.columns, last * block)};
+    }
+
     [[nodiscard]] double x_at(std::size_t i) const { return grid_.x_low_m + static_cast<double>(i) * grid_.side_m; }
     [[nodiscard]] double z_at(std::size_t k) const { return grid_.z_low_m + static_cast<double>(k) * grid_.side_m; }
     [[nodiscard]] Vector3 hub(double x, double z) const { return grid_.plane.to_world(x, grid_.lateral_m, z); }
@@ -219,6 +255,11 @@ double steepest(const EffectCurve& curve, double from_radii) {
 
 CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) {
     return RowsBuilder(grid, first, last).build();
+}
+
+CellRows rebuild_rows(const LayerGrid& grid, std::size_t first, std::size_t last, const LayerBefore& before,
+                      ColumnRange& columns) {
+    return RowsBuilder(grid, first, last).rebuild(before, columns);
 }
 
 double longest_cell_side_m(const DirectEffect& effect) {

@@ -263,7 +263,7 @@ std::string expectation(const ParameterInfo& info) {
             return (info.names.size() > 1 ? "one of " : "") + joined_names(info.names) +
                    (info.can_be_group ? ", or a group of keys" : "");
         case ParameterKind::numbers:
-            return elements_text(info.elements) + in_unit + range + or_null;
+            return (info.elements.empty() ? "a list of numbers" : elements_text(info.elements)) + in_unit + range + or_null;
         case ParameterKind::points:
             return "a list of [x, y, z]" + in_unit + range;
         case ParameterKind::file:

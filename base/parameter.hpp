@@ -29,7 +29,7 @@ enum class ParameterKind {
     text,        ///< any text
     identifier,  ///< text that may become part of a path: [A-Za-z0-9_-]{1,64}
     choice,      ///< one of `names`
-    numbers,     ///< a list of as many numbers as `elements`
+    numbers,     ///< a list of as many numbers as `elements`; of any number, or none, without them
     points,      ///< a list of [x, y, z]
     file,        ///< path of a file whose content belongs to the model, relative to the file that names it
     samples,     ///< a list of any number of numbers

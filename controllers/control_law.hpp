@@ -75,6 +75,13 @@ struct LawMemory {
     T number[max_memory(static_cast<const ControlLaw*>(nullptr))];
 };
 
+/// How many numbers a law remembers, with its aids.
+[[nodiscard]] inline int memory_size(const ControlLaw& law) {
+    return visit_flown(law, []<class Flown>(const Flown& /*law*/) {
+        return number_count<double, typename Flown::template Memory<double>>;
+    });
+}
+
 /// The memory of one law in it.
 template <class Law, class T>
 [[nodiscard, gnu::always_inline]] inline typename Law::template Memory<T> recalled(const LawMemory<T>& all) {

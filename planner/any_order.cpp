@@ -34,6 +34,8 @@ class AnyOrder {
     [[nodiscard]] static SolveOptions silent(SolveOptions options) {
         options.on_plan = nullptr;
         options.on_progress = nullptr;
+        options.known_plan.reset();
+        options.known_places.clear();
         return options;
     }
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
@@ -190,6 +192,8 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
 
 SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& order) {
     SolveOptions inner = options_;
+    inner.known_plan.reset();
+    inner.known_places.clear();
     inner.stop_at_first_solution = is_first_only;
     const bool counts_alone = !has_way() || order.places.size() > best_.places.size();
     const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_of_way(solution_);

@@ -254,6 +254,7 @@ void FlightSearch::run_tree() {
                        }});
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
+    planner.set_known(options_.known_plan, options_.known_places);
     planner.set_observer(
         [&] { clock_.note(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections); });
     planner.setup();

@@ -235,6 +235,8 @@ bool GoalSequence::search_part(Round& round) {
 /// Options under which a part reports its progress as that of the whole.
 SolveOptions GoalSequence::options_of_part(const Round& round) {
     SolveOptions inner = options_;
+    inner.known_plan.reset();
+    inner.known_places.clear();
     // A first plan is far from the cheapest.
     inner.stop_at_first_solution = !has_way() && !problem_.energy_budget_j;
     const std::size_t number = round.part_costs.size();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/controllers/plan.hpp"
@@ -45,6 +46,11 @@ struct SolveOptions {
     /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
     /// is reused.
     std::function<void(double)> on_map_progress;
+    /// What the search knows before it begins, as from a search for the same goal from another start or in another
+    /// scene: a plan, whose ticks begin with the search, is flown from the start first and refined if nothing rejects
+    /// it; places are tried before random ones, in their order. Of a problem without stops; rrt-star only.
+    std::optional<Plan> known_plan;
+    std::vector<Configuration> known_places;
     bool stop_at_first_solution = false;
     bool keep_tree = false;  ///< also gives the search tree
     std::shared_ptr<const AeroMap>

@@ -78,13 +78,19 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
       flights_(problem, std::move(model), std::move(map), options.threads),
       threads_(options.threads) {}
 
+std::vector<FlownWorld> search_worlds(const Problem& problem) {
+    std::vector<FlownWorld> worlds;
+    for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
+        const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
+        worlds.push_back(
+            make_world(problem.robot, world_at(*problem.uncertainty, problem.robot, search_quantiles(i), tape)));
+    }
+    return worlds;
+}
+
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
     SearchWorlds search;
-    for (std::uint64_t i = 1; i < problem_.planner.worlds; ++i) {
-        const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem_.planner.seed} ^ simulation::mixed(i));
-        search.worlds.push_back(
-            make_world(problem_.robot, world_at(*problem_.uncertainty, problem_.robot, search_quantiles(i), tape)));
-    }
+    search.worlds = search_worlds(problem_);
     for (const std::optional<FlightState>& vehicle : vehicles_after(before, search.worlds)) {
         if (!vehicle) {
             throw_input_error(

@@ -16,6 +16,9 @@ class CertificateRecord;
 /// Told now and then in how many worlds a plan was flown, and in how many it failed.
 using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t failures)>;
 
+/// The worlds that every edge of a search has to survive beside the nominal one. @pre the problem has an uncertainty
+[[nodiscard]] std::vector<FlownWorld> search_worlds(const Problem& problem);
+
 /// The worlds of a search and the certificates of its plans.
 class DOWNWASH_EXPORT ProblemWorlds {
  public:

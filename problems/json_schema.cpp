@@ -175,7 +175,8 @@ class SchemaWriter {
             case ParameterKind::choice:
                 return {{"enum", info.names}};
             case ParameterKind::numbers:
-                return array_schema(number_schema(info, "number"), info.elements.size());
+                return info.elements.empty() ? array_schema(number_schema(info, "number"))
+                                             : array_schema(number_schema(info, "number"), info.elements.size());
             case ParameterKind::points:
                 return array_schema(array_schema(number_schema(info, "number"), 3));
             case ParameterKind::samples:

@@ -32,19 +32,26 @@ enum class Variant {
 /// Name as in problem files: "mp-arm-ada".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
 
-/// Where the flight begins.
+/// Where the flight begins. A vehicle in the middle of a flight has more to it than where it is and how it moves: the
+/// reference that it follows, what its rotors give and what its controller remembers.
 struct Start {
     double x_m = 0, z_m = 0, arm_rad = 0;
     double pitch_rad = 0;
     double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
+    std::optional<ReferencePoint> reference;  ///< with which the plan begins; empty: where the vehicle is, as it moves
+    /// Free-air thrust that the rotors' lag has reached [N], of each rotor; empty: they carry the weight.
+    std::vector<double> rotor_thrust_n;
+    /// Numbers of the control law's memory, in the order of its Memory; empty: that of a vehicle that has hovered long.
+    std::vector<double> controller_memory;
 
     /// Where vehicle and arm are, the pitch left out.
     [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
 };
 
-/// Whether nothing moves at the start.
-[[nodiscard]] constexpr bool is_at_rest(const Start& start) noexcept {
-    return start.vx_m_s == 0 && start.vz_m_s == 0 && start.pitch_rate_rad_s == 0 && start.arm_rate_rad_s == 0;
+/// Whether nothing moves at the start, and a vehicle may have hovered there for long: none that is in a flight already.
+[[nodiscard]] inline bool is_at_rest(const Start& start) noexcept {
+    return start.vx_m_s == 0 && start.vz_m_s == 0 && start.pitch_rate_rad_s == 0 && start.arm_rate_rad_s == 0 &&
+           !start.reference && start.rotor_thrust_n.empty() && start.controller_memory.empty();
 }
 
 /// Wall time of a search that is limited by nothing else [s].
@@ -105,6 +112,10 @@ inline constexpr std::size_t max_targets = 20;
 /// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision
 /// or outside the flyable area, a goal out of reach. Keys are key paths of a problem file. Empty when it is sound.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> problem_errors(const Problem& problem);
+
+/// What of a start does not belong to the robot: too many or too few rotor thrusts, or numbers of the controller's memory.
+/// Part of problem_errors().
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> start_errors(const Start& start, const Robot& robot);
 
 /// What can be planned but is likely not meant: a controller that does not hold a hover in free air, overlapping rotor
 /// discs, rotors that roll the vehicle, gains of zero, a power far from usual, no safety margin, a goal that is met at

@@ -185,8 +185,16 @@ std::vector<KeyError> start_outside_bounds(const Problem& p) {
     return errors;
 }
 
+std::vector<KeyError> misfit_start(const Problem& p) {
+    return start_errors(p.start, p.robot);
+}
+
+/// A vehicle in flight is as fast as it is; what has limits is its reference.
 std::vector<KeyError> start_too_fast(const Problem& p) {
     std::vector<KeyError> errors;
+    if (p.start.reference) {
+        return errors;
+    }
     const double speed = std::hypot(p.start.vx_m_s, p.start.vz_m_s);
     if (speed > p.motion.max_speed_m_s) {
         errors.push_back({p.start.vx_m_s == 0 ? "start.vz_m_s" : "start.vx_m_s",
@@ -308,7 +316,7 @@ std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
     return errors;
 }
 
-const std::array<Check<ProblemCheck>, 18> checks{{
+const std::array<Check<ProblemCheck>, 19> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -319,6 +327,7 @@ const std::array<Check<ProblemCheck>, 18> checks{{
     {{"aero.map", "robot.rotors"}, map_of_another_rotor},
     {{"environment.bounds", "aero", "robot.rotors"}, too_large_map},
     {{"environment.bounds", "start"}, start_outside_bounds},
+    {{"start", "robot.rotors", "robot.controller"}, misfit_start},
     {{"start", "motion"}, start_too_fast},
     {{"start.arm_deg", "robot.arm"}, start_beyond_arm_limits},
     {{"environment.obstacles", "environment.plane", "start", "robot.multirotor.body", "robot.arm",
@@ -332,6 +341,25 @@ const std::array<Check<ProblemCheck>, 18> checks{{
 }};
 
 }  // namespace
+
+std::vector<KeyError> start_errors(const Start& start, const Robot& robot) {
+    std::vector<KeyError> errors;
+    const auto check = [&errors](const char* key, const std::vector<double>& given, std::size_t expected,
+                                 const char* of_what) {
+        if (!given.empty() && given.size() != expected) {
+            errors.push_back({key, "has " + std::to_string(given.size()) + " numbers: expected " +
+                                       std::to_string(expected) + ", " + of_what});
+        }
+        if (!std::all_of(given.begin(), given.end(), [](double number) { return std::isfinite(number); })) {
+            errors.push_back({key, "has a number that is not finite: expected finite ones"});
+        }
+    };
+    check("start.rotor_thrust_n", start.rotor_thrust_n, robot.rotors.positions_m.size(), "one for each rotor");
+    check("start.controller_memory", start.controller_memory,
+          static_cast<std::size_t>(controllers::memory_size(robot.controller.law)),
+          "as many as robot.controller remembers");
+    return errors;
+}
 
 std::vector<KeyError> further_errors(const ProblemCheck& check, WrongKeys wrong) {
     const Problem& problem = check.problem();

@@ -1,5 +1,7 @@
 #include "downwash/problems/problem_model.hpp"
 
+#include <algorithm>
+
 namespace downwash {
 
 std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
@@ -9,7 +11,21 @@ std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
 
 FlightState start_state(const FlightModel& model, const Start& start) {
     const double u[4] = {start.vx_m_s, start.vz_m_s, start.pitch_rate_rad_s, start.arm_rate_rad_s};
-    return model.state_at({start.x_m, start.z_m, start.pitch_rad, start.arm_rad}, u);
+    FlightState state = model.state_at({start.x_m, start.z_m, start.pitch_rad, start.arm_rad}, u);
+    std::copy(start.rotor_thrust_n.begin(), start.rotor_thrust_n.end(), state.plant.thrust_n);
+    std::copy(start.controller_memory.begin(), start.controller_memory.end(), state.memory.number);
+    return state;
+}
+
+Start start_of(const FlightModel& model, const FlightState& state, const ReferencePoint& reference) {
+    const double(&q)[4] = state.plant.q;
+    const double(&u)[4] = state.plant.u;
+    Start start{q[0], q[1], q[3], q[2], u[0], u[1], u[2], u[3], reference, {}, {}};
+    const PlantModel& plant = model.tick().plant;
+    start.rotor_thrust_n.assign(state.plant.thrust_n, state.plant.thrust_n + plant.rotor_count);
+    const int numbers = controllers::memory_size(model.tick().law);
+    start.controller_memory.assign(state.memory.number, state.memory.number + numbers);
+    return start;
 }
 
 }  // namespace downwash

@@ -22,6 +22,13 @@ struct PlannableProblem {
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem);
 
 /// The vehicle at the start of a problem.
+/// @pre rotor thrusts and memory, if given, are as many as the robot has
 [[nodiscard]] DOWNWASH_EXPORT FlightState start_state(const FlightModel& model, const Start& start);
+
+/// A vehicle in the middle of a flight, as a start. What it saw a delay ago is not part of it: at a start it has always
+/// been as it is.
+/// @param reference that it follows at this moment
+[[nodiscard]] DOWNWASH_EXPORT Start start_of(const FlightModel& model, const FlightState& state,
+                                             const ReferencePoint& reference);
 
 }  // namespace downwash

@@ -99,6 +99,53 @@ void add_environment(Rows& rows) {
     add_obstacle_rows(rows);
 }
 
+/// The reference at the start; the default where there is none.
+const ReferencePoint& reference_in(const Problem& p) {
+    static const ReferencePoint still;
+    if (p.start.reference) {
+        return *p.start.reference;
+    }
+    return still;
+}
+ReferencePoint& reference_in(Problem& p) {
+    if (!p.start.reference) {
+        p.start.reference.emplace();
+    }
+    return *p.start.reference;
+}
+
+/// One row for each coordinate of the reference that a vehicle in flight follows.
+void add_start_reference(Rows& rows) {
+    const auto reference = [](auto& p) -> auto& {
+        return p.start.reference;
+    };
+    rows.push_back(parameters::optional_group<Problem>(
+        "start.reference", "that a vehicle in flight follows; else where it is, as it moves", reference));
+    struct Coordinate {
+        std::string_view path, description;
+        double most;
+        double (ReferencePoint::*part)[3];
+        int axis;
+    };
+    static constexpr Coordinate coordinates[] = {
+        {"start.reference.x_m", "along the plane", farthest_m, &ReferencePoint::position, 0},
+        {"start.reference.z_m", "upwards", farthest_m, &ReferencePoint::position, 1},
+        {"start.reference.arm_deg", "of the arm", 3600, &ReferencePoint::position, 2},
+        {"start.reference.vx_m_s", "its speed along the plane", 100, &ReferencePoint::velocity, 0},
+        {"start.reference.vz_m_s", "its speed upwards", 100, &ReferencePoint::velocity, 1},
+        {"start.reference.arm_rate_deg_s", "its rate of the arm", 1800, &ReferencePoint::velocity, 2},
+        {"start.reference.ax_m_s2", "its acceleration along the plane", 1000, &ReferencePoint::acceleration, 0},
+        {"start.reference.az_m_s2", "its acceleration upwards", 1000, &ReferencePoint::acceleration, 1},
+        {"start.reference.arm_acceleration_deg_s2", "its acceleration of the arm", 1e5, &ReferencePoint::acceleration, 2},
+    };
+    for (const Coordinate& each : coordinates) {
+        rows.push_back(angle(each.path, each.description, each.most, [&each](auto& p) -> auto& {
+            auto& point = reference_in(p);
+            return (point.*each.part)[each.axis];
+        }));
+    }
+}
+
 void add_start(Rows& rows) {
     rows.push_back(group("start", "where the flight begins").is_required());
     rows.push_back(position(
@@ -123,6 +170,15 @@ void add_start(Rows& rows) {
     rows.push_back(angle(
         "start.arm_rate_deg_s", "rate of the arm's joint", 1800,
         [](auto& p) -> auto& { return p.start.arm_rate_rad_s; }));
+    rows.push_back(parameters::numbers<Problem>(
+        "start.rotor_thrust_n", "of a vehicle in flight: free-air thrust of each rotor; none: those of a hover", {},
+        [](const Problem& p, std::size_t) { return Value(p.start.rotor_thrust_n); },
+        [](Problem& p, std::size_t, const std::vector<double>& given) { p.start.rotor_thrust_n = given; }));
+    rows.push_back(parameters::numbers<Problem>(
+        "start.controller_memory", "of a vehicle in flight: what its controller remembers; none: as after a long hover",
+        {}, [](const Problem& p, std::size_t) { return Value(p.start.controller_memory); },
+        [](Problem& p, std::size_t, const std::vector<double>& given) { p.start.controller_memory = given; }));
+    add_start_reference(rows);
 }
 
 void add_motion(Rows& rows) {

@@ -148,7 +148,8 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
         case ParameterKind::file:
             return read_text(info, node);
         case ParameterKind::numbers:
-            return read_numbers(info, node, info.elements.size());
+            return info.elements.empty() ? read_elements(info, node, read_number)
+                                         : read_numbers(info, node, info.elements.size());
         case ParameterKind::points:
             return read_points(info, node);
         case ParameterKind::samples:

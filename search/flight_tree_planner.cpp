@@ -93,6 +93,13 @@ void FlightTreePlanner::begin(const FlightPoint& start) {
     refiner_random_ = random.branch();
     growth_.emplace(start, space_, parameters_, flights_, random);
     refiner_.emplace(start, refined_flights_, refiner_random_);
+    growth_->try_first(known_places_);
+    if (known_plan_ && known_plan_->reference.size() > 1) {
+        refiner_->take({*known_plan_});
+        if (const FlownPlan* const known = refiner_->best()) {
+            growth_->know_plan(refiner_->moments_of(*known));
+        }
+    }
 }
 
 FlightStatistics FlightTreePlanner::statistics() const {

@@ -60,6 +60,11 @@ class FlightTreePlanner : public ompl::base::Planner {
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
     /// The search ends with the first plan that counts.
     void set_stops_at_first_plan(bool stops) { stops_at_first_plan_ = stops; }
+    /// What is known before the next search that begins: see SolveOptions.
+    void set_known(std::optional<Plan> plan, std::vector<Configuration> places) {
+        known_plan_ = std::move(plan);
+        known_places_ = std::move(places);
+    }
     /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
@@ -106,6 +111,8 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::function<void()> observer_;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
+    std::optional<Plan> known_plan_;
+    std::vector<Configuration> known_places_;
     const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< of the solve() under way
 
     PlannedFlights flights_;          ///< of the tree

@@ -10,6 +10,9 @@
 namespace downwash::planning {
 
 ReferencePoint reference_at(const Start& start) noexcept {
+    if (start.reference) {
+        return *start.reference;
+    }
     ReferencePoint point = at_rest(start.configuration());
     point.velocity[0] = start.vx_m_s;
     point.velocity[1] = start.vz_m_s;

@@ -59,7 +59,17 @@ TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const
     }
 }
 
+void TreeGrowth::try_first(std::vector<Configuration> places) {
+    first_places_ = std::move(places);
+    std::reverse(first_places_.begin(), first_places_.end());
+}
+
 std::optional<Configuration> TreeGrowth::target() {
+    if (!first_places_.empty()) {
+        const Configuration place = first_places_.back();
+        first_places_.pop_back();
+        return place;
+    }
     if (known_plan_ && random_.chance(parameters_.local_bias)) {
         return target_beside_plan();
     }

@@ -23,6 +23,8 @@ class TreeGrowth {
     std::uint64_t grow(std::optional<std::uint64_t> max_samples);
     /// Samples are drawn beside this plan too from now on. @param moments as in Candidate
     void know_plan(const std::vector<FlightPoint>& moments) { known_plan_ = moments; }
+    /// These places are tried first, in their order.
+    void try_first(std::vector<Configuration> places);
     /// The plan that ends with this hold does not count: no direct flight confirms it.
     void discard(FlightNode& hold);
 
@@ -71,6 +73,7 @@ class TreeGrowth {
     PlannedFlights& flights_;
     Random random_;
     FlightTree tree_;
+    std::vector<Configuration> first_places_;  ///< yet to be tried, the next one last
     std::optional<std::vector<FlightPoint>> known_plan_;
     double best_hold_cost_ = HUGE_VAL;  ///< of the holds that were not discarded
     const FlightNode* nearest_to_goal_;

@@ -50,6 +50,11 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
     return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
 }
 
+std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<Scene::Bounds>& changed,
+                                                       int threads) const {
+    return std::make_shared<const AeroMap>(before.rebuilt(layers_, changed, threads));
+}
+
 bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
     return map_key(map.layers(), map.plane(), map.extent()) ==
            map_key(layers_, plane_, rotor_extent(robot_.rotors, bounds));

@@ -44,6 +44,7 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
     /// Number of its layer in the aero map, from 0.
     [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
+    [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
     /// Whether surfaces act on the rotors at all.
     [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
     /// K of a level rotor, evaluated exactly at a hub in plane coordinates.
@@ -61,6 +62,12 @@ class DOWNWASH_EXPORT FlightModel {
                                                           const std::function<void(double)>& on_progress = {},
                                                           const std::filesystem::path& cache = {},
                                                           const StopCondition& is_over = {}) const;
+
+    /// The same from that of a scene of which parts have changed; see AeroMap::rebuilt().
+    /// @param before map of the same robot, model and bounds   @param changed boxes around the parts, before and after
+    [[nodiscard]] std::shared_ptr<const AeroMap> remake_map(const AeroMap& before,
+                                                            const std::vector<Scene::Bounds>& changed,
+                                                            int threads = 1) const;
 
     /// Whether a map is the one that make_map() makes for these bounds.
     [[nodiscard]] bool is_mine(const AeroMap& map, const Bounds& bounds) const;

@@ -62,6 +62,37 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
     }
 }
 
+TEST_CASE("A map that follows a change of its scene is that of the new scene to the last bit") {
+    test::Random random(17);
+    for (int scene = 0; scene < 24; ++scene) {
+        const double radius = random.uniform(0.06, 0.25);
+        const std::vector<Obstacle> all = random_obstacles(random, 7);
+        std::vector<Obstacle> before(all.begin(), all.end() - 1);
+        std::vector<Obstacle> after = before;
+        const int kind = scene % 3;
+        if (kind == 0) {  // one more
+            after.push_back(all.back());
+        } else if (kind == 1) {  // one moved
+            after.front().center_world_m[0] += random.uniform(-0.5, 0.5);
+            after.front().center_world_m[2] += 0.1;
+        } else {  // one less
+            after.pop_back();
+        }
+        const PlaneOfMotion plane({0.1, 0.2, 0.3}, random.uniform(-3, 3));
+        const Bounds extent{-2, 2, -1.5, 1.5};
+        const AeroMap old(test::layers(effect_in(before, radius), {-0.2, 0.1}), plane, extent);
+        const auto layers = test::layers(effect_in(after, radius), {-0.2, 0.1});
+        std::vector<Scene::Bounds> changed;
+        for (const Obstacle& touched : kind == 0   ? std::vector{after.back()}
+                                       : kind == 1 ? std::vector{before.front(), after.front()}
+                                                   : std::vector{before.back()}) {
+            changed.push_back(Scene({touched}).bounds(0));
+        }
+        CAPTURE(scene, radius);
+        CHECK(old.rebuilt(layers, changed, 2).to_bytes() == AeroMap(layers, plane, extent).to_bytes());
+    }
+}
+
 TEST_CASE("Up to the edge of the flyable area no value of the other side is seen") {
     test::Random random(13);
     int points = 0;

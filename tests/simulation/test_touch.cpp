@@ -71,6 +71,23 @@ TEST_CASE("a vehicle presses on a ceiling and on a wall with the force that is a
     CHECK(flight.rows.back().contact_force_n == 0);
 }
 
+TEST_CASE("an observer does not take a surface that is touched for a disturbance") {
+    const auto part = GENERATE(TouchingPart::frame, TouchingPart::end_effector);
+    const double gain_1_s = GENERATE(3.0, 10.0);
+    const bool is_in_noise = GENERATE(false, true);
+    CAPTURE(static_cast<int>(part), gain_1_s, is_in_noise);
+    Problem problem = touching_problem(part, 5);
+    gains_of(problem.robot).aids.observer = controllers::DisturbanceObserver{gain_1_s};
+    World noisy;
+    noisy.velocity_noise_m_s = is_in_noise ? 0.01 : 0;
+    const FlownWorld world = make_world(problem.robot, noisy);
+    const Execution flight = touch_from_hover(problem, {&world});
+    REQUIRE(flight.touch);
+    CHECK(flight.touch->is_met);
+    CHECK(flight.touch->force_n == Approx(5).epsilon(0.05));
+    CHECK(flight.outcome == Outcome::ok);
+}
+
 TEST_CASE("the thrust under a ceiling that is touched carries the weight and the force, with its K") {
     const Execution flight = touch_from_hover(touching_problem(TouchingPart::frame, 5));
     REQUIRE(flight.touch);

@@ -1,0 +1,330 @@
+#include "downwash/planner/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/planner/braking.hpp"
+#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/search_clock.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/planner/world_flights.hpp"
+#include "downwash/planner/worlds.hpp"
+
+namespace downwash {
+namespace {
+
+/// The places with the most places beyond them, those nearer to the root first.
+std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, std::size_t most) {
+    std::vector<std::size_t> beyond(tree.size(), 1);
+    for (std::size_t i = tree.size(); i-- > 0;) {  // parents may come later in the list, after a rewiring
+        for (int parent = tree[i].parent; parent != TreeNode::no_parent;
+             parent = tree[static_cast<std::size_t>(parent)].parent) {
+            ++beyond[static_cast<std::size_t>(parent)];
+        }
+    }
+    std::vector<std::size_t> order(tree.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return beyond[a] > beyond[b]; });
+    std::vector<Configuration> places;
+    for (const std::size_t i : order) {
+        if (places.size() < most && beyond[i] > 1 && tree[i].parent != TreeNode::no_parent) {
+            places.push_back(tree[i].at);
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+std::string_view name_of(Advice advice) {
+    switch (advice) {
+        case Advice::keep:
+            return "keep";
+        case Advice::follow:
+            return "follow";
+        case Advice::stop:
+            return "stop";
+        case Advice::none:
+            break;
+    }
+    return "none";
+}
+
+ReferencePoint reference_of(const Plan& plan, std::int64_t tick) {
+    const auto next = std::upper_bound(plan.reference.begin(), plan.reference.end(), tick,
+                                       [](std::int64_t at, const ReferenceKnot& knot) { return at < knot.tick; });
+    if (next == plan.reference.end() || next == plan.reference.begin()) {
+        return next == plan.reference.begin() ? plan.reference.front().point : plan.reference.back().point;
+    }
+    const ReferenceKnot& from = *(next - 1);
+    return ReferenceSegment(from.point, next->point, next->tick - from.tick, plan.tick_s).at_tick(tick - from.tick);
+}
+
+Plan rest_of_plan(const Plan& plan, std::int64_t tick, const ReferencePoint& reference) {
+    Plan rest;
+    rest.tick_s = plan.tick_s;
+    rest.reference.push_back({0, reference});
+    for (const ReferenceKnot& knot : plan.reference) {
+        if (knot.tick > tick) {
+            rest.reference.push_back({knot.tick - tick, knot.point});
+        }
+    }
+    return rest;
+}
+
+/// One call of replan().
+struct Planner::Call {
+    const ReplanOptions& options;
+    planning::Stopwatch clock;
+    Answer best;
+};
+
+Planner::Planner(const Problem& problem, const SolveOptions& options) : options_(options) {
+    PlannableProblem checked = plannable(problem);
+    problem_ = std::move(checked.problem);
+    model_ = std::move(checked.model);
+    options_.map = nullptr;
+    options_.known_plan.reset();
+    options_.known_places.clear();
+    options_.keep_tree = true;
+    options_.threads = std::max(1, options_.threads);
+}
+
+Planner::~Planner() = default;
+
+const Solution& Planner::solve(std::stop_token stop) {
+    SolveOptions options = options_;
+    options.stop = std::move(stop);
+    options.map = map_;
+    solution_ = downwash::solve(PlannableProblem{problem_, model_}, options);
+    remember(solution_);
+    if (solution_.status == Status::solved) {
+        problem_ = in_order(problem_, solution_.order);
+    }
+    return solution_;
+}
+
+void Planner::remember(const Solution& solution) {
+    constexpr std::size_t most_places = 64;
+    if (solution.map) {
+        map_ = solution.map;
+    }
+    if (solution.status == Status::solved) {
+        plan_ = solution.plan;
+    }
+    if (!solution.tree.empty()) {
+        places_ = carrying_places(solution.tree, most_places);
+    }
+}
+
+std::optional<Answer> Planner::latest() const {
+    const std::scoped_lock lock(mutex_);
+    return latest_;
+}
+
+void Planner::publish(Call& call, Answer answer) {
+    answer.after_wall_s = call.clock.seconds();
+    call.best = std::move(answer);
+    {
+        const std::scoped_lock lock(mutex_);
+        latest_ = call.best;
+    }
+    if (call.options.on_answer) {
+        call.options.on_answer(call.best);
+    }
+}
+
+/// Checks the changed problem before anything becomes another.
+void Planner::take_up(const SceneChange& change) {
+    if (change.put.empty() && change.removed.empty() && !change.goal) {
+        return;
+    }
+    Problem next = problem_;
+    std::vector<Scene::Bounds> changed;
+    const auto box_of = [&changed](const Obstacle& obstacle) { changed.push_back(Scene({obstacle}).bounds(0)); };
+    const auto take_away = [&](const std::string& name) {
+        const auto found = std::find_if(next.obstacles.begin(), next.obstacles.end(),
+                                        [&](const Obstacle& obstacle) { return obstacle.name == name; });
+        if (found == next.obstacles.end()) {
+            return false;
+        }
+        box_of(*found);
+        next.obstacles.erase(found);
+        return true;
+    };
+    for (const std::string& name : change.removed) {
+        if (!take_away(name)) {
+            throw_input_error("has no obstacle '" + name + "' to remove: expected the name of one that is there",
+                              "environment.obstacles");
+        }
+    }
+    for (const Obstacle& obstacle : change.put) {
+        static_cast<void>(take_away(obstacle.name));
+        next.obstacles.push_back(obstacle);
+        box_of(obstacle);
+    }
+    if (change.goal) {
+        next.stops.clear();
+        next.targets.clear();
+        next.return_to.reset();
+        next.energy_budget_j.reset();
+        next.goal = *change.goal;
+    }
+    std::vector<KeyError> errors;
+    for (KeyError& error : problem_errors(next)) {
+        if (!error.key.starts_with("start")) {  // a vehicle is where it is
+            errors.push_back(std::move(error));
+        }
+    }
+    throw_if_any(std::move(errors));
+    if (!changed.empty()) {
+        model_ = make_flight_model(next);
+        unmapped_.insert(unmapped_.end(), changed.begin(), changed.end());
+    }
+    problem_ = std::move(next);
+}
+
+/// Goals whose hovers are over by a tick of the last plan need no further visit.
+void Planner::drop_visited_goals(std::int64_t tick) {
+    if (!plan_ || problem_.stops.empty()) {
+        return;
+    }
+    const std::vector<std::size_t> ends = hover_ends(*model_, plan_->reference, goals_of(problem_));
+    const auto visited = std::count_if(ends.begin(), ends.end(),
+                                       [&](std::size_t knot) { return plan_->reference[knot].tick <= tick; });
+    problem_.stops.erase(problem_.stops.begin(),
+                         problem_.stops.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.stops)));
+}
+
+/// Those of a search, which are chosen so that dangers come early; none where everything is as believed.
+std::vector<FlownWorld> Planner::worlds() const {
+    if (!problem_.uncertainty || problem_.planner.variant != Variant::mp_arm_ada) {
+        return {};
+    }
+    return planning::search_worlds(problem_);
+}
+
+bool Planner::can_keep(const Plan& left, double& cost) const {
+    const Execution flight = execute(*model_, start_state(*model_, problem_.start), left.reference,
+                                     goals_of(problem_), problem_.aero.enabled);
+    cost = cost_of(flight, problem_.planner.objective);
+    if (!planning::is_good(flight, problem_.planner.safety_margin_m)) {
+        return false;
+    }
+    const std::vector<FlownWorld> in = worlds();
+    if (in.empty()) {
+        return true;
+    }
+    WorldFlights flights(problem_, model_, map_, options_.threads);
+    const std::vector<WorldFlight> flown = flights.fly(left, goals_of(problem_).size(), in);
+    return std::all_of(flown.begin(), flown.end(),
+                       [](const WorldFlight& each) { return each.rejection == Rejection::none; });
+}
+
+Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change,
+                       const ReplanOptions& options) {
+    Call call{options, {}, {}};
+    throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
+    take_up(change);
+    if (!change.goal) {
+        drop_visited_goals(tick);
+    }
+    problem_.start = start;
+    const ReferencePoint reference =
+        start.reference ? *start.reference : at_rest(start.configuration());
+    Plan left;
+    if (plan_ && !change.goal) {
+        left = rest_of_plan(*plan_, tick, reference);
+    } else {
+        left = Plan{{{0, reference}}, model_->tick().tick_s};
+    }
+
+    const bool has_effects = problem_.aero.enabled;
+    const auto stop_map = has_effects && problem_.uncertainty
+                              ? model_->make_map(planning::Braking::reach(problem_, start), options_.threads)
+                              : nullptr;
+    const planning::Braking braking(problem_, model_, stop_map, worlds(), options_.threads);
+    Answer first;
+    first.plan = left;
+    if (auto stop = braking.safe_stop(start)) {
+        first.advice = Advice::stop;
+        first.plan = std::move(*stop);
+    }
+    publish(call, std::move(first));
+
+    if (has_effects && (!map_ || !unmapped_.empty())) {
+        map_ = map_ ? model_->remake_map(*map_, unmapped_, options_.threads)
+                    : model_->make_map(problem_.bounds, options_.threads, {}, options_.map_cache);
+        unmapped_.clear();
+    }
+    double cost = 0;
+    if (plan_ && !change.goal && can_keep(left, cost)) {
+        publish(call, {Advice::keep, left, cost, 0, {}});
+    }
+    search(call, left);
+    if (call.best.advice == Advice::keep || call.best.advice == Advice::follow) {
+        plan_ = call.best.plan;
+    } else {
+        plan_.reset();
+    }
+    return call.best;
+}
+
+void Planner::search(Call& call, const Plan& left) {
+    Problem next = problem_;
+    next.planner.time_limit_s = call.options.time_limit_s;
+    next.planner.max_iterations = call.options.max_iterations;
+    if (call.options.time_limit_s) {
+        const double left_s = *call.options.time_limit_s - call.clock.seconds();
+        if (left_s <= 0) {
+            return;
+        }
+        next.planner.time_limit_s = left_s;
+    }
+    if (!problem_errors(next).empty()) {
+        return;  // from where the vehicle is nothing can be planned, only stopped
+    }
+    SolveOptions options = options_;
+    options.stop = call.options.stop;
+    options.map = map_;
+    options.known_plan = left;
+    options.known_places = places_;
+    Solution found = downwash::solve(PlannableProblem{next, model_}, options);
+    const bool is_better =
+        found.status == Status::solved && (call.best.advice != Advice::keep || found.execution_cost < call.best.cost);
+    remember(found);
+    if (is_better) {
+        Answer answer{Advice::follow, *found.plan, found.execution_cost, 0, {}};
+        answer.solution = std::move(found);
+        publish(call, std::move(answer));
+    }
+}
+
+bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, std::int64_t ticks, FlightState& vehicle,
+               const FlightWorld& in) {
+    ReferenceKnot from = plan.reference.front();
+    for (std::size_t next = 1; from.tick < ticks; ++next) {
+        ReferenceKnot to = next < plan.reference.size() ? plan.reference[next] : ReferenceKnot{ticks, from.point};
+        if (to.tick > ticks) {
+            to = {ticks, reference_of(plan, ticks)};
+        }
+        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan.tick_s);
+        const FlightWorld world{in.world, in.first_tick + from.tick};
+        if (fly(model, map, rules_of_execution(), segment, vehicle, world).rejection != Rejection::none) {
+            return false;
+        }
+        from = to;
+    }
+    return true;
+}
+
+Start Planner::predicted(const Start& start, const Plan& plan, std::int64_t ticks) const {
+    FlightState state = start_state(*model_, start);
+    static_cast<void>(fly_along(*model_, map_.get(), plan, ticks, state));
+    return start_of(*model_, state, reference_of(plan, ticks));
+}
+
+}  // namespace downwash

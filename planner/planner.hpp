@@ -1,0 +1,139 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve_options.hpp"
+#include "downwash/problems/problem_model.hpp"
+
+namespace downwash {
+
+/// What of a problem is another since the last plan.
+struct SceneChange {
+    std::vector<Obstacle> put;         ///< new ones, and those that take the place of the obstacle of their name
+    std::vector<std::string> removed;  ///< names of obstacles that are gone
+    std::optional<Goal> goal;          ///< instead of all goals that were not visited yet
+};
+
+/// What a vehicle in the air should do.
+enum class Advice : std::uint8_t {
+    keep,    ///< follow what is left of the last plan: it is safe in the scene as it is now
+    follow,  ///< follow a new plan to the goal
+    stop,    ///< brake and hover: that is safe
+    none,    ///< nothing that is known to be safe; a collision may be ahead
+};
+
+/// Name as in messages: "keep".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Advice advice);
+
+/// An answer to where to fly from a moment on.
+struct Answer {
+    Advice advice = Advice::none;
+    Plan plan;              ///< from the start on, its first knot at tick 0; of `none` what is left of the last plan
+    double cost = 0;        ///< of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
+    double after_wall_s = 0;  ///< since replan() was called
+    std::optional<Solution> solution;  ///< of the search; `follow` only
+};
+
+/// How to replan. Its functions must not throw.
+struct ReplanOptions {
+    /// Wall time of all [s], and iterations of the search. As in PlannerSettings: with iterations alone the result does
+    /// not depend on how fast the machine is.
+    std::optional<double> time_limit_s;
+    std::optional<std::uint64_t> max_iterations;
+    std::stop_token stop;  ///< ends the search early
+    /// Called by replan()'s thread with each answer that is better than the one before: first what is safe at once.
+    std::function<void(const Answer&)> on_answer;
+};
+
+/// A planner that stays with a vehicle in the air. It keeps scene, model, map, plan and what the last search has found
+/// between calls, so that a new answer takes little: maps are evaluated again only where the scene has changed, and a
+/// search begins with what is left of the last plan and with the places that carried its tree.
+///
+/// replan() and solve() are for one thread at a time; latest() may be called from any thread at any time.
+class DOWNWASH_EXPORT Planner {
+ public:
+    /// @param options as for solve(); its map, stop token and known plan are not used
+    /// @throws InputError when the problem cannot be planned
+    explicit Planner(const Problem& problem, const SolveOptions& options = {});
+    ~Planner();
+    Planner(const Planner&) = delete;
+    Planner& operator=(const Planner&) = delete;
+
+    /// Plans from the problem's start, and keeps the plan. Targets in any order then have the order of the plan.
+    const Solution& solve(std::stop_token stop = {});
+
+    /// Takes up changes and says what to do from a start on. A stop is looked for first, then whether what is left of
+    /// the last plan still holds, then a better plan is searched for. The plan of the last answer, if it leads to the
+    /// goal, is kept as the last plan.
+    /// @param start the whole vehicle at the moment from which the answer counts; see start_of() and state_at()
+    /// @param tick of the last plan at that moment
+    /// @throws InputError, with nothing changed, when the problem with the changes has errors apart from its start
+    Answer replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options = {});
+
+    /// Takes a plan for the last one, from the problem's start to its goals, as one that was made before.
+    void adopt(const Plan& plan) { plan_ = plan; }
+
+    /// The best answer so far to the last call of replan(); empty before the first.
+    [[nodiscard]] std::optional<Answer> latest() const;
+
+    /// The vehicle as it will be some ticks later, by the planner's own model without noise.
+    /// @param plan that it follows from its start on
+    [[nodiscard]] Start predicted(const Start& start, const Plan& plan, std::int64_t ticks) const;
+
+    /// The problem as it is now: with all changes, from the last start to the goals that are left.
+    [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
+    [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
+    /// Of the scene as it was when a map was last needed; nullptr before.
+    [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
+    /// The last plan to the goal; empty before there is one.
+    [[nodiscard]] const std::optional<Plan>& plan() const noexcept { return plan_; }
+
+ private:
+    struct Call;
+
+    void take_up(const SceneChange& change);
+    void drop_visited_goals(std::int64_t tick);
+    [[nodiscard]] std::vector<FlownWorld> worlds() const;
+    [[nodiscard]] bool can_keep(const Plan& left, double& cost) const;
+    void search(Call& call, const Plan& left);
+    void publish(Call& call, Answer answer);
+    void remember(const Solution& solution);
+
+    Problem problem_;
+    SolveOptions options_;
+    std::shared_ptr<const FlightModel> model_;
+    std::shared_ptr<const AeroMap> map_;      ///< of the scene as it is, once it was needed
+    std::vector<Scene::Bounds> unmapped_;     ///< changes that the map does not know yet
+    std::optional<Plan> plan_;
+    std::vector<Configuration> places_;       ///< that carried the tree of the last search
+    Solution solution_;
+    mutable std::mutex mutex_;                ///< of latest_
+    std::optional<Answer> latest_;
+};
+
+/// A vehicle after some ticks along a plan, through a map; whether that breaks rules is not asked.
+/// @param vehicle at the plan's start, replaced by the one later   @param map nullptr: surfaces do not act
+/// @param in the world, whose first_tick is that of the plan's start
+/// @return whether it is still stable and flyable
+DOWNWASH_EXPORT bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, std::int64_t ticks,
+                               FlightState& vehicle, const FlightWorld& in = {});
+
+/// What is left of a plan from a tick on, as a plan of its own.
+/// @param reference that is followed at that tick
+[[nodiscard]] DOWNWASH_EXPORT Plan rest_of_plan(const Plan& plan, std::int64_t tick, const ReferencePoint& reference);
+
+/// The point of a plan's reference at a tick; after its last knot that one.
+[[nodiscard]] DOWNWASH_EXPORT ReferencePoint reference_of(const Plan& plan, std::int64_t tick);
+
+}  // namespace downwash
