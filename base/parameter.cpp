@@ -14,7 +14,7 @@ namespace downwash {
 namespace {
 
 /// Units as keys end in them and as people read them; a longer suffix stands before its own tail.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 22> our_units{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> our_units{{
     {"_kg_m2", "kg m2"},
     {"_w_n1p5", "W/N^1.5"},
     {"_over_radius", "rotor radii"},
@@ -32,6 +32,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 22> our_unit
     {"_nm", "Nm"},
     {"_hz", "Hz"},
     {"_m", "m"},
+    {"_j", "J"},
     {"_n", "N"},
     {"_1_s", "1/s"},
     {"_s", "s"},

@@ -94,6 +94,20 @@ struct ParameterInfo {
 [[nodiscard]] DOWNWASH_EXPORT std::string did_you_mean(std::string_view word,
                                                        const std::vector<std::string_view>& names);
 
+/// The index of a list's element for the parameters below it. A list may stand in an element of another list, whose
+/// index is then kept in the upper half.
+/// @param around index of the element that the list stands in; 0 where it stands in none
+[[nodiscard]] constexpr std::size_t element_index(std::size_t around, std::size_t i) noexcept {
+    return around << 32U | i;
+}
+/// The element itself, and the one around it.
+[[nodiscard]] constexpr std::size_t inner_element(std::size_t index) noexcept {
+    return index & 0xffffffffU;
+}
+[[nodiscard]] constexpr std::size_t outer_element(std::size_t index) noexcept {
+    return index >> 32U;
+}
+
 /// A parameter with access to where it lives in a Model. The index is that of the list element that it belongs to.
 template <class Model>
 struct Parameter : ParameterInfo {

@@ -61,7 +61,8 @@ void for_each_value(const ParameterTable<Model>& table, const Model& model, cons
             visit(*parameter, below, index);
         } else if (parameter->has_list(model, index)) {
             for (std::size_t i = 0; i < parameter->count(model, index); ++i) {
-                for_each_value(table, model, visit, parameter->path + "[]", below + "[" + std::to_string(i) + "]", i);
+                for_each_value(table, model, visit, parameter->path + "[]", below + "[" + std::to_string(i) + "]",
+                               element_index(index, i));
             }
         } else if (parameter->count && parameter->count(model, index) > 0) {
             for_each_value(table, model, visit, parameter->path, below, index);

@@ -159,8 +159,9 @@ std::vector<StoredRun> read_runs(const Database& database) {
     rows_of_runs.operator()<Text, double, double, double, double, double, double>(
         "SELECT runid, outcome, cost, energy_j, duration_s, length_m, min_clearance_m, goal_error_m FROM flights",
         [](StoredRun& of, const Text& outcome, const auto&... figures) {
-            if (const auto known = named(outcome, {Outcome::ok, Outcome::collision, Outcome::unstable,
-                                                   Outcome::left_flyable_area, Outcome::goal_missed})) {
+            if (const auto known =
+                    named(outcome, {Outcome::ok, Outcome::collision, Outcome::unstable, Outcome::left_flyable_area,
+                                    Outcome::goal_missed, Outcome::over_budget})) {
                 of.run.flight = {*known, figures...};
             }
         });

@@ -107,6 +107,7 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
 
 void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
+    const Problem flown = in_order(problem, solution.order);
     const auto model = make_flight_model(problem);
     const FlightWorld in{world ? &*world : nullptr, 0};
     FlightState believed = start_state(*model, problem.start);
@@ -117,7 +118,8 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
     if (!start) {
         throw std::runtime_error("in this world the vehicle cannot hover at its start: its controller diverges there");
     }
-    solution.execution = execute(*model, *start, solution.plan->reference, goals_of(problem), aero, in);
+    solution.execution =
+        execute(*model, *start, solution.plan->reference, goals_of(flown), aero, in, {}, problem.energy_budget_j);
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
     solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -45,13 +45,46 @@ std::string error_text(const Goal& goal, const GoalVisit& visit) {
                         : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
 }
 
+/// What a goal is called, of those of a solution by its number from 1.
+std::string goal_name(const Solution& solution, std::size_t number) {
+    if (!solution.order) {
+        return fmt::format("goal {}", number);
+    }
+    const std::vector<Visit>& visits = solution.order->visits;
+    return number <= visits.size() ? fmt::format("target {}", visits[number - 1].target + 1) : "the place to return to";
+}
+
 /// The goal that the search did not get to.
 std::string missed_goal(const Solution& solution) {
-    return solution.planning.goal ? fmt::format("goal {}", *solution.planning.goal) : "the goal";
+    return solution.planning.goal ? goal_name(solution, *solution.planning.goal) : "the goal";
 }
 
 std::string missed_region(const Solution& solution) {
     return solution.planning.goal ? "the region of " + missed_goal(solution) : "the goal region";
+}
+
+std::string order_rows(const VisitOrder& order, const std::optional<double>& energy_budget_j) {
+    std::string visits;
+    for (const Visit& visit : order.visits) {
+        visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
+        visits += visit.alternative ? fmt::format(" (alternative {})", *visit.alternative + 1) : "";
+    }
+    std::string text = row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
+    if (!visits.empty()) {
+        text += row("", order.is_best
+                            ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
+                            : fmt::format("the cheapest that was found by {} flown legs", order.legs));
+    }
+    for (const LeftOutTarget& each : order.left_out) {
+        std::string why = "no flight to it was found";
+        if (each.energy_j) {
+            why = fmt::format("with it the flight takes about {:.6g} J of {:.6g} J", *each.energy_j,
+                              energy_budget_j.value_or(0));
+        }
+        text +=
+            row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
+    }
+    return text;
 }
 
 std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution, const Execution& flight) {
@@ -79,7 +112,7 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
         text += row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
         for (std::size_t i = 0; i < flight.goals.size(); ++i) {
             if (!flight.goals[i].is_met) {
-                text += row("", fmt::format("goal {} missed: {}", i + 1, error_text(goals[i], flight.goals[i])));
+                text += row("", goal_name(solution, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
             }
         }
     }
@@ -131,6 +164,8 @@ std::string verdict_on_flight(const Execution& flight) {
             return name + "becomes unstable.";
         case Outcome::left_flyable_area:
             return name + "leaves the flyable area.";
+        case Outcome::over_budget:
+            return name + "takes more energy than it may.";
         case Outcome::goal_missed:
             break;
     }
@@ -162,10 +197,21 @@ std::string verdict_on_search(const Solution& solution) {
     if (solution.plan && !solution.execution) {
         return stopped + "There is a plan, but its flight was not finished.";
     }
+    if (solution.order && !solution.order->left_out.empty() && solution.execution &&
+        solution.execution->outcome == Outcome::ok) {
+        return stopped + fmt::format("{} of {} targets are visited; to the others no flight was found.",
+                                     solution.order->visits.size(),
+                                     solution.order->visits.size() + solution.order->left_out.size());
+    }
     if (solution.status == Status::approximate) {
         const auto& off_m = solution.planning.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to " + missed_goal(solution) +
                (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
+    }
+    const auto is_for_energy = [](const LeftOutTarget& each) { return each.reason == LeftOutReason::energy_budget; };
+    if (solution.order && solution.order->visits.empty() &&
+        std::ranges::all_of(solution.order->left_out, is_for_energy)) {
+        return stopped + "No solution: the energy budget is not enough for any target.";
     }
     return stopped + "No solution within the limits.";
 }
@@ -179,8 +225,11 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
                                          solution.execution_world->index, solution.execution_world->seed));
     }
+    if (solution.order) {
+        text += order_rows(*solution.order, problem.energy_budget_j);
+    }
     if (solution.execution) {
-        text += flight_rows(goals_of(problem), solution, *solution.execution);
+        text += flight_rows(goals_of(in_order(problem, solution.order)), solution, *solution.execution);
     }
     if (solution.certificate) {
         text += certificate_rows(*solution.certificate, folder);

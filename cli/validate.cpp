@@ -87,7 +87,8 @@ ExitCode run(const ValidateArguments& given) {
     const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
-    const judge::PlanJudge judge(problem);
+    const Problem flown = in_order(problem, claims.order);
+    const judge::PlanJudge judge(flown);
     Validation validation;
     judge::FlightConditions conditions;
     if (given.world) {
@@ -95,7 +96,12 @@ ExitCode run(const ValidateArguments& given) {
         validation.world = given.world;
     }
     validation.flight = judge.fly(claims.plan, conditions);
-    validation.disagreements = judge::disagreements_in_plan(claims, problem);
+    validation.disagreements = judge::disagreements_in_plan(claims, flown);
+    if (claims.order && !problem.energy_budget_j && !claims.order->left_out.empty()) {
+        validation.disagreements.push_back({"order: targets visited without an energy budget",
+                                            static_cast<double>(claims.order->visits.size()),
+                                            static_cast<double>(problem.targets.size())});
+    }
     if (claims.flight) {
         validation.has_flight_claims = true;
         auto more = compare_flight(judge, claims, given.world ? nullptr : &validation.flight);

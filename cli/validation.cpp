@@ -84,6 +84,9 @@ std::string verdict_of(const Validation& validation) {
         case judge::Outcome::left_flyable_area:
             text = "The flight leaves the flyable area";
             break;
+        case judge::Outcome::over_budget:
+            text = "The flight takes more energy than it may";
+            break;
         case judge::Outcome::goal_missed:
             text = "The flight misses the goal";
             break;

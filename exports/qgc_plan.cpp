@@ -85,7 +85,8 @@ std::vector<Corner> corners_of(const RunRecord& run) {
         }
     }
     const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
-    corners.back().hold_s += end_s > plan.duration_s() ? end_s - plan.duration_s() : run.problem.goal.hold_s;
+    const Problem flown = in_order(run.problem, run.order);
+    corners.back().hold_s += end_s > plan.duration_s() ? end_s - plan.duration_s() : flown.goal.hold_s;
     return corners;
 }
 

@@ -14,7 +14,8 @@
 namespace downwash::judge {
 namespace {
 
-constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
+constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unstable", "left_flyable_area",
+                                              "goal_missed", "over_budget"};
 
 /// Of a vehicle in a world, docs/model.md 9.
 constexpr double hover_before_start_s = 20;

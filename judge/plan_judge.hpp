@@ -16,7 +16,7 @@
 namespace downwash::judge {
 
 /// How a flight ends, by the judge's own rules (docs/model.md 7.1).
-enum class Outcome : std::uint8_t { ok, collision, unstable, left_flyable_area, goal_missed };
+enum class Outcome : std::uint8_t { ok, collision, unstable, left_flyable_area, goal_missed, over_budget };
 
 /// The name in files: "left_flyable_area".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome) noexcept;

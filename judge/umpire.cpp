@@ -140,6 +140,9 @@ void Umpire::sees_goals(const std::vector<Goal>& goals, const std::vector<std::i
             flight_.outcome = Outcome::goal_missed;
         }
     }
+    if (flight_.outcome == Outcome::ok && problem_.energy_budget_j && flight_.energy_j > *problem_.energy_budget_j) {
+        flight_.outcome = Outcome::over_budget;
+    }
 }
 
 PlanarPose Umpire::among_obstacles(const Motion& motion) const {

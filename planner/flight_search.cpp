@@ -16,6 +16,9 @@ namespace {
 
 /// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
 Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
+    if (flight.outcome == Outcome::over_budget) {
+        return {std::string(name_of(flight.outcome)), configuration_of(flight.rows.back().q), 0};
+    }
     const auto nearest =
         std::min_element(flight.rows.begin(), flight.rows.end(),
                          [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
@@ -39,7 +42,7 @@ class FlightSearch {
           search_worlds_(worlds != nullptr ? worlds->for_search(before) : SearchWorlds{}),
           task_(part, model, map, before.vehicle, worlds != nullptr ? &search_worlds_ : nullptr,
                 before.plan.reference.empty() ? 0 : before.plan.reference.back().tick),
-          start_(start_state(model, whole.start)),
+          start_(before.plan.reference.empty() ? before.vehicle : start_state(model, whole.start)),
           attempts_(before.attempts) {
         goals_.push_back(part.goal);
     }
@@ -99,8 +102,9 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
     const PlannerSettings& settings = task_.problem.planner;
     if (settings.variant == Variant::mp_arm_ada) {
         try {
-            execution_ = execute_directly(task_.model, start_, before_.continued_by(plan), goals_, execution_wall_s_,
-                                          [this] { return is_over(); });
+            execution_ =
+                execute_directly(task_.model, start_, before_.continued_by(plan), goals_, task_.problem.energy_budget_j,
+                                 execution_wall_s_, [this] { return is_over(); });
         } catch (const WorkStopped&) {
             discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
             return false;
@@ -274,9 +278,10 @@ void FlightSearch::run_tree() {
 }  // namespace
 
 Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                           const std::vector<Goal>& goals, double& wall_s, const StopCondition& is_over) {
+                           const std::vector<Goal>& goals, std::optional<double> energy_budget_j, double& wall_s,
+                           const StopCondition& is_over) {
     const Stopwatch clock;
-    Execution execution = execute(model, start, plan.reference, goals, true, {}, is_over);
+    Execution execution = execute(model, start, plan.reference, goals, true, {}, is_over, energy_budget_j);
     wall_s = clock.seconds();
     return execution;
 }

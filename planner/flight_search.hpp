@@ -9,10 +9,11 @@
 namespace downwash::planning {
 
 /// Executes a plan with direct aerodynamics, from the start through all goals.
-/// @param wall_s set to how long that took [s]
+/// @param energy_budget_j as for execute()   @param wall_s set to how long that took [s]
 /// @throws WorkStopped when it is over before the flight ends
 [[nodiscard]] Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                                         const std::vector<Goal>& goals, double& wall_s, const StopCondition& is_over);
+                                         const std::vector<Goal>& goals, std::optional<double> energy_budget_j,
+                                         double& wall_s, const StopCondition& is_over);
 
 /// Whether a plan of MP-ARM-ADA counts after its direct flight: it reaches its goals and keeps the margin.
 [[nodiscard]] DOWNWASH_EXPORT bool is_good(const Execution& flight, double safety_margin_m);

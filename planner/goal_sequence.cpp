@@ -7,113 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/planner/search_budget.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight.hpp"
 
 namespace downwash::planning {
 namespace {
-
-/// What is left of a search's limits.
-class Budget {
- public:
-    explicit Budget(const PlannerSettings& settings) : iterations_(settings.max_iterations) {
-        if (settings.time_limit_s || !settings.max_iterations) {
-            time_s_ = settings.time_limit_s.value_or(default_time_limit_s);
-        }
-    }
-
-    /// A part of what is left. Where iterations are limited they alone are divided: how far each part gets then does
-    /// not depend on how fast the machine is.
-    [[nodiscard]] Budget part(double share) const {
-        Budget some = *this;
-        if (iterations_) {
-            some.iterations_ = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(*iterations_)));
-        } else {
-            some.time_s_ = share * time_s_;
-        }
-        return some;
-    }
-
-    /// This budget, but no more than another one.
-    [[nodiscard]] Budget at_most(const Budget& other) const {
-        Budget less = *this;
-        if (iterations_) {
-            less.iterations_ = std::min(*iterations_, *other.iterations_);
-        }
-        less.time_s_ = std::min(time_s_, other.time_s_);
-        return less;
-    }
-
-    /// This budget, but no more than so many seconds; one of iterations stays.
-    [[nodiscard]] Budget within_s(double most_s) const {
-        Budget less = *this;
-        if (!iterations_) {
-            less.time_s_ = std::min(time_s_, most_s);
-        }
-        return less;
-    }
-
-    /// What part of this budget some work took; at most 1.
-    [[nodiscard]] double share_of(const SearchRecord& work) const {
-        const double share = iterations_ ? static_cast<double>(work.iterations) / static_cast<double>(*iterations_)
-                                         : work.wall_s / time_s_;
-        return std::min(share, 1.0);
-    }
-
-    void limit(PlannerSettings& settings) const {
-        constexpr double min_s = 1e-6;
-        settings.max_iterations = iterations_;
-        settings.time_limit_s = std::isfinite(time_s_) ? std::optional(std::max(min_s, time_s_)) : std::nullopt;
-    }
-
-    /// Of a search that found nothing in this budget: it may have ended before, and more of it would help no more.
-    void charge(SearchRecord& work) const {
-        if (iterations_) {
-            work.iterations = std::max(work.iterations, *iterations_);
-        } else {
-            work.wall_s = std::max(work.wall_s, time_s_);
-        }
-    }
-
-    void spend(const SearchRecord& work) {
-        if (iterations_) {
-            *iterations_ -= std::min(*iterations_, work.iterations);
-        }
-        time_s_ -= work.wall_s;
-    }
-
-    [[nodiscard]] bool is_used_up() const { return time_s_ <= 0 || (iterations_ && *iterations_ == 0); }
-
- private:
-    std::optional<std::uint64_t> iterations_;
-    double time_s_ = std::numeric_limits<double>::infinity();
-};
-
-/// Adds a part's plan and the hold at its end, and flies them in the planner's model. What was planned by flights flies
-/// as it did; of MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it.
-Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
-                const AeroMap* map, bool plans_flights) {
-    const double tick_s = model.tick().tick_s;
-    Plan plan = course.continued_by(part);
-    ReferenceKnot held = plan.reference.back();
-    held.tick += hold_ticks(goal, model, held.point);
-    plan.reference.push_back(held);
-    const std::size_t known = course.plan.reference.empty() ? 1 : course.plan.reference.size();
-    for (std::size_t i = known; i < plan.reference.size(); ++i) {
-        const ReferenceKnot& from = plan.reference[i - 1];
-        const ReferenceKnot& to = plan.reference[i];
-        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, tick_s);
-        const Rejection rejection = fly(model, map, rules_of_execution(), segment, course.vehicle).rejection;
-        if (rejection != Rejection::none && plans_flights) {
-            throw std::logic_error("a part of a plan does not fly as it was planned");
-        }
-    }
-    course.plan = std::move(plan);
-    course.goals.push_back(goal);
-    course.cost += cost;
-    return course;
-}
 
 /// The search for the way to a goal from the end of a course.
 Problem part_of(const Problem& problem, const Goal& goal, const Course& before) {
@@ -137,41 +37,31 @@ void add(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
     }
 }
 
-/// Adds the work of a part, whatever came of it.
-void add(SearchRecord& sum, const SearchRecord& part) {
-    sum.wall_s += part.wall_s;
-    sum.iterations += part.iterations;
-    sum.edges_simulated += part.edges_simulated;
-    sum.simulated_s += part.simulated_s;
-    sum.states_checked += part.states_checked;
-    for (const auto& [cause, count] : part.rejected) {
-        sum.rejected[cause] += count;
-    }
-}
-
 /// Finds a whole way through all goals, then better ones.
 class GoalSequence {
  public:
     GoalSequence(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                 const PartSearch& search, Solution& solution)
+                 const PartSearch& search, double least_round, std::uint64_t& attempts, Solution& solution)
         : problem_(problem),
           model_(model),
           map_(map),
           options_(options),
           search_(search),
+          least_round_(least_round),
           solution_(solution),
           goals_(goals_of(problem)),
           searches_(goals_.size()),
           given_up_(goals_.size()),
           whole_(problem.planner),
-          left_(problem.planner) {}
+          left_(problem.planner),
+          attempts_(attempts) {}
 
     void run();
 
  private:
     /// One try to find a whole way.
     struct Round {
-        Budget left;
+        SearchBudget left;
         std::vector<Course> courses;     ///< before each part, the one that is searched for included
         Solution way;                    ///< as far as it has come
         std::vector<double> part_costs;  ///< of the parts that were found
@@ -179,11 +69,11 @@ class GoalSequence {
 
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
     [[nodiscard]] bool has_way() const { return solution_.status == Status::solved; }
-    [[nodiscard]] Round try_round(const Budget& budget);
+    [[nodiscard]] Round try_round(const SearchBudget& budget);
     [[nodiscard]] bool search_part(Round& round);
     [[nodiscard]] bool go_back(Round& round, std::size_t part);
     [[nodiscard]] bool give_up(Round& round);
-    [[nodiscard]] Budget slice(std::size_t part) const;
+    [[nodiscard]] SearchBudget slice(std::size_t part) const;
     void take_farther(const Round& round);
     [[nodiscard]] SolveOptions options_of_part(const Round& round);
     [[nodiscard]] double share(std::size_t part) const;
@@ -197,14 +87,15 @@ class GoalSequence {
     const AeroMap* map_;
     const SolveOptions& options_;
     const PartSearch& search_;
+    double least_round_;  ///< see solve_in_turn()
     Solution& solution_;
     std::vector<Goal> goals_;
     std::vector<std::uint32_t> searches_;  ///< for the way to each goal so far; each draws other samples
     std::vector<std::uint32_t> given_up_;  ///< of these, because they took too long
-    Budget whole_;
-    Budget left_;
+    SearchBudget whole_;
+    SearchBudget left_;
     std::size_t round_ = 1;           ///< that is going on
-    std::uint64_t attempts_ = 0;      ///< plans that asked for a certificate
+    std::uint64_t& attempts_;         ///< plans that asked for a certificate
     std::vector<double> part_costs_;  ///< of the best way
     std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
     double handed_over_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
@@ -222,6 +113,7 @@ void GoalSequence::run() {
     SearchRecord work = solution_.planning;
     work.iterations = std::max(work.iterations, least_iterations);
     work.wall_s = std::max(work.wall_s, least_s);
+    whole_.part(least_round_ / 2).charge(work);
     bool is_last = false;
     while (!is_last && !is_over()) {
         ++round_;
@@ -239,7 +131,7 @@ void GoalSequence::run() {
     }
 }
 
-GoalSequence::Round GoalSequence::try_round(const Budget& budget) {
+GoalSequence::Round GoalSequence::try_round(const SearchBudget& budget) {
     Round round{budget, {Course::from_start(problem_, model_)}, {}, {}};
     while (round.part_costs.size() < goals_.size() && search_part(round)) {
     }
@@ -259,9 +151,10 @@ bool GoalSequence::give_up(Round& round) {
 
 /// Before there is a whole way: what a search for a part may take. Luck differs between searches, so that several short
 /// ones find more than one long one; each that is given up allows the next one twice as much.
-Budget GoalSequence::slice(std::size_t part) const {
+SearchBudget GoalSequence::slice(std::size_t part) const {
     constexpr double longest_first_s = 2.5;
-    const double first_share = 0.25 / static_cast<double>(goals_.size());
+    // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
+    const double first_share = (problem_.energy_budget_j ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
     return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
 }
@@ -285,7 +178,7 @@ bool GoalSequence::search_part(Round& round) {
     course.attempts = attempts_;
     Problem part = part_of(problem_, goals_[number], course);
     part.planner.seed += searches_[number]++;
-    const Budget budget = has_way() ? round.left.part(share(number)) : slice(number).at_most(round.left);
+    const SearchBudget budget = has_way() ? round.left.part(share(number)) : slice(number).at_most(round.left);
     budget.limit(part.planner);
     Solution found;
     const std::optional<std::size_t> weak_goal = search_(part, options_of_part(round), course, found);
@@ -307,7 +200,7 @@ bool GoalSequence::search_part(Round& round) {
     }
     const double begun_at_s = solution_.planning.wall_s;
     const std::uint64_t iterations_before = solution_.planning.iterations;
-    add(solution_.planning, found.planning);
+    add_work(solution_.planning, found.planning);
     add(way.tree, found.tree);
     if (found.plan) {
         way.plan = course.continued_by(*found.plan);
@@ -344,7 +237,8 @@ SolveOptions GoalSequence::options_of_part(const Round& round) {
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
-    inner.stop_at_first_solution = !has_way();
+    // A first plan is far from the cheapest.
+    inner.stop_at_first_solution = !has_way() && !problem_.energy_budget_j;
     const std::size_t number = round.part_costs.size();
     const bool is_last = number + 1 == goals_.size();
     if (options_.on_progress) {
@@ -450,6 +344,29 @@ void GoalSequence::take(Round round) {
 
 }  // namespace
 
+Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
+                const AeroMap* map, bool plans_flights) {
+    const double tick_s = model.tick().tick_s;
+    Plan plan = course.continued_by(part);
+    ReferenceKnot held = plan.reference.back();
+    held.tick += hold_ticks(goal, model, held.point);
+    plan.reference.push_back(held);
+    const std::size_t known = course.plan.reference.empty() ? 1 : course.plan.reference.size();
+    for (std::size_t i = known; i < plan.reference.size(); ++i) {
+        const ReferenceKnot& from = plan.reference[i - 1];
+        const ReferenceKnot& to = plan.reference[i];
+        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, tick_s);
+        const Rejection rejection = fly(model, map, rules_of_execution(), segment, course.vehicle).rejection;
+        if (rejection != Rejection::none && plans_flights) {
+            throw std::logic_error("a part of a plan does not fly as it was planned");
+        }
+    }
+    course.plan = std::move(plan);
+    course.goals.push_back(goal);
+    course.cost += cost;
+    return course;
+}
+
 Course Course::from_start(const Problem& problem, const FlightModel& model) {
     Course course;
     course.vehicle = start_state(model, problem.start);
@@ -469,8 +386,8 @@ Plan Course::continued_by(const Plan& next) const {
 }
 
 void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                   const PartSearch& search, Solution& solution) {
-    GoalSequence(problem, model, map, options, search, solution).run();
+                   const PartSearch& search, double least_round, std::uint64_t& attempts, Solution& solution) {
+    GoalSequence(problem, model, map, options, search, least_round, attempts, solution).run();
 }
 
 }  // namespace downwash::planning

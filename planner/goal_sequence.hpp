@@ -26,6 +26,12 @@ struct Course {
     [[nodiscard]] Plan continued_by(const Plan& next) const;
 };
 
+/// Adds a part's plan and the hold at its end to a course, and flies them in the planner's model.
+/// @param cost of the part, hold included   @param plans_flights what was planned by flights flies as it did; of
+/// MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it
+[[nodiscard]] Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
+                              const AeroMap* map, bool plans_flights);
+
 /// Searches for the way to the goal of a problem without stops, whose start is at the end of the course before. Fills
 /// what it finds, and how that went, into the solution: cost and plan from there on, and, where it was flown with
 /// direct aerodynamics, the execution of course and plan together.
@@ -40,7 +46,10 @@ using PartSearch = std::function<std::optional<std::size_t>(const Problem& part,
 /// cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the best of all
 /// ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
 /// @param map of the planner's own model; nullptr for none
+/// @param least_round share of the limits that a round after the first takes at least
+/// @param attempts plans that asked for a certificate before, and then with those of this search
 DOWNWASH_EXPORT void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                                   const SolveOptions& options, const PartSearch& search, Solution& solution);
+                                   const SolveOptions& options, const PartSearch& search, double least_round,
+                                   std::uint64_t& attempts, Solution& solution);
 
 }  // namespace downwash::planning

@@ -101,6 +101,9 @@ const Solution& Planner::solve(std::stop_token stop) {
     options.map = map_;
     solution_ = downwash::solve(PlannableProblem{problem_, model_}, options);
     remember(solution_);
+    if (solution_.status == Status::solved) {
+        problem_ = in_order(problem_, solution_.order);
+    }
     return solution_;
 }
 
@@ -165,6 +168,9 @@ void Planner::take_up(const SceneChange& change) {
     }
     if (change.goal) {
         next.stops.clear();
+        next.targets.clear();
+        next.return_to.reset();
+        next.energy_budget_j.reset();
         next.goal = *change.goal;
     }
     std::vector<KeyError> errors;

@@ -71,7 +71,7 @@ class DOWNWASH_EXPORT Planner {
     Planner(const Planner&) = delete;
     Planner& operator=(const Planner&) = delete;
 
-    /// Plans from the problem's start, and keeps the plan.
+    /// Plans from the problem's start, and keeps the plan. Targets in any order then have the order of the plan.
     const Solution& solve(std::stop_token stop = {});
 
     /// Takes up changes and says what to do from a start on. A stop is looked for first, then whether what is left of

@@ -12,7 +12,8 @@
 namespace downwash {
 namespace {
 
-/// Calls `change(target)` with every end-effector or configuration goal, stops and alternatives included.
+/// Calls `change(goal)` with every end-effector or configuration goal, stops, targets and alternatives included. The
+/// place to return to stays.
 template <class Change>
 void change_goals(Problem& problem, const Change& change) {
     const auto change_one = [&](Goal& goal) {
@@ -28,6 +29,7 @@ void change_goals(Problem& problem, const Change& change) {
         std::ranges::for_each(goal.any_of, change_one);
     };
     std::ranges::for_each(problem.stops, change_all);
+    std::ranges::for_each(problem.targets, change_all);
     change_all(problem.goal);
 }
 
@@ -134,7 +136,7 @@ void know_better(Problem& problem) {
 struct Change {
     std::string_view name;
     void (*make)(Problem&);
-    std::string_view name_of_several = name;  ///< of goals in turn
+    std::string_view name_of_several = name;  ///< of several goals
 };
 
 constexpr Change changes[] = {
@@ -150,7 +152,7 @@ constexpr Change changes[] = {
 
 Remedy tried(const Change& change, Problem problem, SolveOptions options) {
     Remedy remedy;
-    remedy.change = problem.stops.empty() ? change.name : change.name_of_several;
+    remedy.change = goals_of(problem).size() == 1 ? change.name : change.name_of_several;
     change.make(problem);
     try {
         const Solution solution = solve(problem, options);
@@ -170,7 +172,7 @@ Remedy tried(const Change& change, Problem problem, SolveOptions options) {
 std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& options, double limit_s,
                                  const std::function<void(const Remedy&)>& on_tried) {
     Problem limited = problem;
-    limited.planner.time_limit_s = limit_s * static_cast<double>(1 + problem.stops.size());
+    limited.planner.time_limit_s = limit_s * static_cast<double>(goals_of(problem).size());
     SolveOptions until_first = options;
     until_first.stop_at_first_solution = true;
     until_first.keep_tree = false;

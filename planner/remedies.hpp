@@ -24,7 +24,8 @@ struct Remedy {
 /// Tries what may help where a search found no certified plan: another place or tolerance of the goal, a larger margin,
 /// slower motion, a stiffer controller, and all that is uncertain known twice as well. Each change is made for itself
 /// and searched for until the first certified plan. The result does not say that nothing else would help.
-/// @param limit_s wall time of each search [s], > 0, times the number of goals in turn; a limit of iterations stays
+/// @param limit_s wall time of each search [s], > 0, times the number of goals to be visited; a limit of iterations
+/// stays
 /// @param on_tried called after each
 /// @pre the problem has an uncertainty
 /// @return in the order in which they were tried; fewer than all when options.stop was requested

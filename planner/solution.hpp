@@ -10,6 +10,7 @@
 #include "downwash/controllers/plan.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -47,6 +48,7 @@ struct Solution {
     std::shared_ptr<const AeroMap> map;      ///< that the search flew in, for SolveOptions::map of another; empty: none
     std::vector<TreeNode> tree;              ///< of the search, one after the other if it took several; if asked for
     std::optional<Plan> plan;                ///< empty with Status::none
+    std::optional<VisitOrder> order;         ///< in which the plan visits targets; empty where the problem has none
     std::optional<Certificate> certificate;  ///< of the plan; empty where everything is as believed
     std::optional<SafeStops> stops;          ///< along a plan that solves the problem, if asked for
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one

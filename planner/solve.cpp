@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/planner/any_order.hpp"
 #include "downwash/planner/braking.hpp"
 #include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/line_search.hpp"
@@ -21,6 +22,42 @@ StopCondition end_of_last_flight(const std::stop_token& stop) {
         return [since = planning::Stopwatch()] { return since.seconds() >= moment_s; };
     }
     return [stop] { return stop.stop_requested(); };
+}
+
+/// One search, by lines or flights. @param whole the problem that the part is of   @return as PartSearch
+std::optional<std::size_t> search_part(const Problem& part, const Problem& whole, const FlightModel& model,
+                                       const AeroMap* map, const planning::Course& before,
+                                       planning::ProblemWorlds* worlds, const SolveOptions& options, Solution& into) {
+    if (whole.planner.variant == Variant::mp_arm) {
+        planning::search_lines(part, model, options, into);
+        return std::nullopt;
+    }
+    return planning::search_flights(part, whole, model, map, before, worlds, options, into);
+}
+
+/// One goal, or several in their order.
+/// @param least_round see solve_in_turn()   @param attempts plans that asked for a certificate so far
+void plan_goals(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
+                const std::shared_ptr<const AeroMap>& map, const SolveOptions& options, double least_round,
+                std::uint64_t& attempts, Solution& solution) {
+    std::optional<planning::ProblemWorlds> worlds;
+    if (problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada) {
+        const planning::Stopwatch clock;
+        worlds.emplace(problem, model, map, options);
+        solution.planning.map_wall_s += clock.seconds();
+    }
+    const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
+                            Solution& into) {
+        return search_part(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how, into);
+    };
+    if (!problem.stops.empty()) {
+        planning::solve_in_turn(problem, *model, map.get(), options, search, least_round, attempts, solution);
+        return;
+    }
+    planning::Course start = planning::Course::from_start(problem, *model);
+    start.attempts = attempts;
+    static_cast<void>(search(problem, options, start, solution));
+    attempts = solution.certificate ? solution.certificate->attempts : attempts;
 }
 
 /// @param since_call counts from the caller's call on, checks included
@@ -45,35 +82,29 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
         solution.map = map;
     }
     const bool plans_in_worlds = problem.uncertainty && problem.planner.variant == Variant::mp_arm_ada;
-    std::optional<planning::ProblemWorlds> worlds;
-    if (plans_in_worlds) {
-        const planning::Stopwatch clock;
-        worlds.emplace(problem, model, map, options);
-        solution.planning.map_wall_s += clock.seconds();
-    }
-    const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
-                            Solution& into) {
-        if (problem.planner.variant == Variant::mp_arm) {
-            planning::search_lines(part, *model, how, into);
-            return std::optional<std::size_t>();
-        }
-        return planning::search_flights(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how,
-                                        into);
-    };
     solution.planning.setup_wall_s = since_call.seconds();
-    if (problem.stops.empty()) {
-        static_cast<void>(search(problem, options, planning::Course::from_start(problem, *model), solution));
+    if (problem.targets.empty()) {
+        std::uint64_t attempts = 0;
+        plan_goals(problem, model, map, options, 0, attempts, solution);
     } else {
-        planning::solve_in_turn(problem, *model, map.get(), options, search, solution);
+        planning::solve_in_any_order(
+            problem, *model, map.get(), options,
+            [&](const Problem& leg, const SolveOptions& how, const planning::Course& before, Solution& into) {
+                static_cast<void>(search_part(leg, leg, *model, map.get(), before, nullptr, how, into));
+            },
+            [&](const Problem& in_order, const SolveOptions& how, double least_round, std::uint64_t& attempts,
+                Solution& into) { plan_goals(in_order, model, map, how, least_round, attempts, into); },
+            solution);
     }
+    const Problem flown = in_order(problem, solution.order);
     if (solution.plan && !(solution.execution && solution.status == Status::solved)) {
-        solution.execution =
-            planning::execute_directly(*model, start_state(*model, problem.start), *solution.plan, goals_of(problem),
-                                       solution.planning.flight_wall_s, end_of_last_flight(options.stop));
+        solution.execution = planning::execute_directly(
+            *model, start_state(*model, problem.start), *solution.plan, goals_of(flown), flown.energy_budget_j,
+            solution.planning.flight_wall_s, end_of_last_flight(options.stop));
     }
     if (options.finds_stops && solution.status == Status::solved && problem.planner.variant == Variant::mp_arm_ada) {
         solution.stops = planning::stops_along(
-            problem, model, map, plans_in_worlds ? planning::search_worlds(problem) : std::vector<FlownWorld>(),
+            flown, model, map, plans_in_worlds ? planning::search_worlds(problem) : std::vector<FlownWorld>(),
             *solution.plan, options.threads, end_of_last_flight(options.stop));
     }
     if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
@@ -81,7 +112,7 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
         const auto flown_map = problem.aero.enabled
                                    ? model->make_map(problem.bounds, options.threads, {}, options.map_cache, is_stopped)
                                    : nullptr;
-        planning::ProblemWorlds fresh(problem, model, flown_map, options);
+        planning::ProblemWorlds fresh(flown, model, flown_map, options);
         solution.certificate = fresh.certify(*solution.plan, 1, is_stopped);
     }
 }

@@ -153,8 +153,13 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
     advance(jobs, held, knot, held.reference.size() - 1, visits - 1);
     throw_if_over(is_over);  // then some were interrupted
     const bool misses_a_goal = hovers.size() + 1 < visits;
+    const double budget_j = problem_.energy_budget_j.value_or(std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Rejection rejection = jobs[i].rejection();
+        if (rejection == Rejection::none && !misses_a_goal && jobs[i].end().plant.energy_j > budget_j) {
+            flights[world_of[i]] = {Rejection::over_budget, min_clearance_m(jobs[i]), visits - 1};
+            continue;
+        }
         flights[world_of[i]] = {
             rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
             min_clearance_m(jobs[i]),

@@ -161,8 +161,8 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
         if (!starts[i]) {
             return;
         }
-        const Execution flight =
-            execute(flights_.model(), *starts[i], whole.reference, goals, true, {&worlds[i]}, is_over);
+        const Execution flight = execute(flights_.model(), *starts[i], whole.reference, goals, true, {&worlds[i]},
+                                         is_over, problem_.energy_budget_j);
         samples[i].outcome = flight.outcome;
         samples[i].min_clearance_m = flight.min_clearance_m;
         const auto missed = std::find_if(flight.goals.begin(), flight.goals.end(),

@@ -19,12 +19,34 @@ std::string rounded(double value) {
     return to_text(value, 4);
 }
 
+constexpr std::string_view key_of_return = "goal.return_to";
+
+/// Where the configuration of a goal stands in a file.
+std::string pose_key(const std::string& goal_key) {
+    return goal_key == key_of_return ? goal_key : goal_key + ".configuration";
+}
+
 /// Calls visit(goal, key) for every goal, alternatives one by one.
 template <class Visit>
 void for_each_goal(const Problem& p, const Visit& visit) {
     const auto name = [](std::string_view list, std::size_t i) {
         return std::string(list) + "[" + std::to_string(i) + "]";
     };
+    for (std::size_t i = 0; i < p.targets.size(); ++i) {
+        const std::string key = name("goal.in_any_order", i);
+        if (p.targets[i].any_of.empty()) {
+            visit(p.targets[i], key);
+        }
+        for (std::size_t k = 0; k < p.targets[i].any_of.size(); ++k) {
+            visit(p.targets[i].any_of[k], name(key + ".any_of", k));
+        }
+    }
+    if (p.return_to) {
+        visit(*p.return_to, std::string(key_of_return));
+    }
+    if (!p.targets.empty()) {
+        return;
+    }
     for (std::size_t i = 0; i < p.stops.size(); ++i) {
         visit(p.stops[i], name("goal", i));
     }
@@ -50,25 +72,47 @@ std::vector<KeyError> in_each_goal(const Problem& p, const Rule& rule) {
 }
 
 std::vector<KeyError> too_many_goals(const Problem& p) {
-    const std::size_t count = std::max(p.stops.size() + 1, p.goal.any_of.size());
-    if (count <= max_goals) {
-        return {};
+    std::vector<KeyError> errors;
+    const auto check = [&](const std::string& key, std::size_t count, std::size_t most) {
+        if (count > most) {
+            errors.push_back(
+                {key, "has " + std::to_string(count) + " goals: expected at most " + std::to_string(most)});
+        }
+    };
+    check("goal.in_any_order", p.targets.size(), max_targets);
+    for (std::size_t i = 0; i < p.targets.size(); ++i) {
+        check("goal.in_any_order[" + std::to_string(i) + "].any_of", p.targets[i].any_of.size(), max_goals);
     }
-    return {{p.stops.size() + 1 == count ? "goal" : "goal.any_of",
-             "has " + std::to_string(count) + " goals: expected at most " + std::to_string(max_goals)}};
+    check("goal", p.stops.size() + 1, max_goals);
+    check("goal.any_of", p.goal.any_of.size(), max_goals);
+    return errors;
 }
 
 std::vector<KeyError> unclear_goals(const Problem& p) {
     const bool may_choose = p.stops.empty();
+    const auto names_a_place = [](const Goal& goal) { return goal.end_effector || goal.configuration; };
     std::vector<KeyError> errors;
-    if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && (p.goal.end_effector || p.goal.configuration)) {
+    if (p.targets.empty() && (p.return_to || p.energy_budget_j)) {
+        errors.push_back({"goal", "has a place to return to or an energy budget, and no targets in any order"});
+    }
+    for (std::size_t i = 0; i < p.targets.size(); ++i) {
+        const Goal& target = p.targets[i];
+        const std::string key = "goal.in_any_order[" + std::to_string(i) + "]";
+        if (!target.any_of.empty() && names_a_place(target)) {
+            errors.push_back({key, "needs exactly one of end_effector, configuration or any_of"});
+        }
+    }
+    if (may_choose && (p.goal.contact || !p.goal.any_of.empty()) && names_a_place(p.goal)) {
         errors.push_back({"goal", "needs exactly one of end_effector, configuration, any_of or contact"});
     }
-    if (p.goal.contact && !p.stops.empty()) {
+    if (p.goal.contact && !(p.stops.empty() && p.targets.empty())) {
         errors.push_back({"goal", "asks for contact as one of several goals: expected contact for the only goal"});
     }
     append(
         errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+            if (goal.contact) {
+                return {{key, "asks for contact as one of several goals: expected contact for the only goal"}};
+            }
             if (!goal.any_of.empty()) {
                 return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
             }
@@ -77,12 +121,11 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
             }
             const auto& pose = goal.configuration;
             if (pose && !pose->x_m && !pose->z_m && !pose->arm_rad) {
-                return {{key + ".configuration",
-                         "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
+                return {{pose_key(key), "is free in every coordinate: expected at least one of x_m, z_m or arm_deg"}};
             }
             if (pose && ((pose->tolerance_x_m && !pose->x_m) || (pose->tolerance_z_m && !pose->z_m))) {
                 const std::string axis = pose->tolerance_x_m && !pose->x_m ? "x_m" : "z_m";
-                return {{key + ".configuration.tolerance_" + axis, "has a meaning only with " + axis + ": remove it"}};
+                return {{pose_key(key) + ".tolerance_" + axis, "has a meaning only with " + axis + ": remove it"}};
             }
             return {};
         }));
@@ -102,6 +145,9 @@ std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
     for (const Goal& stop : p.stops) {
         sum_s += stop.hold_s;
     }
+    if (!p.targets.empty()) {
+        return errors;  // the longest plan limits how many of them are visited
+    }
     if (sum_s >= max_s) {
         errors.push_back({"goal", "is held for " + to_text(sum_s) + " s before its last entry: expected less than " +
                                       to_text(max_s) + " s, " + std::to_string(max_plan_ticks) +
@@ -119,13 +165,14 @@ std::vector<KeyError> configurations_outside_bounds(const Problem& p) {
         const auto check = [&](const char* key, const std::optional<double>& value, double tolerance_m, double low,
                                double high) {
             if (value && (*value < low - tolerance_m || *value > high + tolerance_m)) {
-                errors.push_back({goal_key + key, "is " + to_text(*value) + ", outside the bounds: expected " +
-                                                      to_text(low) + " to " + to_text(high)});
+                errors.push_back({pose_key(goal_key) + key, "is " + to_text(*value) +
+                                                                ", outside the bounds: expected " + to_text(low) +
+                                                                " to " + to_text(high)});
             }
         };
         const GoalTolerance tolerance = tolerance_of(goal);
-        check(".configuration.x_m", goal.configuration->x_m, tolerance.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
-        check(".configuration.z_m", goal.configuration->z_m, tolerance.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+        check(".x_m", goal.configuration->x_m, tolerance.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
+        check(".z_m", goal.configuration->z_m, tolerance.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
         return errors;
     });
 }
@@ -136,8 +183,7 @@ std::vector<KeyError> configurations_beyond_arm_limits(const Problem& p) {
             arm_can_turn_to(p.robot.arm, *goal.configuration->arm_rad, tolerance_of(goal).usable().angle_rad)) {
             return {};
         }
-        return {
-            {key + ".configuration.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
+        return {{pose_key(key) + ".arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
     });
 }
 
@@ -146,7 +192,7 @@ std::vector<KeyError> configurations_in_collision(const ProblemCheck& check) {
         if (!goal.configuration || reach_of(check, goal) != Reach::blocked) {
             return {};
         }
-        return {{key + ".configuration",
+        return {{pose_key(key),
                  "is in collision with an obstacle or nearer to it than planner.safety_margin_m, "
                  "anywhere within its tolerances: move the goal or the obstacle"}};
     });

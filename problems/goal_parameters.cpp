@@ -67,17 +67,10 @@ void add_end_effector(Rows& rows, const std::string& path, GoalMember goal) {
         180, [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).direction_tolerance_rad; }));
 }
 
-/// @param goal names the Goal
-template <class GoalMember>
-void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
-    rows.push_back(
-        parameters::optional_group<Problem>(
-            path,
-            "the vehicle and its arm", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).configuration; })
-            .is_exclusive());
-    const auto pose = [goal](auto& p, std::size_t i) -> auto& {
-        return *goal(p, i).configuration;
-    };
+/// The keys of a ConfigurationGoal.
+/// @param pose names it
+template <class PoseMember>
+void add_pose(Rows& rows, const std::string& path, PoseMember pose) {
     rows.push_back(position(
         path + ".x_m",
         "along the plane; null for any", [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).x_m; }));
@@ -92,6 +85,18 @@ void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
     rows.push_back(tolerance(
         path + ".tolerance_deg", "deviation of the arm that is near enough",
         180, [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).tolerance_rad; }));
+}
+
+/// @param goal names the Goal
+template <class GoalMember>
+void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
+    rows.push_back(
+        parameters::optional_group<Problem>(
+            path,
+            "the vehicle and its arm", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).configuration; })
+            .is_exclusive());
+    add_pose(
+        rows, path, [goal](auto& p, std::size_t i) -> auto& { return *goal(p, i).configuration; });
 }
 
 /// Every kind of goal, of which exactly one is given.
@@ -178,8 +183,74 @@ Parameter<Problem> goal_group() {
     goal.resize = [](Problem& p, std::size_t, std::size_t count) {
         p.stops.assign(count - 1, Goal{});
         p.goal = Goal{};
+        p.targets.clear();
+        p.return_to.reset();
+        p.energy_budget_j.reset();
     };
     return goal;
+}
+
+/// A choice of several goals.
+/// @param goal names the Goal that has them
+template <class GoalMember>
+void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
+    auto any_of =
+        parameters::list<Problem>(
+            path + ".any_of",
+            "goals of which any will do", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).any_of; })
+            .is_exclusive();
+    any_of.count = [goal](const Problem& p, std::size_t i) {
+        return goal(p, i).contact ? 0 : goal(p, i).any_of.size();
+    };
+    rows.push_back(std::move(any_of));
+    const auto alternative = [goal](auto& p, std::size_t i) -> auto& {
+        return goal(p, outer_element(i)).any_of[inner_element(i)];
+    };
+    add_kinds(rows, path + ".any_of[]", alternative);
+    rows.push_back(hold(path + ".any_of[]", alternative));
+}
+
+bool has_targets(const Problem& p, std::size_t /*index*/) {
+    return !p.targets.empty();
+}
+
+void add_any_order(Rows& rows) {
+    constexpr std::string_view with_targets = "with in_any_order";
+    const auto target = [](auto& p, std::size_t i) -> auto& {
+        return p.targets[i];
+    };
+    rows.push_back(parameters::list<Problem>(
+                       "goal.in_any_order",
+                       "targets: the planner chooses in which order the flight stays at them, and at which alternative",
+                       [](auto& p) -> auto& { return p.targets; })
+                       .is_exclusive());
+    add_kinds(rows, "goal.in_any_order[]", target);
+    add_choice(rows, "goal.in_any_order[]", target);
+    rows.push_back(
+        hold("goal.in_any_order[]", target).only("without any_of", [target](const Problem& p, std::size_t i) {
+            return target(p, i).any_of.empty();
+        }));
+    rows.push_back(parameters::group<Problem>(
+                       "goal.return_to", "where the flight must end and stay after the last target",
+                       [](const Problem& p, std::size_t) { return p.return_to.has_value(); },
+                       [](Problem& p, std::size_t, bool is_there) {
+                           p.return_to.reset();
+                           if (is_there) {
+                               p.return_to.emplace().configuration.emplace();
+                           }
+                       })
+                       .only(with_targets, has_targets));
+    add_pose(
+        rows, "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to->configuration; });
+    rows.push_back(hold(
+        "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to; }));
+    rows.push_back(parameters::number<Problem>(
+                       "goal.energy_budget_j",
+                       "energy that no flight may exceed: targets for which it is not enough are left out",
+                       [](auto& p, std::size_t) -> auto& { return p.energy_budget_j; })
+                       .above(0)
+                       .at_most(1e12)
+                       .only(with_targets, has_targets));
 }
 
 }  // namespace
@@ -191,18 +262,10 @@ void add_goal_rows(Rows& rows) {
     rows.push_back(goal_group());
     add_kinds(rows, "goal", only);
     add_contact(rows);
-    auto any_of = parameters::list<Problem>(
-                      "goal.any_of", "goals of which any will do", [](auto& p) -> auto& { return p.goal.any_of; })
-                      .is_exclusive();
-    any_of.count = [](const Problem& p, std::size_t) { return p.goal.contact ? 0 : p.goal.any_of.size(); };
-    rows.push_back(std::move(any_of));
-    const auto alternative = [](auto& p, std::size_t i) -> auto& {
-        return p.goal.any_of[i];
-    };
-    add_kinds(rows, "goal.any_of[]", alternative);
-    rows.push_back(hold("goal.any_of[]", alternative));
-    rows.push_back(hold("goal", only).only("without any_of", [](const Problem& p, std::size_t) {
-        return p.goal.any_of.empty() || p.goal.contact;
+    add_choice(rows, "goal", only);
+    add_any_order(rows);
+    rows.push_back(hold("goal", only).only("without any_of and in_any_order", [](const Problem& p, std::size_t) {
+        return (p.goal.any_of.empty() || p.goal.contact) && p.targets.empty();
     }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {

@@ -30,6 +30,8 @@ Problem with_everything<Problem>() {
     problem.goal.end_effector = EndEffectorGoal{};
     problem.goal.configuration = ConfigurationGoal{};
     problem.goal.any_of = {problem.goal};
+    problem.targets = {problem.goal};
+    problem.return_to.emplace().configuration.emplace();
     problem.goal.contact.emplace();
     problem.obstacles = {{"", Box{}, {}, {}},
                          {"", Cylinder{}, {}, {}},

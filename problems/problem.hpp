@@ -90,6 +90,11 @@ struct Problem {
     Start start;
     std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
     Goal goal;
+    std::vector<Goal>
+        targets;  ///< goals in an order that the planner chooses; if there are any, they replace the above
+    std::optional<Goal> return_to;  ///< configuration to be reached and held after the targets
+    std::optional<double>
+        energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
     MotionLimits motion;
     PlannerSettings planner;
 };
@@ -97,7 +102,11 @@ struct Problem {
 /// More goals than these, in a row or to choose from, are not planned for.
 inline constexpr std::size_t max_goals = 64;
 
-/// All goals in the order in which they are to be visited: the stops, then the goal.
+/// More targets than these are not planned for in any order.
+inline constexpr std::size_t max_targets = 20;
+
+/// All goals in the order in which they are to be visited: the stops, then the goal. Of targets in any order, see
+/// in_order(): as they stand in the file, then the place to return to.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);
 
 /// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision

@@ -380,8 +380,13 @@ std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys w
 }
 
 std::vector<Goal> goals_of(const Problem& problem) {
-    std::vector<Goal> goals = problem.stops;
-    goals.push_back(problem.goal);
+    std::vector<Goal> goals = problem.targets.empty() ? problem.stops : problem.targets;
+    if (problem.targets.empty()) {
+        goals.push_back(problem.goal);
+    }
+    if (problem.return_to) {
+        goals.push_back(*problem.return_to);
+    }
     return goals;
 }
 

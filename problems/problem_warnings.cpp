@@ -176,6 +176,9 @@ std::vector<KeyError> no_margin(const Problem& problem) {
 
 /// A vehicle that need not move.
 std::vector<KeyError> goal_at_start(const Problem& problem) {
+    if (!problem.targets.empty()) {
+        return {};
+    }
     const Start& start = problem.start;
     const PlantModel plant = make_plant_model(problem.robot.multirotor, problem.robot.arm, problem.robot.rotors);
     const GoalError error = goal_error(problem.stops.empty() ? problem.goal : problem.stops.front(), plant,

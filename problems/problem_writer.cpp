@@ -111,7 +111,7 @@ class Writer {
         const std::size_t count = row.count(problem_, index);
         out_ += count == 0 ? " []\n" : "\n";
         for (std::size_t i = 0; i < count; ++i) {
-            write_keys(row.path + "[]", i, indent + "    ", indent + "  - ");
+            write_keys(row.path + "[]", element_index(index, i), indent + "    ", indent + "  - ");
         }
     }
 

@@ -217,7 +217,7 @@ void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model
             break;
         case ParameterKind::list:
             places_[key] = {file_, key_node->mark};
-            read_list(parameter, *value, key);
+            read_list(parameter, *value, key, group.index);
             break;
         default:
             places_[key] = {file_, value->mark};
@@ -237,7 +237,7 @@ void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const Yaml
         parameter.resize(model_, index, 1);
         read_keys({parameter.path, key, index, key_mark, node, {}, {}});
     } else if (parameter.can_be_list && node.kind == YamlNode::Kind::list) {
-        read_list(parameter, node, key);
+        read_list(parameter, node, key, index);
     } else if (is_text && parameter.can_be_none && node.text == "none") {
         parameter.resize(model_, index, 0);
     } else if (is_text && parameter.can_be_file && !node.text.empty()) {
@@ -250,7 +250,8 @@ void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const Yaml
 }
 
 template <class Model>
-void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key) {
+void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
+                                  std::size_t index) {
     if (node.kind != YamlNode::Kind::list) {
         const std::string remedy = node.kind == YamlNode::Kind::null ? "; write [] for none" : "";
         report(key, node.mark, found_text(node) + ": expected " + expectation(parameter) + remedy);
@@ -260,13 +261,13 @@ void TreeReader<Model>::read_list(const Parameter<Model>& parameter, const YamlN
         report(key, node.mark, "is empty: expected one element at least");
         return;
     }
-    parameter.resize(model_, 0, node.items.size());
+    parameter.resize(model_, index, node.items.size());
     for (std::size_t i = 0; i < node.items.size() && !is_full(); ++i) {
         const YamlNode& item = *node.items[i];
         const std::string item_key = key + "[" + std::to_string(i) + "]";
         places_[item_key] = {file_, item.mark};
         if (item.kind == YamlNode::Kind::map) {
-            read_keys({parameter.path + "[]", item_key, i, item.mark, item, {}, {}});
+            read_keys({parameter.path + "[]", item_key, element_index(index, i), item.mark, item, {}, {}});
         } else {
             report(item_key, item.mark, found_text(item) + ": expected a group of keys");
         }

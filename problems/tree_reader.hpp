@@ -72,7 +72,7 @@ class TreeReader {
     void read_parameter(const Group& group, const Parameter<Model>& parameter);
     void read_group(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
                     const Mark& key_mark, std::size_t index);
-    void read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key);
+    void read_list(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key, std::size_t index);
     void read_single(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
                      std::size_t index);
 

@@ -2,11 +2,14 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/python/columns.hpp"
 #include "downwash/results/run_folder.hpp"
 #include "downwash/results/solution_file.hpp"
@@ -61,6 +64,17 @@ CoreSolution read(const std::string& file, const std::shared_ptr<CoreProblem>& p
 }
 
 }  // namespace
+
+Problem as_visited(const Problem& problem, const Solution& solution) {
+    const auto fits = [&problem](const Visit& visit) {
+        return visit.target < problem.targets.size() &&
+               (!visit.alternative || *visit.alternative < problem.targets[visit.target].any_of.size());
+    };
+    if (!problem.targets.empty() && solution.order && !std::ranges::all_of(solution.order->visits, fits)) {
+        throw_input_error("is a plan of other targets than the problem has", "the solution");
+    }
+    return in_order(problem, solution.order);
+}
 
 void bind_solution(py::module_& module) {
     py::class_<CoreSolution, std::shared_ptr<CoreSolution>>(module, "Solution")

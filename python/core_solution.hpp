@@ -13,4 +13,8 @@ struct CoreSolution {
     Solution solution;
 };
 
+/// A problem with its goals in the order in which a plan visits them.
+/// @throws InputError if the plan is of other targets
+[[nodiscard]] Problem as_visited(const Problem& problem, const Solution& solution);
+
 }  // namespace downwash::python

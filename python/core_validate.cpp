@@ -74,7 +74,7 @@ py::tuple validate(const std::shared_ptr<CoreProblem>& problem, const CoreSoluti
     const Plan& plan = *of.solution.plan;
     judge::JudgedFlight flight;
     const std::optional<judge::WorldRuns> worlds = interruptible(stop, [&](Attendance& attendance) {
-        const judge::PlanJudge judge(problem->problem());
+        const judge::PlanJudge judge(as_visited(problem->problem(), of.solution));
         judge::FlightConditions conditions;
         if (world) {
             conditions.world = draw_world(*problem->problem().uncertainty, problem->problem().robot, seed, *world);

@@ -178,18 +178,39 @@ Json robot_json(const Robot& robot) {
         {"arm", {{"joint_m", {arm.joint_x_m, arm.joint_z_m}}, {"length_m", arm.length_m}, {"radius_m", arm.radius_m}}}};
 }
 
-Json goals_json(const Problem& problem) {
+/// Those that are visited, in their order, then those that are left out, which are held for no time.
+Json goals_json(const Problem& problem, const std::optional<VisitOrder>& order) {
+    const std::vector<std::string> names = goal_names(problem, order);
+    const Problem flown = in_order(problem, order);
+    const std::vector<Goal> visited = goals_of(flown);
     Json goals = Json::array();
-    for (const Goal& visited : goals_of(problem)) {
-        for (const Goal& goal : alternatives(visited)) {
+    const auto add = [&](const Goal& target, const std::string& name, bool is_left_out) {
+        for (const Goal& goal : alternatives(target)) {
             goals.push_back(goal_json(goal));
+            if (!problem.targets.empty()) {
+                goals.back()["name"] = name;
+            }
+            if (is_left_out) {
+                goals.back()["hold_s"] = 0;
+            }
+        }
+    };
+    for (std::size_t i = 0; i < visited.size(); ++i) {
+        add(visited[i], names[i], false);
+    }
+    if (order && flown.targets.empty()) {
+        for (const LeftOutTarget& each : order->left_out) {
+            add(problem.targets[each.target], "target " + std::to_string(each.target + 1) + ", left out", true);
         }
     }
     return goals;
 }
 
 /// Whether goals are visited in turn or are alternatives.
-std::string_view goal_order(const Problem& problem) {
+std::string_view goal_order(const Problem& problem, const std::optional<VisitOrder>& order) {
+    if (!problem.targets.empty()) {
+        return in_order(problem, order).targets.empty() ? "in_turn" : "any_order";
+    }
     return !problem.stops.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
 }
 
@@ -256,7 +277,8 @@ Json map_json(const Problem& problem, const FlightModel& model, int threads) {
 
 }  // namespace
 
-void add_problem(Json& page, const Problem& problem, const FlightModel& model, int threads) {
+void add_problem(Json& page, const Problem& problem, const std::optional<VisitOrder>& order, const FlightModel& model,
+                 int threads) {
     page["description"] = problem.description;
     page["scene"] = scene_json(problem, model.effect(0).scene());
     page["robot"] = robot_json(problem.robot);
@@ -264,8 +286,8 @@ void add_problem(Json& page, const Problem& problem, const FlightModel& model, i
                      {"z_m", problem.start.z_m},
                      {"pitch_rad", problem.start.pitch_rad},
                      {"arm_rad", problem.start.arm_rad}};
-    page["goals"] = goals_json(problem);
-    page["goal_order"] = goal_order(problem);
+    page["goals"] = goals_json(problem, order);
+    page["goal_order"] = goal_order(problem, order);
     page["limits"] = {
         {"safety_margin_m", problem.planner.safety_margin_m},
         {"max_tilt_rad", std::visit([](const auto& law) { return law.max_tilt_rad; }, problem.robot.controller.law)},

@@ -154,18 +154,18 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
 }
 
 /// The goals that are a point of the plane; several in turn with their numbers.
-std::vector<FigurePoints> goal_points(const Problem& problem) {
+std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<std::string>& names) {
     FigurePoints goals{"goal of the end effector", {}, goal_color};
-    int number = 0;
+    std::size_t number = 0;
     for (const Goal& visited : goals_of(problem)) {
-        ++number;
+        const std::string& name = names[number++];
         for (const Goal& goal : alternatives(visited)) {
             if (!goal.end_effector) {
                 continue;
             }
             goals.points.push_back({goal.end_effector->x_m, goal.end_effector->z_m});
-            if (!problem.stops.empty()) {
-                goals.labels.push_back("goal " + std::to_string(number));
+            if (names.size() > 1) {
+                goals.labels.push_back(name);
             }
         }
     }
@@ -273,10 +273,11 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
                      LineDash::dash_dotted},
                     {"flown", flown, flown_color, 1.6},
                     {"", {way(flight["x_m"], flight["z_m"])}, flown_color, 1.2}};
-    if (Pieces regions = goal_regions(run.problem); !regions.empty()) {
+    const Problem visited = in_order(run.problem, run.order);
+    if (Pieces regions = goal_regions(visited); !regions.empty()) {
         figure.lines.push_back({"tolerance of the goal", std::move(regions), goal_color, 1});
     }
-    figure.points = goal_points(run.problem);
+    figure.points = goal_points(visited, goal_names(run.problem, run.order));
     return figure;
 }
 

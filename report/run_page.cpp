@@ -40,7 +40,7 @@ std::string command_of(const Problem& problem, const Json& solution) {
         return "downwash execute effective.yaml --plan solution.json --aero off --out again";
     }
     std::string command = "downwash solve effective.yaml";
-    const bool is_split_by_time = !problem.stops.empty() && !problem.planner.max_iterations;
+    const bool is_split_by_time = goals_of(problem).size() > 1 && !problem.planner.max_iterations;
     if (!is_split_by_time && solution.contains(iterations) && solution[iterations].is_number_unsigned() &&
         solution[iterations] > 0) {
         command += " --max-iterations " + solution[iterations].dump();
@@ -65,7 +65,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, int th
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)},
               {"tree", tree_json(run.tree)}};
-    add_problem(page, problem, model, threads);
+    add_problem(page, problem, run.order, model, threads);
     return page_data(page);
 }
 

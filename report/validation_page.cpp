@@ -59,7 +59,7 @@ std::string validation_page_data(const ValidationRecord& validation, const Probl
               {"plan", Json::parse(validation.solution_text).at("plan")},
               {"clearance", clearance_json(validation.clearance)},
               {"flights", flights_json(validation.flights)}};
-    add_problem(page, problem, model, threads);
+    add_problem(page, problem, {}, model, threads);
     return page_data(page);
 }
 

@@ -1,5 +1,6 @@
 #include "downwash/results/claims.hpp"
 
+#include "downwash/results/order_reader.hpp"
 #include "downwash/results/plan_reader.hpp"
 #include "downwash/results/solution_document.hpp"
 
@@ -55,6 +56,7 @@ Claims read_claims(const std::string& path, const Problem& problem) {
         problems::PlanText text = problems::read_plan(reader, root, 1 / problem.robot.controller.rate_hz);
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
+        claims.order = problems::read_order(reader, root, problem);
         read_flight(reader, root, claims.flight);
     });
     return claims;

@@ -8,6 +8,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/visit_order.hpp"
 
 namespace downwash {
 
@@ -28,7 +29,8 @@ struct FlightClaims {
 struct Claims {
     CostFunction objective;
     std::uint64_t seed = 1;
-    Plan plan;  ///< the reference
+    Plan plan;                        ///< the reference
+    std::optional<VisitOrder> order;  ///< in which it visits the targets of the problem, if that has some
     std::vector<Configuration> waypoints;
     std::optional<FlightClaims> flight;
 };

@@ -181,6 +181,7 @@ RunRecord run_record(const Problem& problem, const Solution& solution, const Exe
     run.status = name_of(solution.status);
     run.outcome = solution.execution ? name_of(solution.execution->outcome) : "";
     run.plan = solution.plan;
+    run.order = solution.plan ? solution.order : std::nullopt;
     run.flight = trajectory_table(flight);
     run.tree = tree_table(solution.tree);
     return run;
@@ -216,7 +217,9 @@ RunRecord read_run(const fs::path& folder) {
     run.problem = read_problem(problem);
     check_problem(problem, run.problem, claims);
     if (claims.has_plan) {
-        run.plan = read_solution(solution.string(), run.problem).plan;
+        Solution read = read_solution(solution.string(), run.problem);
+        run.plan = std::move(read.plan);
+        run.order = std::move(read.order);
     }
     const fs::path flight = folder / "trajectory.csv";
     const std::string flight_text = text_of(flight);

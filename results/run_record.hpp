@@ -17,14 +17,15 @@ namespace downwash {
 
 /// A finished run: what its folder holds, in memory.
 struct RunRecord {
-    Problem problem;            ///< effective.yaml
-    std::string problem_text;   ///< the same as text
-    std::string solution_text;  ///< solution.json: well-formed, of the schema that this version writes
-    std::string status;         ///< of the solution: "solved", "approximate" or "none"
-    std::string outcome;        ///< of its flight: "ok", "collision"...; empty without one
-    std::optional<Plan> plan;   ///< of the solution; empty without one
-    NumberTable flight;         ///< trajectory.csv; no rows when nothing was flown
-    NumberTable tree;           ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
+    Problem problem;                  ///< effective.yaml
+    std::string problem_text;         ///< the same as text
+    std::string solution_text;        ///< solution.json: well-formed, of the schema that this version writes
+    std::string status;               ///< of the solution: "solved", "approximate" or "none"
+    std::string outcome;              ///< of its flight: "ok", "collision"...; empty without one
+    std::optional<Plan> plan;         ///< of the solution; empty without one
+    std::optional<VisitOrder> order;  ///< in which the plan visits targets; empty without a plan or targets
+    NumberTable flight;               ///< trajectory.csv; no rows when nothing was flown
+    NumberTable tree;                 ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
 };
 
 /// The record of a run that has just ended. The texts stay empty: they are those of the files that are written.

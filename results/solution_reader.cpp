@@ -4,6 +4,7 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/results/order_reader.hpp"
 #include "downwash/results/plan_reader.hpp"
 #include "downwash/results/solution_document.hpp"
 #include "downwash/results/solution_file.hpp"
@@ -210,6 +211,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
         read_stops(reader, root, solution.plan->tick_s, solution.stops);
+        solution.order = problems::read_order(reader, root, problem);
     });
     return solution;
 }

@@ -55,6 +55,25 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
             {"worst", std::move(worst)}};
 }
 
+/// Targets and alternatives by their numbers from 1.
+Json order_json(const VisitOrder& order) {
+    Json visits = Json::array();
+    for (const Visit& visit : order.visits) {
+        visits.push_back(
+            {{"target", visit.target + 1}, {"alternative", visit.alternative ? Json(*visit.alternative + 1) : Json()}});
+    }
+    Json left_out = Json::array();
+    for (const LeftOutTarget& each : order.left_out) {
+        left_out.push_back(
+            {{"target", each.target + 1}, {"reason", name_of(each.reason)}, {"energy_j", number(each.energy_j)}});
+    }
+    return {{"visits", std::move(visits)},
+            {"left_out", std::move(left_out)},
+            {"is_best", order.is_best},
+            {"legs", order.legs},
+            {"cost_of_legs", number(order.cost_of_legs)}};
+}
+
 Json planning_json(const SearchRecord& record) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
@@ -185,7 +204,7 @@ Json objective_json(const CostFunction& objective) {
 }  // namespace
 
 std::string solution_json(const Solution& solution, const ProblemReference& problem, const FileDigests& files) {
-    const Json document = {
+    Json document = {
         {"schema", solution_schema},
         {"status", name_of(solution.status)},
         {"interrupted", solution.interrupted},
@@ -205,6 +224,9 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"execution", execution_json(solution)},
         {"files", files},
     };
+    if (solution.order) {
+        document["order"] = order_json(*solution.order);
+    }
     // A file name may be any bytes; what is no UTF-8 in it is replaced.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

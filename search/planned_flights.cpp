@@ -45,6 +45,8 @@ std::string cause_of(Rejection rejection) {
             return "arm_limits";
         case Rejection::goal_missed:
             return "goal_missed";
+        case Rejection::over_budget:
+            return "over_budget";
         case Rejection::none:
         case Rejection::interrupted:
             break;

@@ -22,7 +22,8 @@ using Given = controllers::Actuation<double>;
 /// Few: among thousands of obstacles a tick takes milliseconds.
 constexpr std::int64_t ticks_between_questions = 8;
 
-constexpr std::string_view outcome_names[] = {"ok", "collision", "unstable", "left_flyable_area", "goal_missed"};
+constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unstable", "left_flyable_area",
+                                              "goal_missed", "over_budget"};
 
 /// Writes the log of one flight while it is flown.
 template <class Factor>
@@ -318,6 +319,8 @@ Outcome outcome_of(Rejection rejection) {
             return Outcome::left_flyable_area;
         case Rejection::goal_missed:
             return Outcome::goal_missed;
+        case Rejection::over_budget:
+            return Outcome::over_budget;
         case Rejection::none:
             return Outcome::ok;
         default:
@@ -351,11 +354,16 @@ bool meets_goal(const Goal& goal, const PlantModel& plant, const FlightState& st
 }
 
 Execution execute(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
-                  std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over) {
+                  std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
+                  std::optional<double> energy_budget_j) {
     assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
-    return with_effects(model, aero, [&](auto effect) {
+    Execution execution = with_effects(model, aero, [&](auto effect) {
         return execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, effect);
     });
+    if (execution.outcome == Outcome::ok && energy_budget_j && execution.energy_j > *energy_budget_j) {
+        execution.outcome = Outcome::over_budget;
+    }
+    return execution;
 }
 
 std::optional<FlightState> hovering_start(const FlightModel& model, const FlightState& start, bool aero,

@@ -15,10 +15,18 @@
 namespace downwash {
 
 /// How an executed plan ended.
-enum class Outcome : std::uint8_t { ok, collision, unstable, left_flyable_area, goal_missed };
+enum class Outcome : std::uint8_t {
+    ok,
+    collision,
+    unstable,
+    left_flyable_area,
+    goal_missed,
+    over_budget,  ///< met its goals, but took more energy than it may
+};
 
-inline constexpr std::array all_outcomes{Outcome::ok, Outcome::collision, Outcome::unstable, Outcome::left_flyable_area,
-                                         Outcome::goal_missed};
+inline constexpr std::array all_outcomes{Outcome::ok,          Outcome::collision,
+                                         Outcome::unstable,    Outcome::left_flyable_area,
+                                         Outcome::goal_missed, Outcome::over_budget};
 
 /// The outcome's name in files, for example "left_flyable_area".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Outcome outcome);
@@ -92,11 +100,13 @@ struct Execution : FlightSums {
 /// apart. Where it does not hover at all of those, it hovers after the last knot for the first that is left
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 /// @param in the world of the flight; of its ceiling part only the model is asked
+/// @param energy_budget_j a flight that takes more ends `over_budget` where it would end `ok`
 /// @throws WorkStopped when it is over before the flight ends
 [[nodiscard]] DOWNWASH_EXPORT Execution execute(const FlightModel& model, const FlightState& start,
                                                 const std::vector<ReferenceKnot>& knots, std::span<const Goal> goals,
                                                 bool aero, const FlightWorld& in = {},
-                                                const StopCondition& is_over = {});
+                                                const StopCondition& is_over = {},
+                                                std::optional<double> energy_budget_j = {});
 
 /// The same for one goal.
 [[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,

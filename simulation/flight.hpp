@@ -24,6 +24,7 @@ enum class Rejection : std::uint8_t {
     bounds,        ///< the centre of mass left the bounds
     arm_limits,    ///< the arm left its limits
     goal_missed,   ///< hovered at the goal but did not meet it
+    over_budget,   ///< a whole flight took more energy than it may
     interrupted,   ///< ended from outside; says nothing about the flight
 };
 

@@ -53,7 +53,7 @@ class Flight:
 
     @property
     def outcome(self) -> str:
-        """ok, collision, unstable, left_flyable_area or goal_missed."""
+        """ok, collision, unstable, left_flyable_area, goal_missed or over_budget."""
         return str(self.record["outcome"])
 
     @property
@@ -113,6 +113,12 @@ class Solution:
         """What flights in fresh worlds say about the plan; None where everything is as believed."""
         certificate: dict[str, Any] | None = self.record["certificate"]
         return certificate
+
+    @property
+    def order(self) -> dict[str, Any] | None:
+        """In which order targets are visited, and what is left out; None where the problem gives the order."""
+        order: dict[str, Any] | None = self.record.get("order")
+        return order
 
     @property
     def plan(self) -> Columns | None:

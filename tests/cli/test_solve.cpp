@@ -259,3 +259,40 @@ TEST_CASE("A folder that cannot be written is rejected before planning") {
         CHECK_THAT(result.err, !Contains("planning"));
     }
 }
+
+TEST_CASE(
+    "Targets in any order: solve names their order and what it leaves out, and the plan is flown and judged in it") {
+    const Workspace work;
+    const std::string text = problem_text("open_air");
+    const std::string head = text.substr(0, text.find("\ngoal:") + 1);
+    const std::string tail = "planner: {max_iterations: 1000}\n";
+    const std::string targets =
+        "goal:\n  in_any_order:\n    - {configuration: {x_m: 4, z_m: 3}, hold_s: 1}\n"
+        "    - {configuration: {x_m: -3, z_m: 3}, hold_s: 1}\n"
+        "    - {any_of: [{configuration: {x_m: -5, z_m: 8}, hold_s: 1}, {configuration: {x_m: 0, z_m: 3}, hold_s: "
+        "1}]}\n";
+    write_file(work.in_run("all.yaml"), head + targets + tail);
+    const Result all = succeeded(work.run("solve", "all.yaml --out all --quiet"));
+    CHECK_THAT(all.out, Contains("order             targets 2, 3 (alternative 2), 1\n") && !Contains("left out"));
+    const auto solution = nlohmann::json::parse(work.text("all/solution.json"));
+    CHECK(solution.at("order").at("visits").at(1) == nlohmann::json{{"target", 3}, {"alternative", 2}});
+    CHECK_THAT(succeeded(work.run("validate", "all.yaml --plan all")).out, StartsWith("Valid. "));
+    CHECK(work.json("execute", "all.yaml --plan all --out again --json").at("order") == solution.at("order"));
+
+    const double energy_j = solution.at("execution").at("energy_j");
+    write_file(work.in_run("some.yaml"),
+               head + targets + "  energy_budget_j: " + std::to_string(0.8 * energy_j) + "\n" + tail);
+    const Result some = succeeded(work.run("solve", "some.yaml --out some --quiet"));
+    CHECK_THAT(some.out, Contains("left out          target 1: with it the flight takes about "));
+    CHECK_THAT(succeeded(work.run("validate", "some.yaml --plan some")).out, StartsWith("Valid. "));
+    // The plan to all of them takes more than that.
+    const Result flown = work.run("execute", "some.yaml --plan all --out flown --quiet");
+    CHECK(flown.code == 3);
+    CHECK_THAT(flown.out, StartsWith("The flight with direct aerodynamics takes more energy than it may."));
+
+    write_file(work.in_run("none.yaml"), head + targets + "  energy_budget_j: 1\n" + tail);
+    const Result none = work.run("solve", "none.yaml --out none --quiet");
+    CHECK(none.code == 1);
+    CHECK_THAT(none.out, StartsWith("No solution: the energy budget is not enough for any target."));
+    CHECK_THAT(none.out, Contains("order             none: no target is visited\n"));
+}

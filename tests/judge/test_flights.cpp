@@ -7,6 +7,7 @@
 #include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 #include "shipped.hpp"
@@ -41,7 +42,7 @@ std::optional<Execution> executed(const Problem& problem, const Plan& plan, bool
     if (!start) {
         return std::nullopt;
     }
-    return execute(*model, *start, plan.reference, goals_of(problem), aero, in);
+    return execute(*model, *start, plan.reference, goals_of(problem), aero, in, {}, problem.energy_budget_j);
 }
 
 void compare(const judge::JudgedFlight& mine, const Execution& theirs) {
@@ -296,6 +297,30 @@ TEST_CASE("Goals in a row and alternatives are met as the planner meets them") {
     const judge::JudgedFlight mine = judge::PlanJudge(problem).fly(plan, {});
     CHECK(mine.outcome == (stays ? judge::Outcome::ok : judge::Outcome::goal_missed));
     compare(mine, *executed(problem, plan, true, std::nullopt));
+}
+
+TEST_CASE("A flight that takes more energy than the budget is over it, for the judge as for the planner") {
+    Problem problem = ceiling_problem();
+    problem.targets = {configuration_goal(-2, 2), configuration_goal(2, 2.5)};
+    VisitOrder order;
+    order.visits = {{1, std::nullopt}, {0, std::nullopt}};
+    Problem flown = in_order(problem, order);
+    const Plan plan{{{0, at_rest({-4, 2, quarter_turn})},
+                     {2000, at_rest({2, 2.5, quarter_turn})},
+                     {2500, at_rest({2, 2.5, quarter_turn})},
+                     {4000, at_rest({-2, 2, quarter_turn})}},
+                    0.01};
+    const double energy_j = judge::PlanJudge(flown).fly(plan, {}).energy_j;
+    for (const double share : {0.99, 1.01}) {
+        CAPTURE(share);
+        flown.energy_budget_j = share * energy_j;
+        const judge::JudgedFlight mine = judge::PlanJudge(flown).fly(plan, {});
+        CHECK(mine.outcome == (share < 1 ? judge::Outcome::over_budget : judge::Outcome::ok));
+        compare(mine, *executed(flown, plan, true, std::nullopt));
+    }
+    // Not in the order of the file.
+    CHECK(judge::PlanJudge(in_order(problem, given_order(problem))).fly(plan, {}).outcome ==
+          judge::Outcome::goal_missed);
 }
 
 TEST_CASE("the judge and the planner agree about touches, as believed and in worlds") {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/error_of.hpp"
@@ -218,6 +219,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     planning::ProblemWorlds worlds(problem, model, map, options);
     std::vector<std::optional<std::size_t>> named;
     Solution solution;
+    std::uint64_t attempts = 0;
     planning::solve_in_turn(
         problem, *model, map.get(), options,
         [&](const Problem& part, const SolveOptions& of_part, const planning::Course& before, Solution& found) {
@@ -230,7 +232,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
             }
             return weak;
         },
-        solution);
+        0, attempts, solution);
     CHECK(solution.status == Status::approximate);
     REQUIRE_FALSE(named.empty());
     CHECK(named.front() == std::optional<std::size_t>(0));
@@ -326,4 +328,16 @@ TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets 
     const auto of_several = try_remedies(problem, options, 10, [&](const Remedy&) { after_one.request_stop(); });
     REQUIRE(of_several.size() == 1);
     CHECK(of_several[0].change == "all goals 0.1 m lower");
+
+    problem.targets = {problem.stops.front(), std::exchange(problem.goal, {})};
+    problem.stops.clear();
+    std::stop_source after_two;
+    options.stop = after_two.get_token();
+    const auto of_targets = try_remedies(problem, options, 10, [&](const Remedy& remedy) {
+        if (remedy.change == "all goals 0.2 m lower") {
+            after_two.request_stop();
+        }
+    });
+    REQUIRE(of_targets.size() == 2);
+    CHECK_THAT(of_targets[1].error, Catch::StartsWith("goal.in_any_order[0].configuration.z_m is 0.35"));
 }

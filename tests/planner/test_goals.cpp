@@ -87,7 +87,8 @@ struct ScriptedTour {
         };
         SolveOptions options;
         options.stop_at_first_solution = true;
-        planning::solve_in_turn(problem, *model, nullptr, options, search, solution);
+        std::uint64_t attempts = 0;
+        planning::solve_in_turn(problem, *model, nullptr, options, search, 0, attempts, solution);
     }
 };
 

@@ -26,7 +26,7 @@ inline std::vector<std::string_view> names_below(std::string_view path, bool onl
 
 /// An expected text in which <objectives>, <models>, <algorithms> and <algorithms over flights> stand for all names
 /// that there are, joined; <goals> for the kinds of a goal, any_of included, <stops> for those of an entry of a list of
-/// goals, and <keys of a stop> for its keys.
+/// goals, and <keys of a stop> for its keys; <targets> and <keys of a target> for those of a target in any order.
 inline std::string with_all_names(std::string_view text) {
     std::vector<std::string_view> objectives, models, planners, flight_planners;
     for (const Objective objective : all_objectives) {
@@ -49,6 +49,8 @@ inline std::string with_all_names(std::string_view text) {
         {"<goals>", names_below("goal", true)},
         {"<stops>", names_below("goal[]", true)},
         {"<keys of a stop>", names_below("goal[]", false)},
+        {"<targets>", names_below("goal.in_any_order[]", true)},
+        {"<keys of a target>", names_below("goal.in_any_order[]", false)},
     };
     std::string out(text);
     for (const auto& [word, names] : all) {

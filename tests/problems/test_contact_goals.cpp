@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <string>
+#include <utility>
 
 #include "../support/error_of.hpp"
 #include "../support/test_problem.hpp"
@@ -98,4 +99,7 @@ TEST_CASE("a contact without a place says what is in its way") {
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.goal.configuration.emplace().x_m = 0;
     CHECK_THAT(only_error(problem), Contains("exactly one of"));
+    problem = contact_problem("ceiling", TouchingPart::frame);
+    problem.targets = {std::exchange(problem.goal, {})};
+    CHECK_THAT(only_error(problem), Contains("goal.in_any_order[0]") && Contains("expected contact for the only goal"));
 }

@@ -127,7 +127,7 @@ const Edit edits[] = {
     {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n",
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {hold_s: 2}]\n",
      "14:48: goal.any_of[1] needs exactly one of <stops>\n15:3: goal.hold_s has a meaning only "
-     "without any_of: remove it"},
+     "without any_of and in_any_order: remove it"},
     {tip_and_hold,
      "  any_of: [{end_effector: {x_m: 3, z_m: 2.5}}, {configuration: {x_m: 30, tolerance_x_m: 0, hold_s: 2}}]\n",
      "14:89: goal.any_of[1].configuration.tolerance_x_m is 0: expected a number in m above 0 and at most 100, or "
@@ -137,6 +137,27 @@ const Edit edits[] = {
      "14:70: goal.any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
     {tip, "configuration: {z_m: 3, tolerance_x_m: 0.1}",
      "14:42: goal.configuration.tolerance_x_m has a meaning only with x_m: remove it"},
+    {goal, "goal: {in_any_order: []}\n", "13:22: goal.in_any_order is empty: expected one element at least"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {any_of: [{configuration: {x_m: 1}}, {hold_s: 0}]}]\n",
+     "14:82: goal.in_any_order[1].any_of[1] needs exactly one of <stops>\n14:91: "
+     "goal.in_any_order[1].any_of[1].hold_s is 0: expected a number in s from 1 to 3600"},
+    {tip_and_hold,
+     "  in_any_order: [{configuration: {x_m: 1}}, {any_of: [{configuration: {x_m: 1}}, {configuration: {x_m: 30}}]}]\n",
+     "14:104: goal.in_any_order[1].any_of[1].configuration.x_m is 30, outside the bounds: expected -6 to 6"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n  energy_budget_j: 0\n",
+     "16:20: goal.energy_budget_j is 0: expected a number in J above 0 and at most 1000000000000, or null"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n",
+     "15:20: goal.return_to.x_m is 9, outside the bounds: expected -6 to 6"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {contact: {obstacle: wall, force_n: 2}}]\n",
+     "14:45: goal.in_any_order[1] needs exactly one of <targets>\n14:46: unknown key 'contact' in "
+     "goal.in_any_order[1]: "
+     "expected <keys of a target>"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  contact: {obstacle: wall, force_n: 2}\n",
+     "15:3: goal has both in_any_order and contact: expected exactly one of <goals>"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {hold_s: 2}\n",
+     "15:3: goal.return_to is free in every coordinate: expected at least one of x_m, z_m or arm_deg"},
+    {"  hold_s: 5\n", "  hold_s: 5\n  return_to: {x_m: 1}\n",
+     "16:3: goal.return_to has a meaning only with in_any_order: remove it"},
     {goal, "goal: []\n", "13:7: goal is empty: expected one element at least"},
     {goal, "goal: [{end_effector: {x_m: 3, z_m: 9}}, {any_of: []}, {configuration: {x_m: 3}, hold_s: 0}]\n",
      "13:42: goal[1] needs exactly one of <stops>\n13:43: unknown key 'any_of' in goal[1]: "

@@ -1,6 +1,7 @@
 #include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
@@ -193,6 +194,50 @@ TEST_CASE("goals are read one by one, in turn, or as a choice") {
     const Problem alone = read_with("goal: [{configuration: {x_m: 1}}]\n");
     CHECK(alone.stops.empty());
     CHECK(alone.goal.configuration->x_m == 1);
+}
+
+TEST_CASE("targets in any order are read with their alternatives, the place to return to and the energy budget") {
+    const TestFolder folder;
+    constexpr std::string_view one = "goal:\n  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n  hold_s: 5\n";
+    const Problem problem = folder.read(
+        edited(good_problem, one,
+               "goal:\n  return_to: {x_m: -4, z_m: 2, hold_s: 2}\n  energy_budget_j: 50000\n  in_any_order:\n"
+               "    - {configuration: {x_m: 1}, hold_s: 3}\n    - end_effector: {x_m: 3, z_m: 2.5}\n"
+               "    - any_of: [{configuration: {x_m: 2}}, {configuration: {x_m: 3, z_m: 2}, hold_s: 4}]\n"));
+    REQUIRE(problem.targets.size() == 3);
+    CHECK(problem.targets[0].configuration->x_m == 1);
+    CHECK(problem.targets[0].hold_s == 3);
+    CHECK(problem.targets[1].end_effector->z_m == 2.5);
+    REQUIRE(problem.targets[2].any_of.size() == 2);
+    CHECK(problem.targets[2].any_of[0].configuration->x_m == 2);
+    CHECK(problem.targets[2].any_of[0].hold_s == 5);
+    CHECK(problem.targets[2].any_of[1].configuration->z_m == 2);
+    CHECK(problem.targets[2].any_of[1].hold_s == 4);
+    CHECK(problem.return_to->configuration->x_m == -4);
+    CHECK(problem.return_to->hold_s == 2);
+    CHECK(problem.energy_budget_j == 50000);
+    CHECK(goals_of(problem).size() == 4);
+
+    VisitOrder order;
+    order.visits = {{2, 1}, {0, std::nullopt}};
+    order.left_out = {{1, LeftOutReason::energy_budget, 60000}};
+    const Problem sequence = in_order(problem, order);
+    CHECK(sequence.targets.empty());
+    CHECK(sequence.energy_budget_j == 50000);
+    const std::vector<Goal> goals = goals_of(sequence);
+    REQUIRE(goals.size() == 3);
+    CHECK(goals[0].configuration->x_m == 3);
+    CHECK(goals[0].hold_s == 4);
+    CHECK(goals[1].configuration->x_m == 1);
+    CHECK(goals[2].configuration->x_m == -4);
+    CHECK(goal_names(problem, order) == std::vector<std::string>{"target 3", "target 1", "the place to return to"});
+
+    // One that visits nothing but the place to return to, and one that visits nothing.
+    Problem other = problem;
+    CHECK(goals_of(in_order(other, VisitOrder{})).size() == 1);
+    other.return_to.reset();
+    CHECK(goals_of(in_order(other, VisitOrder{})).size() == 3);
+    CHECK(goal_names(other, VisitOrder{}).size() == 3);
 }
 
 TEST_CASE("an objective is a name or a sum with weights, of which those that are left out are 0") {

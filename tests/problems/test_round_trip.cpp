@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "../support/random.hpp"
-#include "../support/test_robot.hpp"
+#include "../support/test_problem.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
@@ -74,6 +74,15 @@ class ProblemMaker {
             other.hold_s = 1 + uniform();
             if (coin()) {
                 problem.stops = {other, problem.goal};
+            } else if (coin()) {
+                Goal either;
+                either.any_of = {problem.goal, other};
+                problem.targets = {other, either, problem.goal};
+                problem.goal = {};
+                if (coin()) {
+                    problem.return_to = test::configuration_goal(uniform(), 2 + uniform(), uniform());
+                    problem.energy_budget_j = 1e5 * uniform();
+                }
             } else {
                 problem.goal = {};
                 problem.goal.any_of = {other};

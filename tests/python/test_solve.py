@@ -65,7 +65,24 @@ def test_flight_plan_and_tree_are_arrays_with_the_names_of_the_files(tmp_path, f
     assert np.array_equal(flown.tree["parent"], tree["parent"], equal_nan=True)
 
 
+def test_targets_in_any_order_are_flown_again_in_the_order_of_the_plan(open_air):
+    x_m, z_m = open_air["start.x_m"], open_air["start.z_m"]
+    targets = [{"configuration": {"x_m": x_m + d, "z_m": z_m}, "hold_s": 1} for d in (3, 1, 2)]
+    problem = open_air.replace(
+        {"goal": {"in_any_order": targets}, "planner.max_iterations": 600, "planner.time_limit_s": None}
+    )
+    solution = downwash.solve(problem, variant="mp-arm-da")
+    assert solution.status == "solved"
+    assert [visit["target"] for visit in solution.order["visits"]] == [2, 3, 1]
+    assert downwash.execute(problem, solution).outcome == "ok"
+    assert downwash.validate(problem, solution).outcome == "ok"
+    fewer = problem.replace({"goal": {"in_any_order": targets[:2]}})
+    with pytest.raises(downwash.InputError, match="of other targets"):
+        downwash.execute(fewer, solution)
+
+
 def test_a_solution_says_what_its_file_says(flown):
+    assert flown.order is None
     assert flown.status == flown.record["status"]
     assert flown.cost == flown.record["cost"]
     assert flown.flight.outcome == flown.record["execution"]["outcome"]

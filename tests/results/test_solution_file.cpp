@@ -120,6 +120,78 @@ TEST_CASE("A plan is read back to the last bit") {
     CHECK(solution_json(found, {"open_air", "open_air.yaml", std::string(64, 'a')}) == sample_text());
 }
 
+namespace {
+
+/// The problem of the sample with four targets, one of them with alternatives.
+Problem with_targets() {
+    Problem targets = problem();
+    Goal either;
+    either.any_of = {targets.goal, targets.goal};
+    targets.targets = {targets.goal, either, targets.goal, targets.goal};
+    return targets;
+}
+
+std::string text_with_order() {
+    Solution solution = sample();
+    VisitOrder& order = solution.order.emplace();
+    order.visits = {{2, std::nullopt}, {1, 1}};
+    order.left_out = {{0, LeftOutReason::energy_budget, 1e5 / 3}, {3, LeftOutReason::no_flight, std::nullopt}};
+    order.is_best = true;
+    order.legs = 17;
+    order.cost_of_legs = 1e4 / 7;
+    return solution_json(solution, {"open_air", "open_air.yaml", ""});
+}
+
+Solution read_with_targets(const std::string& text) {
+    const test::TestFolder folder;
+    folder.write("solution.json", text);
+    return read_solution((folder / "solution.json").string(), with_targets());
+}
+
+/// What is wrong with the text after a change of what comes behind `"order"`.
+std::string order_error(const std::string& from, const std::string& to) {
+    std::string text = text_with_order();
+    const std::size_t at = text.find(from, text.find("\"order\""));
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    try {
+        static_cast<void>(read_with_targets(text));
+    } catch (const ProblemFileError& invalid) {
+        return invalid.errors().at(0).message;
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("The order of targets is written and read back, with what is left out and why") {
+    const Solution found = read_with_targets(text_with_order());
+    REQUIRE(found.order);
+    CHECK(found.order->visits == std::vector<Visit>{{2, std::nullopt}, {1, 1}});
+    CHECK(found.order->left_out == std::vector<LeftOutTarget>{{0, LeftOutReason::energy_budget, 1e5 / 3},
+                                                              {3, LeftOutReason::no_flight, std::nullopt}});
+    CHECK(solution_json(found, {"open_air", "open_air.yaml", ""}) == text_with_order());
+    // A plan that was written by hand visits them as they stand.
+    const Solution by_hand = read_with_targets(sample_text());
+    CHECK(by_hand.order == given_order(with_targets()));
+    CHECK_FALSE(read(sample_text()).order);
+}
+
+TEST_CASE("An order that is none of the problem is rejected with its place") {
+    CHECK_THAT(order_error("\"target\": 3", "\"target\": 5"),
+               Contains("order.visits[0].target: expected the number of a target of the problem, 1 to 4"));
+    CHECK_THAT(order_error("\"target\": 3", "\"target\": 2"), Contains("order.visits[1]: target 2 stands here twice"));
+    CHECK_THAT(order_error("\"target\": 1", "\"target\": 0"),
+               Contains("order.left_out[0].target: expected the number"));
+    CHECK_THAT(order_error("\"alternative\": 2", "\"alternative\": 3"),
+               Contains("order.visits[1].alternative: expected the number of an alternative of this target, 1 to 2"));
+    CHECK_THAT(order_error("\"alternative\": null", "\"alternative\": 1"), Contains("this target has no alternatives"));
+    CHECK_THAT(order_error("\"reason\": \"no_flight\"", "\"reason\": \"why\""),
+               Contains("expected one of energy_budget or no_flight"));
+    CHECK_THAT(order_error("\"left_out\"", "\"left\""), Contains("order: target 1 is missing here"));
+    CHECK_THAT(error_of(text_with_order()), Contains("order: the problem has no targets in any order"));
+}
+
 TEST_CASE("Warnings are written with their places and a file is read with and without them") {
     const LocatedError warning{"robots/\"mine\".yaml", 12, 3, "rotors.positions_m puts the rotors 1 and 2 close"};
     const std::string text = solution_json(sample(), {"open_air", "open_air.yaml", "", {warning}});

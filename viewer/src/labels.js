@@ -3,6 +3,7 @@
 import {isolated, s} from "./dom.js";
 import {extent_of} from "./numbers.js";
 import {goal_region} from "./surroundings.js";
+import {goal_name} from "./words.js";
 
 const line_height = 14;
 const name_length = 26;
@@ -102,7 +103,7 @@ export function draw_place_names(view, model, placement) {
     const marks = [];
     model.goals.forEach((goal, index) => {
         const region = goal_region(goal, model.scene.bounds);
-        const text = model.goals.length === 1 ? "goal" : `goal ${index + 1}`;
+        const text = goal_name(model, index);
         const reach = Math.min(30, (Number(region.half_z) || 0.08) * view.pixels_per_m);
         const found = placement.find(text, around(view.to_pixels(region.x_m, region.z_m), reach, text));
         if (found) {

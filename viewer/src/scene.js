@@ -14,12 +14,13 @@ import {keep_sized} from "./sizing.js";
 import {draw_bounds, draw_goals, draw_obstacles, draw_start, is_cut, make_hatches} from "./surroundings.js";
 import {make_vehicle, vehicle_at} from "./vehicle.js";
 import {View} from "./view.js";
+import {goal_name} from "./words.js";
 
 function describe(model) {
     const {scene, start, goals, data, rows} = model;
     const cut = scene.obstacles.filter(is_cut).length;
     const goal_texts =
-        goals.map(({x_m, z_m}, index) => `goal${goals.length > 1 ? ` ${index + 1}` : ""} at ${point(x_m, z_m)}`);
+        goals.map(({x_m, z_m}, index) => `${goal_name(model, index)} at ${point(x_m, z_m)}`);
     const sentences = [
         "The plane of motion to scale, seen from the side",
         `${scene.obstacles.length} obstacles, ${cut} of them cut by the plane`,

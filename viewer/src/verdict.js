@@ -3,7 +3,7 @@
 import {certificate_sentence} from "./certificate.js";
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
-import {cause_text, knowledge, outcome_text, variants} from "./words.js";
+import {cause_text, goal_name, knowledge, outcome_text, variants} from "./words.js";
 
 /** How, where and when the flight of a plan fails. */
 function failure_lines(model, how) {
@@ -34,15 +34,18 @@ function failure_lines(model, how) {
 function world_text({world}) { return world ? `, in world ${world.index} of seed ${world.seed}` : ""; }
 
 /** What blocked a search without a plan. */
-function blocked_lines({solution, outcome}) {
+function blocked_lines({solution, outcome, goals}) {
     const {certificate, execution, planning, status, interrupted} = solution;
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
-    const goal = planning?.goal ? `goal ${planning.goal}` : "the goal";
+    const goal = planning?.goal ? goal_name({goals}, planning.goal - 1) : "the goal";
     const region = planning?.goal ? `the region of ${goal}` : "the goal region";
     const is_screened = stop?.cause === "certificate" && !certificate;  // a part of a way through several goals
     const lines = [];
     if (interrupted) {
         lines.push("The search was interrupted.");
+    }
+    if (status === "approximate" && outcome === "ok" && (solution.order?.left_out ?? []).length > 0) {
+        return [...lines, "No flight was found to some targets. The page shows one to the others, which counts as no solution."];
     }
     if (status === "approximate") {
         const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
@@ -149,7 +152,7 @@ function figures_of(model) {
     }
     if (Number.isFinite(planning?.nearest_approach_m)) {
         add("Nearest approach", meters(planning.nearest_approach_m),
-            planning.goal ? `to the region of goal ${planning.goal}` : "to the goal region");
+            planning.goal ? `to the region of ${goal_name(model, planning.goal - 1)}` : "to the goal region");
     }
     const first = planning?.first_solution_wall_s;
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
@@ -172,6 +175,28 @@ export function make_figures(model) {
                 h("dd", null, h("span", {class: "figure"}, value), note ? h("span", {class: "muted"}, note) : null))));
 }
 
+const orders = {any_of: "any of them", any_order: "in any order"};
+
+/** In which order targets are visited, which are left out, and why; null where the order is given. */
+function order_list({solution}) {
+    const {order} = solution;
+    if (!order) {
+        return null;
+    }
+    const visited = order.visits.map(
+        ({target, alternative}) => alternative ? `${target} (alternative ${alternative})` : `${target}`);
+    const legs = `${order.legs} flown legs`;
+    const how = order.is_best ? `the cheapest by ${legs} and lower bounds of the others` :
+                                `the cheapest that was found by ${legs}`;
+    const why = ({energy_j}) => Number.isFinite(energy_j) ?
+        `with it the flight takes about ${quantity(energy_j, ",.0f", "J")}, more than it may` :
+        "no flight to it was found";
+    return h(
+        "ul", {class: "goal-visits order"},
+        h("li", null, visited.length > 0 ? `order of the targets: ${visited.join(", ")}; ${how}` : "no target is visited"),
+        order.left_out.map((each) => h("li", null, `target ${each.target} is left out: ${why(each)}`)));
+}
+
 function goals_list({solution, goals}) {
     const visits = solution.execution?.goals ?? [];
     if (visits.length < 2) {
@@ -182,7 +207,7 @@ function goals_list({solution, goals}) {
         visits.map(
             ({met, error_m}, i) =>
                 h("li", null,
-                  `goal ${goals.length > 1 ? i + 1 : ""}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
+                  `${goal_name({goals}, i)}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
 }
 
 /** What reading the problem warned of, folded to a line; null where there is nothing. */
@@ -218,7 +243,7 @@ export function make_head(model, theme_switch) {
           fact("algorithm", solution.algorithm), fact("objective", model.objective),
           fact("seed", String(solution.seed)),
           model.goals.length > 1 ?
-              fact("goals", `${model.goals.length}, ${report.goal_order === "any_of" ? "any of them" : "in turn"}`) :
+              fact("goals", `${model.goals.length}, ${orders[report.goal_order] ?? "in turn"}`) :
               null));
 }
 
@@ -230,5 +255,5 @@ export function make_verdict(model) {
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
             certificate ? h("p", {class: "certificate-line"}, certificate) : null,
-            goals_list(model), warnings_list(model))));
+            order_list(model), goals_list(model), warnings_list(model))));
 }

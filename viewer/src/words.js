@@ -8,6 +8,7 @@ export const causes = {
     direct_flight: "fails when executed with direct aerodynamics",
     flyable_area: "leaves the flyable area",
     goal_missed: "misses the goal",
+    over_budget: "takes more energy than it may",
     saturation: "exceeds a limit of the actuators",
     too_long: "takes too long",
     tracking: "does not follow its reference",
@@ -23,6 +24,7 @@ export const outcomes = {
     unstable: "becomes unstable",
     left_flyable_area: "leaves the flyable area",
     goal_missed: "misses the goal",
+    over_budget: "takes more energy than it may",
 };
 
 /** The name of an outcome as words: "goal missed". */
@@ -43,3 +45,7 @@ export const variants = {
     "mp-arm-da": "motion planner for aerial robotic manipulators, dynamics-aware: flights in free air",
     "mp-arm-ada": "motion planner for aerial robotic manipulators, aerodynamics-aware: flights near surfaces",
 };
+
+/** What a goal is called: "goal", "goal 2" or, where the planner chose the order, "target 3". */
+export const goal_name = ({goals}, index) =>
+    goals[index]?.name ?? (goals.length > 1 ? `goal ${index + 1}` : "goal");

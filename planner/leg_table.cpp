@@ -1,0 +1,253 @@
+#include "downwash/planner/leg_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "downwash/search/free_air_cost.hpp"
+
+namespace downwash::planning {
+namespace {
+
+constexpr int most_failures = 2;
+
+/// The goals of every place: of the targets with their alternatives, and of the place to return to.
+std::vector<std::pair<Visit, Goal>> goals_at_places(const Problem& problem) {
+    std::vector<std::pair<Visit, Goal>> goals;
+    for (std::size_t i = 0; i < problem.targets.size(); ++i) {
+        const Goal& target = problem.targets[i];
+        for (std::size_t k = 0; k < target.any_of.size(); ++k) {
+            goals.emplace_back(Visit{i, k}, target.any_of[k]);
+        }
+        if (target.any_of.empty()) {
+            goals.emplace_back(Visit{i, std::nullopt}, target);
+        }
+    }
+    if (problem.return_to) {
+        goals.emplace_back(Visit{problem.targets.size(), std::nullopt}, *problem.return_to);
+    }
+    return goals;
+}
+
+std::vector<std::size_t> targets_of_places(const Problem& problem) {
+    std::vector<std::size_t> targets;
+    for (const auto& [visit, goal] : goals_at_places(problem)) {
+        if (visit.target < problem.targets.size()) {
+            targets.push_back(visit.target);
+        }
+    }
+    return targets;
+}
+
+/// The way to one goal, which begins anywhere.
+Problem problem_to(const Problem& problem, const Goal& goal) {
+    Problem part = problem;
+    part.targets.clear();
+    part.return_to.reset();
+    part.stops.clear();
+    part.goal = goal;
+    return part;
+}
+
+}  // namespace
+
+/// Lower bounds of the cost and the energy of the way to a goal.
+class LegTable::Bounds {
+ public:
+    Bounds(const Problem& problem, const Goal& goal, const FlightModel& model)
+        : Bounds(without_obstacles(problem_to(problem, goal)), model) {}
+
+    [[nodiscard]] LegCost from(const Configuration& at) const {
+        return {cost_.min_cost_to_goal(at), energy_.min_cost_to_goal(at)};
+    }
+    /// What the level vehicle takes in that time, hovering in free air [J].
+    [[nodiscard]] double hover_energy_j(const Configuration& at, double duration_s) const {
+        return energy_.of_hold(at, duration_s);
+    }
+    /// A configuration that meets the goal; it may be in collision.
+    [[nodiscard]] Configuration within_goal(const Configuration& near) const {
+        return task_.space.moved_into_goal(near, 0);
+    }
+
+ private:
+    Bounds(Problem problem, const FlightModel& model)
+        : problem_(std::move(problem)),
+          energy_problem_(for_energy(problem_)),
+          task_(problem_, model, nullptr),
+          energy_task_(energy_problem_, model, nullptr),
+          cost_(task_),
+          energy_(energy_task_) {}
+
+    static Problem for_energy(Problem problem) {
+        problem.planner.objective = Objective::energy;
+        return problem;
+    }
+    /// The model has them.
+    static Problem without_obstacles(Problem problem) {
+        problem.obstacles.clear();
+        return problem;
+    }
+
+    Problem problem_, energy_problem_;
+    SearchTask task_, energy_task_;
+    FreeAirCost cost_, energy_;
+};
+
+LegTable::LegTable(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
+                   LegSearch search)
+    : problem_(problem),
+      model_(model),
+      map_(map),
+      options_(options),
+      search_(std::move(search)),
+      start_(Course::from_start(problem, model)),
+      estimates_(targets_of_places(problem)) {
+    const Configuration start = problem.start.configuration();
+    for (auto& [visit, goal] : goals_at_places(problem)) {
+        bounds_.push_back(std::make_unique<Bounds>(problem, goal, model));
+        places_.push_back({visit, std::move(goal), bounds_.back()->within_goal(start), std::nullopt});
+    }
+    const std::size_t outside = estimates_.outside();
+    legs_.resize((outside + 1) * (outside + 1));
+    estimates_.energy_budget_j = problem.energy_budget_j.value_or(std::numeric_limits<double>::infinity());
+    for (std::size_t from = 0; from <= outside; ++from) {
+        bound_legs_from(from);
+    }
+}
+
+LegTable::~LegTable() = default;
+
+/// Of legs that are not flown.
+void LegTable::bound_legs_from(std::size_t from) {
+    const Configuration at = from == estimates_.outside() ? problem_.start.configuration() : places_[from].at;
+    for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
+        if (!is_leg(from, to)) {
+            estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};
+        } else if (!leg(from, to).is_known && leg(from, to).failures < most_failures) {
+            estimates_.leg(from, to) = bounds_[to]->from(at);
+        }
+    }
+}
+
+/// Not between places of one target, nor back to where the flight may end anywhere.
+bool LegTable::is_leg(std::size_t from, std::size_t to) const {
+    if (to == estimates_.outside()) {
+        return problem_.return_to.has_value();
+    }
+    return from == estimates_.outside() || places_[from].visit.target != places_[to].visit.target;
+}
+
+LegCosts LegTable::costs_or(const std::optional<LegCost>& other) const {
+    LegCosts costs = estimates_;
+    for (std::size_t from = 0; from <= costs.outside(); ++from) {
+        for (std::size_t to = 0; to <= costs.outside(); ++to) {
+            const LegState& state = leg(from, to);
+            if (std::isfinite(state.flown.cost)) {
+                costs.leg(from, to) = state.flown;
+            } else if (is_leg(from, to) && other) {
+                costs.leg(from, to) = *other;
+            }
+        }
+    }
+    return costs;
+}
+
+void LegTable::begin_pass() {
+    ++pass_;
+    for (LegState& state : legs_) {
+        state.is_known = false;
+    }
+    for (std::size_t from = 0; from <= estimates_.outside(); ++from) {
+        bound_legs_from(from);
+    }
+}
+
+bool LegTable::is_known(std::size_t from, std::size_t to) const {
+    return !is_leg(from, to) || leg(from, to).is_known;
+}
+
+bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget, SearchRecord& work) {
+    LegState& state = leg(from, to);
+    const Course* const before = from == estimates_.outside() ? &start_
+                                 : places_[from].hover        ? &*places_[from].hover
+                                                              : nullptr;
+    if (before == nullptr || state.failures >= most_failures) {
+        return false;
+    }
+    Place& place = places_[to];
+    Problem part = problem_to(problem_, place.goal);
+    if (from != estimates_.outside()) {
+        part.start = {};
+        part.start.x_m = places_[from].at.x_m;
+        part.start.z_m = places_[from].at.z_m;
+        part.start.arm_rad = places_[from].at.arm_rad;
+    }
+    const std::size_t legs = legs_.size();
+    part.planner.seed += static_cast<std::uint32_t>((pass_ + static_cast<std::uint32_t>(state.failures)) * legs +
+                                                    from * (estimates_.outside() + 1) + to);
+    const SearchBudget mine = budget.part(std::ldexp(1.0, state.failures));
+    mine.limit(part.planner);
+    SolveOptions options = options_;
+    options.keep_tree = false;
+    options.stop_at_first_solution = false;
+    options.on_plan = nullptr;
+    Solution found;
+    search_(part, options, *before, found);
+    if (found.status != Status::solved) {
+        add_work(work, found.planning);
+        if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
+            state.is_known = true;
+            estimates_.leg(from, to) = state.flown;
+            return true;
+        }
+        if (!options_.stop.stop_requested() && ++state.failures == most_failures) {
+            estimates_.leg(from, to) = {};
+        }
+        return false;
+    }
+    add_work(work, found.planning);
+    const bool plans_flights = problem_.planner.variant != Variant::mp_arm;
+    Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, map_, plans_flights);
+    LegCost cost{found.cost, hover.vehicle.plant.energy_j - before->vehicle.plant.energy_j};
+    if (found.execution) {
+        cost = {cost_of(*found.execution, problem_.planner.objective), found.execution->energy_j};
+    } else if (!plans_flights) {
+        const double duration_s = hover.plan.duration_s();
+        cost.energy_j = bounds_[to]->hover_energy_j(found.plan->last(), duration_s);
+    }
+    legs_flown_ += std::isfinite(state.flown.cost) ? 0 : 1;
+    state.flown = cost.cost < state.flown.cost ? cost : state.flown;
+    state.is_known = true;
+    estimates_.leg(from, to) = state.flown;
+    if (!place.hover) {
+        place.at = found.plan->last();
+        hover.goals.clear();
+        hover.plan = {};
+        hover.cost = 0;
+        hover.vehicle.plant.energy_j = 0;
+        place.hover = std::move(hover);
+        if (to < estimates_.outside()) {
+            bound_legs_from(to);
+        }
+    }
+    return true;
+}
+
+void LegTable::give_up(std::size_t from, std::size_t to) {
+    leg(from, to) = {false, most_failures, {}};
+    estimates_.leg(from, to) = {};
+}
+
+bool LegTable::is_out_of_reach(std::size_t target) const {
+    for (std::size_t to = 0; to < estimates_.outside(); ++to) {
+        for (std::size_t from = 0; from <= estimates_.outside() && places_[to].visit.target == target; ++from) {
+            if (is_leg(from, to) && leg(from, to).failures < most_failures) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace downwash::planning

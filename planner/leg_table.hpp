@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/order_search.hpp"
+#include "downwash/planner/search_budget.hpp"
+#include "downwash/problems/visit_order.hpp"
+
+namespace downwash::planning {
+
+/// Searches for a way in the nominal world. Like PartSearch, with a course that is nothing but a hovering vehicle.
+using LegSearch = std::function<void(const Problem& leg, const SolveOptions&, const Course& before, Solution&)>;
+
+/// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is
+/// flown by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its
+/// cost is a lower bound: that of straight motion in free air to the goal region, and the hold there.
+class DOWNWASH_EXPORT LegTable {
+ public:
+    /// @param problem with targets   @param map of the planner's own model; nullptr for none
+    /// @param options for threads and stop   @pre all outlive it
+    LegTable(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
+             LegSearch search);
+    ~LegTable();
+    LegTable(const LegTable&) = delete;
+    LegTable& operator=(const LegTable&) = delete;
+
+    /// Costs of the legs that were flown in this pass, and lower bounds of the others; legs to which no flight was
+    /// found are infinite.
+    [[nodiscard]] const LegCosts& estimates() const noexcept { return estimates_; }
+    /// The cheapest flights of all passes alone: other legs are infinite.
+    [[nodiscard]] LegCosts flown_costs() const { return costs_or({}); }
+    /// The same with lower bounds of the others.
+    [[nodiscard]] LegCosts lower_bounds() const { return costs_or(std::nullopt); }
+    /// Begins a pass: legs are to be flown anew, those that were not found are not.
+    void begin_pass();
+
+    /// Whether a leg was flown in this pass, or is none.
+    [[nodiscard]] bool is_known(std::size_t from, std::size_t to) const;
+    /// Legs that were flown.
+    [[nodiscard]] std::uint64_t legs_flown() const noexcept { return legs_flown_; }
+
+    /// Searches a leg that is not flown yet, if a leg to its beginning is. What is not found in two searches is
+    /// infinite from then on.
+    /// @param budget of the search, doubled for each one that failed before
+    /// @param work to which that of the search is added   @return whether there is a flight
+    bool fly(std::size_t from, std::size_t to, const SearchBudget& budget, SearchRecord& work);
+
+    /// A flight along this leg was tried in vain from where others ended.
+    void give_up(std::size_t from, std::size_t to);
+
+    [[nodiscard]] Visit visit_at(std::size_t place) const { return places_[place].visit; }
+    /// Whether no leg to a target can be flown.
+    [[nodiscard]] bool is_out_of_reach(std::size_t target) const;
+
+ private:
+    struct Place {
+        Visit visit;
+        Goal goal;
+        Configuration at;             ///< in the goal region, until a leg ends there
+        std::optional<Course> hover;  ///< at the end of the first leg to it
+    };
+    struct LegState {
+        bool is_known = false;  ///< in this pass
+        int failures = 0;
+        LegCost flown = {};  ///< the cheapest flight of all passes; infinite without one
+    };
+    class Bounds;
+
+    [[nodiscard]] LegState& leg(std::size_t from, std::size_t to) {
+        return legs_[from * (estimates_.outside() + 1) + to];
+    }
+    [[nodiscard]] const LegState& leg(std::size_t from, std::size_t to) const {
+        return legs_[from * (estimates_.outside() + 1) + to];
+    }
+    [[nodiscard]] bool is_leg(std::size_t from, std::size_t to) const;
+    void bound_legs_from(std::size_t from);
+    /// The cheapest flights, and of legs without one their estimates or another cost.
+    [[nodiscard]] LegCosts costs_or(const std::optional<LegCost>& other) const;
+
+    const Problem& problem_;
+    const FlightModel& model_;
+    const AeroMap* map_;
+    const SolveOptions& options_;
+    LegSearch search_;
+    std::vector<std::unique_ptr<Bounds>> bounds_;  ///< of the ways to each place
+    std::vector<Place> places_;                    ///< the last one is the place to return to, if there is one
+    Course start_;
+    std::vector<LegState> legs_;
+    LegCosts estimates_;
+    std::uint64_t legs_flown_ = 0;
+    std::uint32_t pass_ = 0;  ///< in each one the searches draw other samples
+};
+
+}  // namespace downwash::planning

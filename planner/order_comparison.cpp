@@ -1,0 +1,88 @@
+#include "downwash/planner/order_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "downwash/planner/search_clock.hpp"
+
+namespace downwash::planning {
+
+bool is_order(const PlaceOrder& order) {
+    return std::isfinite(order.cost) && !order.places.empty();
+}
+
+void OrderComparison::compare(SearchBudget budget, SearchRecord& work) {
+    const auto targets = static_cast<double>(table_.estimates().targets());
+    const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
+    SearchBudget slice = budget.part(1 / legs);
+    for (;;) {
+        SearchBudget before = budget;
+        if (!is_converged(slice, budget, work)) {
+            return;
+        }
+        // The next pass takes about twice as much.
+        constexpr double most = 0.33;
+        if (before.share_between(budget) > most || before.share_between(budget) <= 0) {
+            return;
+        }
+        slice = slice.part(2);
+        table_.begin_pass();
+    }
+}
+
+/// @return false if the budget was used up before
+bool OrderComparison::is_converged(const SearchBudget& slice, SearchBudget& budget, SearchRecord& work) {
+    bool is_nearest_first = true;
+    std::vector<std::size_t> hint;
+    while (!is_stopped_() && !budget.is_used_up()) {
+        const PlaceOrder order = is_nearest_first ? nearest_first(limited(table_.estimates()))
+                                                  : best_order(limited(table_.estimates()), hint);
+        const bool is_flown = !is_order(order) || !fly_missing_legs(order, slice, budget, work);
+        if (is_flown && !std::exchange(is_nearest_first, false)) {
+            return true;
+        }
+        hint = order.places;
+    }
+    return false;
+}
+
+/// @return false if none was missing. One to which no flight is found ends it: another order may be better then
+bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget,
+                                       SearchRecord& work) {
+    bool was_missing = false;
+    std::size_t from = table_.estimates().outside();
+    std::vector<std::size_t> stations = order.places;
+    stations.push_back(from);
+    for (const std::size_t to : stations) {
+        if (is_stopped_() || budget.is_used_up()) {
+            break;
+        }
+        if (!table_.is_known(from, to)) {
+            was_missing = true;
+            const Stopwatch clock;
+            SearchRecord spent;
+            const bool is_flown = table_.fly(from, to, slice.at_most(budget), spent);
+            add_work(work, spent);
+            spent.wall_s = clock.seconds();
+            budget.spend(spent);
+            if (!is_flown) {
+                break;
+            }
+        }
+        from = to;
+    }
+    return was_missing;
+}
+
+PlaceOrder OrderComparison::chosen() const {
+    PlaceOrder flown = best_order(limited(table_.flown_costs()));
+    PlaceOrder other = best_order(limited(table_.lower_bounds()), flown.places);
+    const bool is_flown = is_order(flown) && flown.places.size() >= other.places.size();
+    // Lower bounds show that no order with other legs is cheaper.
+    flown.is_best = other.is_best && flown.cost <= other.cost * (1 + 1e-9);
+    other.is_best = false;
+    return is_flown ? flown : other;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <set>
+
+#include "../support/same_bytes.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+
+using namespace downwash;
+
+namespace {
+
+Goal place(double x_m, double z_m) {
+    Goal goal = test::configuration_goal(x_m, z_m);
+    goal.hold_s = 1;
+    return goal;
+}
+
+/// From (-4, 2) to places on a line, which stand in the file in a bad order.
+Problem line_of_targets(Variant variant) {
+    Problem problem = test::ceiling_problem();
+    problem.planner.variant = variant;
+    problem.planner.max_iterations = variant == Variant::mp_arm ? 6000 : 600;
+    problem.goal = {};
+    problem.targets = {place(4, 2), place(-2, 2.5), place(2, 2), place(0, 2.5)};
+    return problem;
+}
+
+std::vector<std::size_t> targets_of(const Solution& solution) {
+    std::vector<std::size_t> targets;
+    for (const Visit& visit : solution.order->visits) {
+        targets.push_back(visit.target);
+    }
+    return targets;
+}
+
+}  // namespace
+
+TEST_CASE("targets in any order are visited in the order that costs least, each held, in one flight") {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+        CAPTURE(name_of(variant));
+        const Solution solution = solve(line_of_targets(variant));
+        REQUIRE(solution.status == Status::solved);
+        CHECK(targets_of(solution) == std::vector<std::size_t>{1, 3, 2, 0});
+        CHECK(solution.order->left_out.empty());
+        CHECK(solution.order->is_best);
+        CHECK(solution.execution->outcome == Outcome::ok);
+        REQUIRE(solution.execution->goals.size() == 4);
+        CHECK(solution.execution->rows.back().q[0] == Approx(4).margin(0.1));
+        CHECK(solution.planning.first_solution_wall_s);
+        CHECK(solution.planning.iterations <= (variant == Variant::mp_arm ? 6000 : 600));
+    }
+}
+
+TEST_CASE("targets in any order come out the same byte by byte on one thread and on two") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.return_to = place(-4, 2);
+    SolveOptions two;
+    two.threads = 2;
+    const Solution a = solve(problem);
+    const Solution b = solve(problem, two);
+    CHECK(a.order == b.order);
+    CHECK(a.cost == b.cost);
+    REQUIRE(a.execution);
+    CHECK(test::same_bytes(*a.execution, *b.execution));
+    CHECK(a.execution->goals.size() == 5);
+    CHECK(a.execution->rows.back().q[0] == Approx(-4).margin(0.1));
+}
+
+TEST_CASE("of the alternatives of a target the flight takes the one on its way") {
+    Problem problem = line_of_targets(Variant::mp_arm_da);
+    Goal either;
+    either.any_of = {place(-4, 4), place(1, 2.5)};
+    problem.targets = {place(3, 2), either};
+    const Solution solution = solve(problem);
+    REQUIRE(solution.status == Status::solved);
+    CHECK(solution.order->visits == std::vector<Visit>{{1, 1}, {0, std::nullopt}});
+    CHECK(solution.execution->outcome == Outcome::ok);
+}
+
+TEST_CASE("an energy budget is kept: targets for which it is not enough are left out, with what they would take") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.return_to = place(-4, 2);
+    problem.planner.max_iterations = 2000;
+    const Solution all = solve(problem);
+    REQUIRE(all.status == Status::solved);
+    problem.energy_budget_j = 0.6 * all.execution->energy_j;
+    for (const Variant variant : {Variant::mp_arm_ada, Variant::mp_arm_da}) {
+        CAPTURE(name_of(variant));
+        problem.planner.variant = variant;
+        const Solution some = solve(problem);
+        REQUIRE(some.status == Status::solved);
+        CHECK(some.execution->outcome == Outcome::ok);
+        CHECK(some.execution->energy_j <= *problem.energy_budget_j);
+        CHECK_FALSE(some.order->visits.empty());
+        REQUIRE_FALSE(some.order->left_out.empty());
+        CHECK(some.order->visits.size() + some.order->left_out.size() == 4);
+        // The farthest one and the return from there take more than 0.6 of what the whole does.
+        CHECK(some.order->left_out.front().target == 0);
+        for (const LeftOutTarget& each : some.order->left_out) {
+            CHECK(each.reason == LeftOutReason::energy_budget);
+            REQUIRE(each.energy_j);
+            CHECK(*each.energy_j > 0.95 * *problem.energy_budget_j);
+        }
+    }
+    problem.energy_budget_j = 1;
+    const Solution none = solve(problem);
+    CHECK(none.status != Status::solved);
+    CHECK_FALSE(none.plan);
+    REQUIRE(none.order->left_out.size() == 4);
+    CHECK(none.order->left_out[2].reason == LeftOutReason::energy_budget);
+}
+
+TEST_CASE("a target behind a wall is left out, and the flight to the others is not called solved") {
+    Problem problem = line_of_targets(Variant::mp_arm_da);
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {3, 0, 2.5}));
+    problem.planner.max_iterations = 1200;
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::approximate);
+    REQUIRE(solution.order->left_out.size() == 1);
+    CHECK(solution.order->left_out[0] == LeftOutTarget{0, LeftOutReason::no_flight, std::nullopt});
+    CHECK(targets_of(solution) == std::vector<std::size_t>{1, 3, 2});
+    REQUIRE(solution.execution);
+    CHECK(solution.execution->outcome == Outcome::ok);
+    CHECK(solution.execution->goals.size() == 3);
+}
+
+TEST_CASE("an interrupted search for an order has the flight that it found first") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 3000;
+    std::stop_source stop;
+    SolveOptions options;
+    options.stop = stop.get_token();
+    options.on_plan = [&](const FoundPlan&) { stop.request_stop(); };
+    const Solution solution = solve(problem, options);
+    CHECK(solution.interrupted);
+    REQUIRE(solution.status == Status::solved);
+    CHECK(solution.order->visits.size() == 4);
+    CHECK(solution.planning.iterations < 1000);
+}
+
+TEST_CASE("flights in worlds that take more energy than they may count against the certificate") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.targets = {place(2, 2), place(0, 2.5)};
+    problem.planner.max_iterations = 1000;
+    problem.planner.worlds = 2;
+    problem.planner.max_failure_probability = 0.2;
+    problem.uncertainty.emplace();
+    problem.uncertainty->mass_scale = Spread::of_sd(0.05);
+    const Solution all = solve(problem);
+    REQUIRE(all.status == Status::solved);
+    // Heavier vehicles take more: in half of the worlds this is not enough for both.
+    problem.energy_budget_j = 1.002 * all.execution->energy_j;
+    const Solution some = solve(problem);
+    REQUIRE(some.status == Status::solved);
+    CHECK(some.order->visits.size() == 1);
+    CHECK(some.certificate->is_given);
+    problem.planner.variant = Variant::mp_arm_da;  // its certificate is for comparison
+    const Solution compared = solve(problem);
+    REQUIRE(compared.status == Status::solved);
+    REQUIRE(compared.order->visits.size() == 2);
+    REQUIRE(compared.certificate);
+    CHECK(compared.certificate->causes.contains("over_budget"));
+}
