@@ -82,10 +82,10 @@ CoreSolution executed(const CoreSolution& of, const std::shared_ptr<CoreProblem>
         if (!start) {
             throw_input_error("has a vehicle that cannot hover at its start: its controller diverges there", "world");
         }
-        const Problem flown = as_visited(problem->problem(), solution);
+        const Problem visited = as_visited(problem->problem(), solution);
         return execute(
-            model, *start, solution.plan->reference, goals_of(flown), aero, in,
-            [token = attendance.token()] { return token.stop_requested(); }, flown.energy_budget_j);
+            model, *start, solution.plan->reference, goals_of(visited), aero, in,
+            [token = attendance.token()] { return token.stop_requested(); }, visited.energy_budget_j);
     });
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
     return flown;
