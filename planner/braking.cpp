@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "downwash/planner/planner.hpp"
@@ -48,14 +47,6 @@ bool is_inside(const Bounds& bounds, const Configuration& at) {
            at.z_m <= bounds.z_high_m;
 }
 
-double least_clearance_m(const FlightJob& job) {
-    double least_m = std::numeric_limits<double>::infinity();
-    for (const FlightLeg& leg : job.legs) {
-        least_m = std::min(least_m, leg.flight.min_clearance_m);
-    }
-    return least_m;
-}
-
 /// A hover there: it may be a little beside it, but has to come to rest.
 Goal hover_at(const Configuration& rest) {
     Goal goal;
@@ -81,7 +72,11 @@ Bounds Braking::reach(const Problem& problem, const Start& from) {
                  std::min(reach.z_low_m, rest.z_m), std::max(reach.z_high_m, rest.z_m)};
     }
     constexpr double swing_m = 0.5;
-    return {reach.x_low_m - swing_m, reach.x_high_m + swing_m, reach.z_low_m - swing_m, reach.z_high_m + swing_m};
+    const Bounds& bounds = problem.bounds;  // stops are within them, however fast the vehicle is
+    return {std::clamp(reach.x_low_m, bounds.x_low_m, bounds.x_high_m) - swing_m,
+            std::clamp(reach.x_high_m, bounds.x_low_m, bounds.x_high_m) + swing_m,
+            std::clamp(reach.z_low_m, bounds.z_low_m, bounds.z_high_m) - swing_m,
+            std::clamp(reach.z_high_m, bounds.z_low_m, bounds.z_high_m) + swing_m};
 }
 
 std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) const {
@@ -119,22 +114,21 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
     return best;
 }
 
-std::size_t Braking::failures(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const {
+std::size_t Braking::failures(const Problem& stop, const Plan& plan, const std::vector<FlightState>& fleet) const {
     const double here_m = model_->collisions().clearance_m(pose_of(fleet.front()));
     const double margin_m = std::min(stop.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
-    plan.reference.push_back(plan.reference.back());
-    plan.reference.back().tick += hold_ticks(stop.goal, *model_, plan.reference.back().point);
+    const Plan held = with_hover(plan, stop.goal, *model_);
     std::vector<FlightJob> jobs;
     for (std::size_t i = 0; i < worlds_.size(); ++i) {
         jobs.push_back({fleet[i], {}, 0, &worlds_[i]});
     }
     WorldFlights flights(stop, model_, map_, threads_);
-    flights.advance(jobs, plan, 0, plan.reference.size() - 1, 0);
+    flights.advance(jobs, held, 0, held.reference.size() - 1, 0);
     // Where the vehicle is not quite as believed it may still be settling.
     const auto failing = static_cast<std::size_t>(std::count_if(jobs.begin() + 1, jobs.end(), [](const FlightJob& job) {
         return job.rejection() != Rejection::none && job.rejection() != Rejection::goal_missed;
     }));
-    const bool is_good = jobs.front().rejection() == Rejection::none && least_clearance_m(jobs.front()) >= margin_m;
+    const bool is_good = jobs.front().rejection() == Rejection::none && min_clearance_m(jobs.front()) >= margin_m;
     return failing + (is_good ? 0 : 1);
 }
 
@@ -158,10 +152,11 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
     WorldFlights flights(problem, model, map, threads);
     std::vector<FlownWorld> all = worlds;
     all.insert(all.begin(), model->nominal_world());
-    std::vector<FlightJob> fleet;
-    const std::vector<std::optional<FlightState>> starts = flights.starts_in(all);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        fleet.push_back({starts[i].value_or(start_state(*model, problem.start)), {}, 0, &all[i]});
+    const FlightState believed = start_state(*model, problem.start);
+    std::vector<FlightJob> fleet{{believed, {}, 0, all.data()}};
+    const std::vector<std::optional<FlightState>> starts = flights.starts_in(worlds);
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        fleet.push_back({starts[i].value_or(believed), {}, 0, &all[i + 1]});
     }
     SafeStops stops;
     std::int64_t without = 0;

@@ -41,7 +41,8 @@ class DOWNWASH_EXPORT Braking {
 
  private:
     /// In how many worlds a stop is not safe.
-    [[nodiscard]] std::size_t failures(const Problem& stop, Plan plan, const std::vector<FlightState>& fleet) const;
+    [[nodiscard]] std::size_t failures(const Problem& stop, const Plan& plan,
+                                       const std::vector<FlightState>& fleet) const;
 
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;

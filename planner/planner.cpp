@@ -37,6 +37,18 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
     return places;
 }
 
+bool is_finite(const Start& start) {
+    double sum = start.x_m + start.z_m + start.arm_rad + start.pitch_rad + start.vx_m_s + start.vz_m_s +
+                 start.pitch_rate_rad_s + start.arm_rate_rad_s;
+    if (start.reference) {
+        for (int axis = 0; axis < 3; ++axis) {
+            sum +=
+                start.reference->position[axis] + start.reference->velocity[axis] + start.reference->acceleration[axis];
+        }
+    }
+    return std::isfinite(sum);
+}
+
 }  // namespace
 
 std::string_view name_of(Advice advice) {
@@ -227,6 +239,9 @@ bool Planner::can_keep(const Plan& left, double& cost) const {
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
     Call call{options, {}, {}};
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
+    if (!is_finite(start)) {
+        throw_input_error("has a number that is not finite: expected finite ones", "start");
+    }
     take_up(change);
     if (!change.goal) {
         drop_visited_goals(tick);

@@ -19,21 +19,6 @@ ReferenceSegment segment_of(const Plan& plan, std::size_t to) {
     return {a.point, b.point, b.tick - a.tick, plan.tick_s};
 }
 
-/// A plan with the hover at its last goal as its last two knots.
-Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model) {
-    plan.reference.push_back(plan.reference.back());
-    plan.reference.back().tick += hold_ticks(goal, model, plan.reference.back().point);
-    return plan;
-}
-
-double min_clearance_m(const FlightJob& job) {
-    double least_m = std::numeric_limits<double>::infinity();
-    for (const FlightLeg& leg : job.legs) {
-        least_m = std::min(least_m, leg.flight.min_clearance_m);
-    }
-    return least_m;
-}
-
 /// The goal to which a flight was on the way when it failed.
 /// @param hovers knots at which those at the goals before the last end; a leg ends at each knot but the first
 std::size_t failed_goal(const FlightJob& job, const std::vector<std::size_t>& hovers) {
@@ -58,6 +43,20 @@ class AskingScope {
 };
 
 }  // namespace
+
+Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model) {
+    plan.reference.push_back(plan.reference.back());
+    plan.reference.back().tick += hold_ticks(goal, model, plan.reference.back().point);
+    return plan;
+}
+
+double min_clearance_m(const FlightJob& job) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const FlightLeg& leg : job.legs) {
+        least_m = std::min(least_m, leg.flight.min_clearance_m);
+    }
+    return least_m;
+}
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
                            std::shared_ptr<const AeroMap> map, int threads)

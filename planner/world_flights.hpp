@@ -71,4 +71,10 @@ class DOWNWASH_EXPORT WorldFlights {
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 
+/// A plan with the hover at its last goal as its last two knots.
+[[nodiscard]] DOWNWASH_EXPORT Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model);
+
+/// Of a job whose rules find it, to min_clearance_error_m; infinite before its first leg.
+[[nodiscard]] DOWNWASH_EXPORT double min_clearance_m(const FlightJob& job);
+
 }  // namespace downwash

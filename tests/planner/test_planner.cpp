@@ -2,6 +2,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -166,6 +167,14 @@ TEST_CASE("a change that is wrong changes nothing") {
     Start misfit = here;
     misfit.controller_memory.pop_back();
     CHECK_THROWS_AS(planner.replan(misfit, tick, {}), InputError);
+    Start unknown = here;
+    unknown.vx_m_s = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_AS(planner.replan(unknown, tick, {}), InputError);
+    CHECK(test::same_bytes(*planner.plan(), plan));
+    // However fast the vehicle is said to be, there is an answer.
+    Start runaway = here;
+    runaway.reference->velocity[0] = 1e4;
+    CHECK(planner.replan(runaway, tick, {}, iterations(10)).advice == Advice::none);
 }
 
 TEST_CASE("obstacles that went, and goals that moved, are planned for") {
