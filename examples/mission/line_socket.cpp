@@ -1,0 +1,117 @@
+#include "line_socket.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t longest_line = 1 << 20;
+
+sockaddr_un address_of(const std::string& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.size() >= sizeof(address.sun_path)) {
+        throw ConnectionLost("the socket's path is longer than a Unix domain socket may have: " + path);
+    }
+    path.copy(address.sun_path, path.size());
+    return address;
+}
+
+int new_socket() {
+    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (descriptor < 0) {
+        throw ConnectionLost(std::string("no socket: ") + std::strerror(errno));
+    }
+    return descriptor;
+}
+
+/// Whether something has arrived before the time is over.
+bool is_readable(int descriptor, double timeout_s) {
+    pollfd one{descriptor, POLLIN, 0};
+    return ::poll(&one, 1, static_cast<int>(1e3 * timeout_s + 0.999)) > 0;
+}
+
+}  // namespace
+
+LineSocket LineSocket::connect_to(const std::string& path, double timeout_s) {
+    const sockaddr_un address = address_of(path);
+    const auto end = Clock::now() + std::chrono::duration<double>(timeout_s);
+    for (;;) {
+        const int descriptor = new_socket();
+        if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
+            return LineSocket(descriptor);
+        }
+        const std::string why = std::strerror(errno);
+        ::close(descriptor);
+        if (Clock::now() > end) {
+            throw ConnectionLost("no vehicle listens at " + path + ": " + why);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+LineSocket LineSocket::accept_at(const std::string& path, double timeout_s) {
+    const sockaddr_un address = address_of(path);
+    const int listener = new_socket();
+    ::unlink(path.c_str());  // of a vehicle that was killed
+    const bool listens = ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
+                         ::listen(listener, 1) == 0;
+    const std::string why = std::strerror(errno);
+    const int descriptor = listens && is_readable(listener, timeout_s) ? ::accept(listener, nullptr, nullptr) : -1;
+    ::close(listener);
+    if (listens) {
+        ::unlink(path.c_str());
+    }
+    if (descriptor < 0) {
+        throw ConnectionLost(listens ? "no mission planner connects" : "cannot listen at " + path + ": " + why);
+    }
+    return LineSocket(descriptor);
+}
+
+LineSocket::~LineSocket() {
+    ::close(descriptor_);
+}
+
+void LineSocket::send(const std::string& line) {
+    const std::string text = line + "\n";
+    for (std::size_t sent = 0; sent < text.size();) {
+        const ssize_t bytes = ::send(descriptor_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+        if (bytes < 0 && errno != EINTR) {
+            throw ConnectionLost(std::string("the connection is gone: ") + std::strerror(errno));
+        }
+        sent += bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
+    }
+}
+
+std::optional<std::string> LineSocket::receive(double timeout_s) {
+    const auto end = Clock::now() + std::chrono::duration<double>(timeout_s);
+    for (;;) {
+        if (const std::size_t length = arrived_.find('\n'); length != std::string::npos) {
+            std::string line = arrived_.substr(0, length);
+            arrived_.erase(0, length + 1);
+            return line;
+        }
+        if (arrived_.size() > longest_line) {
+            throw ConnectionLost("what arrives has no lines");
+        }
+        const double left_s = std::chrono::duration<double>(end - Clock::now()).count();
+        if (!is_readable(descriptor_, left_s > 0 ? left_s : 0)) {
+            return std::nullopt;
+        }
+        char bytes[4096];
+        const ssize_t count = ::recv(descriptor_, bytes, sizeof(bytes), 0);
+        if (count == 0 || (count < 0 && errno != EINTR)) {
+            throw ConnectionLost("the connection was closed");
+        }
+        arrived_.append(bytes, count > 0 ? static_cast<std::size_t>(count) : 0);
+    }
+}
