@@ -1,40 +1,34 @@
 // A small mission planner on an installed Downwash. It commands a vehicle in another process through a list of targets:
 // it plans to the next one, sends the reference, follows the telemetry, and plans again when the deck turns out to be
-// elsewhere or the vehicle is not where it should be. README.md describes the messages; mission.py is the same in Python.
+// elsewhere or the vehicle is not where it should be. mission.py is the same in Python.
 // Exit codes: 0 all targets held, 1 broken off, 2 bad input, 3 the vehicle's flight has failed, 4 the vehicle is gone.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include <downwash/planner/planner.hpp>
 #include <downwash/problems/problem_reader.hpp>
 
 #include "bridge.hpp"
-#include "line_socket.hpp"
+#include "vehicle_link.hpp"
 
 using namespace downwash;
-using nlohmann::json;
 
 namespace {
 
-constexpr double telemetry_timeout_s = 2;
-constexpr double lead_in_flight_s = 1;   ///< from the telemetry that a new plan is made from to its first tick
-constexpr double lead_in_hover_s = 3;    ///< the same where there is time
+constexpr double lead_in_flight_s = 1;  ///< from the telemetry that a plan is made from to its first tick
+constexpr double lead_in_hover_s = 3;   ///< the same where there is time
+constexpr double planning_share = 0.8;  ///< of the lead, for planning
 constexpr std::uint64_t iterations = 1000;  ///< of a search in lock step, where time does not count
-constexpr std::size_t readings = 50;     ///< of the range finder, for a mean that is exact to some millimetres
+constexpr std::size_t readings = 50;        ///< of the range finder for a mean: exact to some millimetres
 constexpr double max_drift_m = 0.15;
 constexpr int max_attempts = 8;  ///< plans for one target
 
 struct MissionFailed : std::runtime_error {
-    using runtime_error::runtime_error;
-};
-struct FlightFailed : std::runtime_error {
     using runtime_error::runtime_error;
 };
 
@@ -51,133 +45,119 @@ double rounded(double length_m) {
     return std::round(1e4 * length_m) / 1e4;
 }
 
-/// A plan as a message, with the names of solution.json.
-json columns_of(const Plan& plan) {
-    json columns;
-    for (const ReferenceKnot& knot : plan.reference) {
-        const auto& [at, velocity, acceleration] = knot.point;
-        columns["t_s"].push_back(static_cast<double>(knot.tick) * plan.tick_s);
-        const char* const names[3][3] = {{"x_m", "vx_m_s", "ax_m_s2"},
-                                         {"z_m", "vz_m_s", "az_m_s2"},
-                                         {"arm_rad", "arm_rate_rad_s", "arm_acceleration_rad_s2"}};
-        for (int axis = 0; axis < 3; ++axis) {
-            columns[names[axis][0]].push_back(at[axis]);
-            columns[names[axis][1]].push_back(velocity[axis]);
-            columns[names[axis][2]].push_back(acceleration[axis]);
-        }
+/// The way to the first target, with limits for the search.
+Problem first_leg(Problem bridge, bool is_lock_step) {
+    bridge.goal = goals_of(bridge).front();
+    bridge.stops.clear();
+    if (is_lock_step) {
+        bridge.planner.max_iterations = iterations;
+    } else {
+        bridge.planner.time_limit_s = planning_share * lead_in_hover_s;
     }
-    return columns;
+    return bridge;
 }
 
 class Mission {
  public:
-    Mission(LineSocket& link, const Problem& bridge, bool replans)
+    Mission(VehicleLink& link, const Problem& bridge, bool replans)
         : link_(link),
           replans_(replans),
           bridge_(bridge),
-          planner_(first_leg(bridge), {.threads = 2, .stop_at_first_solution = true}) {}
+          planner_(first_leg(bridge, link.is_lock_step()), {.threads = 2, .stop_at_first_solution = true}) {}
 
     void run() {
-        const json hello = receive();
-        if (hello.at("type") != "hello") {
-            throw ConnectionLost("the vehicle does not say hello");
-        }
-        tick_s_ = hello.at("tick_s");
-        is_lock_step_ = hello.at("lock_step");
         read_telemetry();
         for (target_ = 0; target_ < goals_of(bridge_).size(); ++target_) {
             attempts_ = 0;
             target_ == 0 ? plan_first() : replan("next target", {{}, {}, target()});
             fly_to_target();
         }
-        link_.send(json{{"type", "end"}}.dump());
-        std::printf("%8.2f s  all targets held, %d plans in flight because of the deck\n", now_s(), deck_replans_);
+        link_.end();
+        std::printf("%8.2f s  all targets held, %d plans because of the deck\n", now_s(), deck_plans_);
     }
 
  private:
-    /// A reference that the vehicle follows, and the vehicle with which it begins.
-    struct Command {
-        std::int64_t from_tick = 0;
-        Start start;
-        Plan plan;
-        Advice advice = Advice::follow;
-
-        [[nodiscard]] bool leads_to_target() const { return advice == Advice::follow || advice == Advice::keep; }
-        [[nodiscard]] std::int64_t end_tick() const { return from_tick + plan.reference.back().tick; }
-    };
-
-    static Problem first_leg(Problem bridge) {
-        bridge.goal = goals_of(bridge).front();
-        bridge.stops.clear();
-        bridge.planner.max_iterations = iterations;
-        return bridge;
+    [[nodiscard]] Goal target() const { return goals_of(bridge_)[target_]; }
+    [[nodiscard]] std::int64_t now() const { return rows_.back().tick; }
+    [[nodiscard]] double now_s() const { return static_cast<double>(now()) * link_.tick_s(); }
+    [[nodiscard]] std::int64_t ticks(double time_s) const { return std::llround(time_s / link_.tick_s()); }
+    [[nodiscard]] std::vector<Telemetry> last_rows(std::ptrdiff_t count) const {
+        return {rows_.end() - std::min(count, std::ssize(rows_)), rows_.end()};
     }
 
-    [[nodiscard]] Goal target() const { return goals_of(bridge_)[target_]; }
-    [[nodiscard]] double now_s() const { return static_cast<double>(tick_) * tick_s_; }
-    [[nodiscard]] std::int64_t ticks(double time_s) const { return std::llround(time_s / tick_s_); }
+    void read_telemetry() { rows_.push_back(link_.next()); }
 
     /// Flies until the target is held, and plans again whenever that is needed.
     void fly_to_target() {
         for (;;) {
             read_telemetry();
-            const bool has_arrived = tick_ >= following_.end_tick() + ticks(target().hold_s);
-            if (const auto lower_m = deck_is_lower_m(); lower_m != 0) {
-                const Goal before = target();
-                lower_deck(bridge_, lower_m);
-                ++deck_replans_;
-                char reason[80];
-                std::snprintf(reason, sizeof(reason), "the deck is %.3f m lower than believed", lower_m);
-                const bool has_moved = target().end_effector->z_m != before.end_effector->z_m;
-                replan(reason, {{deck_of(bridge_)}, {}, has_moved ? std::optional(target()) : std::nullopt});
-            } else if (replans_ && tick_ % 10 == 0 && drift_m() > max_drift_m) {
+            const bool has_arrived = now() >= following_.end_tick() + ticks(target().hold_s);
+            const double lower_m = deck_is_lower_m();
+            if (replans_ && lower_m != 0) {
+                replan_below(lower_m);
+            } else if (replans_ && now() % 10 == 0 && drift_m() > max_drift_m) {
                 replan("the vehicle has drifted", {});
-            } else if (has_arrived && following_.leads_to_target()) {
-                if (const double error_m = target_error_m(); error_m <= target().end_effector->tolerance_m) {
+            } else if (has_arrived && !following_.leads_to_target()) {
+                replan("the vehicle has stopped", {});
+            } else if (has_arrived) {
+                const double error_m = target_error_m();
+                if (error_m <= target().end_effector->tolerance_m) {
                     std::printf("%8.2f s  target %zu held, %.3f m off\n", now_s(), target_ + 1, error_m);
                     return;
                 }
                 replan("the target was missed", {{}, {}, target()});
-            } else if (has_arrived) {
-                replan("the vehicle has stopped", {{}, {}, target()});
             }
         }
     }
 
+    /// Plans from the problem's start, where the vehicle hovers.
     void plan_first() {
+        const Start& start = planner_.problem().start;
+        following_ = {now(), start, Plan{{{0, at_rest(start.configuration())}}, link_.tick_s()}, Advice::stop};
         const Solution& solution = planner_.solve();
         if (solution.status != Status::solved) {
             throw MissionFailed("no plan to the first target");
         }
-        const std::int64_t from_tick = tick_ + ticks(lead_in_flight_s);
-        say("first plan", Advice::follow, *solution.plan);
-        send({from_tick, planner_.problem().start, *solution.plan, Advice::follow});
-        following_ = {tick_, planner_.problem().start,
-                      Plan{{{0, at_rest(planner_.problem().start.configuration())}}, tick_s_}, Advice::stop};
-        wait_until(from_tick);
+        const Command command{now() + ticks(lead_in_hover_s), start, *solution.plan, Advice::follow};
+        link_.send(command);
+        say("first plan", command.advice, command.plan);
+        wait_until(command.from_tick);
+    }
+
+    void replan_below(double lower_m) {
+        const double before_m = target().end_effector->z_m;
+        lower_deck(bridge_, lower_m);
+        SceneChange change{{deck_of(bridge_)}, {}, {}};
+        if (target().end_effector->z_m != before_m) {
+            change.goal = target();
+        }
+        char reason[80];
+        std::snprintf(reason, sizeof(reason), "the deck is %.3f m lower than believed", lower_m);
+        ++deck_plans_;
+        replan(reason, change);
     }
 
     /// Plans from where the vehicle will be a moment later, and sends each answer: first how to stop, then better ones.
-    /// The vehicle follows the last that comes in time.
+    /// The vehicle follows the last one that comes in time.
     void replan(const std::string& reason, SceneChange change) {
         if (++attempts_ > max_attempts) {
             throw MissionFailed("too many plans for one target");
         }
-        const bool is_hovering = tick_ >= following_.end_tick();
-        const double lead_s = is_hovering ? lead_in_hover_s : lead_in_flight_s;
-        const std::int64_t from_tick = tick_ + ticks(lead_s);
+        const double lead_s = now() >= following_.end_tick() ? lead_in_hover_s : lead_in_flight_s;
+        const std::int64_t from_tick = now() + ticks(lead_s);
         const Start start = predicted(from_tick);
         if (following_.leads_to_target()) {
             planner_.adopt(following_.plan);
-        } else if (!change.goal) {
+        } else {
             change.goal = target();  // nothing is left of the way to it
         }
         ReplanOptions options;
-        options.max_iterations = iterations;
-        if (!is_lock_step_) {
-            options.time_limit_s = 0.8 * lead_s;
+        if (link_.is_lock_step()) {
+            options.max_iterations = iterations;
+        } else {
+            options.time_limit_s = planning_share * lead_s;
         }
-        options.on_answer = [&](const Answer& answer) { send({from_tick, start, answer.plan, answer.advice}); };
+        options.on_answer = [&](const Answer& answer) { link_.send({from_tick, start, answer.plan, answer.advice}); };
         const Answer answer = planner_.replan(start, from_tick - following_.from_tick, change, options);
         say(reason, answer.advice, answer.plan);
         wait_until(from_tick);
@@ -189,30 +169,41 @@ class Mission {
         std::fflush(stdout);
     }
 
+    void wait_until(std::int64_t tick) {
+        while (now() < tick) {
+            read_telemetry();
+        }
+        if (link_.accepted().from_tick == tick) {
+            following_ = link_.accepted();
+        }
+    }
+
+    /// The vehicle at a tick, as the model has it.
+    [[nodiscard]] Start modelled(std::int64_t tick) const {
+        return planner_.predicted(following_.start, following_.plan,
+                                  std::max<std::int64_t>(0, tick - following_.from_tick));
+    }
+
     /// The vehicle at a tick to come: as the model has it, moved by how far the real one is off now.
-    [[nodiscard]] Start predicted(std::int64_t at_tick) const {
-        Start start = planner_.predicted(following_.start, following_.plan, at_tick - following_.from_tick);
+    [[nodiscard]] Start predicted(std::int64_t tick) const {
+        Start start = modelled(tick);
         const auto [x_m, z_m] = offset_m();
         start.x_m += x_m;
         start.z_m += z_m;
         return start;
     }
 
-    /// How far the vehicle is from where the model has it, by the last telemetry.
+    /// How far the vehicle is from where the model has it, on average over the last tenth of a second.
     [[nodiscard]] std::pair<double, double> offset_m() const {
-        const std::vector<json> rows = last_rows(10);
         std::vector<double> x_m, z_m;
-        for (const json& row : rows) {
-            x_m.push_back(row.at("x_m"));
-            z_m.push_back(row.at("z_m"));
+        for (const Telemetry& row : last_rows(10)) {
+            x_m.push_back(row.x_m);
+            z_m.push_back(row.z_m);
         }
-        // Of the same time on average, as both move evenly within a tenth of a second.
-        const std::int64_t seen_tick = tick_ - following_.from_tick - ticks(bridge_.robot.controller.delay_s);
-        const auto model_at = [&](std::int64_t tick) {
-            return planner_.predicted(following_.start, following_.plan, std::max<std::int64_t>(0, tick));
-        };
-        const Start last = model_at(seen_tick);
-        const Start first = model_at(seen_tick + 1 - std::ssize(rows));
+        // The estimator is late. Within so short a time the vehicle moves almost evenly.
+        const std::int64_t seen = now() - ticks(bridge_.robot.controller.delay_s);
+        const Start last = modelled(seen);
+        const Start first = modelled(seen + 1 - std::ssize(x_m));
         return {rounded(mean(x_m) - 0.5 * (first.x_m + last.x_m)), rounded(mean(z_m) - 0.5 * (first.z_m + last.z_m))};
     }
 
@@ -223,12 +214,10 @@ class Mission {
 
     /// By how much the deck is lower than believed, once the range finder has said so often enough; else 0.
     double deck_is_lower_m() {
-        const json& row = rows_.back();
-        if (!row.at("range_up_m").is_null()) {
-            // The estimated height is as old as the estimator is late.
-            const double z_m = row.at("z_m").get<double>() +
-                               bridge_.robot.controller.delay_s * row.at("vz_m_s").get<double>();
-            const double lower_m = underside_m(deck_of(bridge_)) - z_m - row.at("range_up_m").get<double>();
+        const Telemetry& row = rows_.back();
+        if (row.range_up_m) {
+            const double z_m = row.z_m + bridge_.robot.controller.delay_s * row.vz_m_s;  // the estimator is late
+            const double lower_m = underside_m(deck_of(bridge_)) - z_m - *row.range_up_m;
             if (std::abs(lower_m) < 0.3) {  // else the beam has met something else
                 lower_m_.push_back(lower_m);
             }
@@ -243,94 +232,30 @@ class Mission {
         }
         const double error_m = std::sqrt(squares / static_cast<double>(readings * (readings - 1)));
         lower_m_.clear();
-        const bool is_significant = std::abs(mean_m) > std::max(0.02, 4 * error_m);
-        return replans_ && is_significant ? rounded(mean_m) : 0;
+        return std::abs(mean_m) > std::max(0.02, 4 * error_m) ? rounded(mean_m) : 0;
     }
 
-    /// How far the end effector was from the target over the last second.
+    /// How far the end effector was from the target, on average over the last second.
     [[nodiscard]] double target_error_m() const {
         std::vector<double> x_m, z_m;
-        for (const json& row : last_rows(static_cast<std::size_t>(ticks(1)))) {
-            const double angle = row.at("pitch_rad").get<double>() + row.at("arm_rad").get<double>();
-            x_m.push_back(row.at("x_m").get<double>() + bridge_.robot.arm.length_m * std::cos(angle));
-            z_m.push_back(row.at("z_m").get<double>() - bridge_.robot.arm.length_m * std::sin(angle));
+        const double length_m = bridge_.robot.arm.length_m;
+        for (const Telemetry& row : last_rows(ticks(1))) {
+            x_m.push_back(row.x_m + length_m * std::cos(row.pitch_rad + row.arm_rad));
+            z_m.push_back(row.z_m - length_m * std::sin(row.pitch_rad + row.arm_rad));
         }
-        const EndEffectorGoal at = *target().end_effector;
-        return std::hypot(mean(x_m) - at.x_m, mean(z_m) - at.z_m);
+        return std::hypot(mean(x_m) - target().end_effector->x_m, mean(z_m) - target().end_effector->z_m);
     }
 
-    [[nodiscard]] std::vector<json> last_rows(std::size_t count) const {
-        return {rows_.end() - static_cast<std::ptrdiff_t>(std::min(count, rows_.size())), rows_.end()};
-    }
-
-    void send(const Command& command) {
-        link_.send(json{{"type", "reference"},
-                        {"id", sent_.size()},
-                        {"from_tick", command.from_tick},
-                        {"reference", columns_of(command.plan)}}
-                       .dump());
-        sent_[sent_.size()] = command;
-    }
-
-    void wait_until(std::int64_t tick) {
-        while (tick_ < tick) {
-            read_telemetry();
-        }
-        if (accepted_.from_tick == tick) {
-            following_ = accepted_;
-        }
-    }
-
-    json receive() {
-        const auto line = link_.receive(telemetry_timeout_s);
-        if (!line) {
-            throw ConnectionLost("no telemetry for " + std::to_string(telemetry_timeout_s) + " s");
-        }
-        json message = json::parse(*line, nullptr, false);
-        if (!message.is_object() || !message.contains("type")) {
-            throw ConnectionLost("the vehicle sent what is no message: " + line->substr(0, 60));
-        }
-        return message;
-    }
-
-    /// Reads until the next row of telemetry.
-    void read_telemetry() {
-        if (is_lock_step_ && !rows_.empty()) {
-            link_.send(json{{"type", "go"}}.dump());
-        }
-        for (;;) {
-            json message = receive();
-            const std::string type = message.at("type");
-            if (type == "telemetry") {
-                tick_ = message.at("tick");
-                rows_.push_back(std::move(message));
-                return;
-            }
-            if (type == "accepted") {
-                accepted_ = sent_.at(message.at("id"));
-            } else if (type == "rejected") {
-                std::printf("%8.2f s  the vehicle rejects a reference: %s\n", now_s(),
-                            message.at("reason").get<std::string>().c_str());
-            } else if (type == "ended") {
-                throw FlightFailed("the vehicle's flight has ended: " + message.at("outcome").get<std::string>());
-            }
-        }
-    }
-
-    LineSocket& link_;
+    VehicleLink& link_;
     bool replans_;
     Problem bridge_;  ///< as it is believed to be
     Planner planner_;
-    double tick_s_ = 0.01;
-    bool is_lock_step_ = false;
-    std::int64_t tick_ = 0;
-    std::vector<json> rows_;  ///< of telemetry
-    std::map<std::size_t, Command> sent_;
-    Command accepted_, following_;
+    Command following_;
+    std::vector<Telemetry> rows_;
+    std::vector<double> lower_m_;  ///< readings of how much lower than believed the deck is
     std::size_t target_ = 0;
     int attempts_ = 0;
-    int deck_replans_ = 0;
-    std::vector<double> lower_m_;  ///< readings of how much lower than believed the deck is
+    int deck_plans_ = 0;
 };
 
 }  // namespace
@@ -343,7 +268,7 @@ int main(int count, char** words) {
     }
     try {
         const Problem bridge = read_problem(words[1]);
-        LineSocket link = LineSocket::connect_to(words[2], 10);
+        VehicleLink link(words[2]);
         Mission(link, bridge, replans).run();
         return 0;
     } catch (const MissionFailed& error) {
@@ -354,10 +279,6 @@ int main(int count, char** words) {
         return 3;
     } catch (const ConnectionLost& error) {
         std::fprintf(stderr, "mission: contact with the vehicle is lost: %s\n", error.what());
-        return 4;
-    } catch (const json::exception& error) {
-        std::fprintf(stderr, "mission: contact with the vehicle is lost: it sent a message of another kind: %s\n",
-                     error.what());
         return 4;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

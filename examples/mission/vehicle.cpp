@@ -32,13 +32,14 @@ namespace {
 
 struct Options {
     std::string problem, socket;
+    std::string log;  ///< file for the true flight; empty: none
     double deck_lower_m = 0.05;
-    std::uint64_t world = 1;         ///< of the problem's uncertainty, that the vehicle flies in
+    std::uint64_t world = 3;         ///< of the problem's uncertainty, that the vehicle flies in
     bool is_lock_step = false;       ///< waits for the mission planner at every tick
     double speed = 1;                ///< simulated time over real time
     std::string failure;             ///< die, silence or garbage, to see what the mission planner does ...
     double failure_s = 3;            ///< ... so long after the start
-    double min_clearance_m = 0.04;   ///< that the vehicle has to keep; the planner plans with 0.05 m
+    double min_clearance_m = 0.03;   ///< that the vehicle has to keep; the planner plans with 0.05 m
     double mission_timeout_s = 120;  ///< in lock step a search may take its time
 };
 
@@ -143,6 +144,23 @@ class Vehicle {
             }
         }
         link_.send(json{{"type", "ended"}, {"outcome", judge::name_of(vehicle_.flight().outcome)}}.dump());
+    }
+
+    /// Writes the true flight, with the names of trajectory.csv.
+    void write_log() const {
+        std::FILE* const file = std::fopen(options_.log.c_str(), "w");
+        if (file == nullptr) {
+            throw std::runtime_error(options_.log + ": cannot be written");
+        }
+        std::fputs("t_s,ref_x_m,ref_z_m,ref_arm_rad,x_m,z_m,pitch_rad,arm_rad,clearance_m\n", file);
+        for (const judge::JudgedRow& row : vehicle_.flight().rows) {
+            std::fprintf(file, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", row.t_s, row.reference_x_m,
+                         row.reference_z_m, row.reference_arm_rad, row.pose.x_m, row.pose.z_m, row.pose.pitch_rad,
+                         row.pose.arm_rad, row.clearance_m);
+        }
+        if (std::fclose(file) != 0) {
+            throw std::runtime_error(options_.log + ": cannot be written");
+        }
     }
 
     /// Says how the flight went. @return whether it was good
@@ -292,13 +310,35 @@ bool read_options(int count, char** words, Options& options) {
             options.world = std::strtoull(value, nullptr, 10);
         } else if (word == "--speed") {
             options.speed = std::atof(value);
+        } else if (word == "--log") {
+            options.log = value;
         } else if (word == "--fail") {
             options.failure = value;
         } else {
             return false;
         }
     }
-    return !options.socket.empty() && options.speed > 0;
+    const bool can_fail = options.failure.empty() || options.failure == "die" || options.failure == "silence" ||
+                          options.failure == "garbage";
+    return !options.socket.empty() && options.speed > 0 && options.world > 0 && can_fail;
+}
+
+/// Flies, and says how it went. @return the exit code
+int run(const Options& options) {
+    LineSocket link = LineSocket::accept_at(options.socket, 30);
+    Vehicle vehicle(options, link);
+    bool is_connected = true;
+    try {
+        vehicle.fly();
+    } catch (const ConnectionLost& error) {
+        std::fprintf(stderr, "vehicle: %s\n", error.what());
+        is_connected = false;
+    }
+    if (!options.log.empty()) {
+        vehicle.write_log();
+    }
+    const bool is_good = vehicle.report();
+    return !is_connected ? 4 : is_good ? 0 : 3;
 }
 
 }  // namespace
@@ -308,22 +348,12 @@ int main(int count, char** words) {
     if (!read_options(count, words, options)) {
         std::fprintf(stderr,
                      "usage: %s PROBLEM.yaml SOCKET [--lock-step] [--speed N] [--world I] [--deck-lower METRES]\n"
-                     "       [--fail die|silence|garbage]\n",
+                     "       [--log FLIGHT.csv] [--fail die|silence|garbage]\n",
                      words[0]);
         return 2;
     }
     try {
-        LineSocket link = LineSocket::accept_at(options.socket, 30);
-        Vehicle vehicle(options, link);
-        bool is_connected = true;
-        try {
-            vehicle.fly();
-        } catch (const ConnectionLost& error) {
-            std::fprintf(stderr, "vehicle: %s\n", error.what());
-            is_connected = false;
-        }
-        const bool is_good = vehicle.report();
-        return !is_connected ? 4 : is_good ? 0 : 3;
+        return run(options);
     } catch (const ConnectionLost& error) {
         std::fprintf(stderr, "vehicle: %s\n", error.what());
         return 4;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Callable, Mapping, NamedTuple, Sequence
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,11 @@ _KNOT = (
     "az_m_s2",
     "arm_acceleration_rad_s2",
 )
+
+
+_STATE = ("x_m", "z_m", "arm_rad", "pitch_rad", "vx_m_s", "vz_m_s", "pitch_rate_rad_s", "arm_rate_rad_s")
+
+_CoreStart = Tuple[Sequence[float], Optional[Sequence[float]], Sequence[float], Sequence[float]]
 
 
 class ReferencePoint(NamedTuple):
@@ -70,37 +75,27 @@ class Start:
         `x_m`, `z_m` and `arm_rad` are needed, other names are 0 or left out. `reference` is what the vehicle follows:
         `planner.reference_of(plan, tick)`.
         """
-        names = ("pitch_rad", "vx_m_s", "vz_m_s", "pitch_rate_rad_s", "arm_rate_rad_s")
-        rotors = []
+        missing = [name for name in _STATE[:3] if name not in row]
+        if missing:
+            raise InputError(f"the row has no {', '.join(missing)}: expected the names of trajectory.csv")
+        rotors: list[float] = []
         while f"rotor_{len(rotors) + 1}_lag_n" in row:
             rotors.append(float(row[f"rotor_{len(rotors) + 1}_lag_n"]))
-        try:
-            pose = [float(row[name]) for name in ("x_m", "z_m", "arm_rad")]
-        except KeyError as missing:
-            raise InputError(f"the row has no {missing}: expected the names of trajectory.csv") from None
-        return cls(*pose, *(float(row.get(name, 0)) for name in names), reference, tuple(rotors))
+        return cls._of_core(([float(row.get(name, 0)) for name in _STATE], reference, rotors, ()))
 
-    def _core(self) -> _core._Start:
-        return (
-            [
-                self.x_m,
-                self.z_m,
-                self.arm_rad,
-                self.pitch_rad,
-                self.vx_m_s,
-                self.vz_m_s,
-                self.pitch_rate_rad_s,
-                self.arm_rate_rad_s,
-            ],
-            self.reference,
-            self.rotor_thrust_n,
-            self.controller_memory,
-        )
+    def _to_core(self) -> _CoreStart:
+        state = [float(getattr(self, name)) for name in _STATE]
+        return (state, self.reference, self.rotor_thrust_n, self.controller_memory)
 
     @classmethod
-    def _of_core(cls, core: _core._Start) -> Start:
-        numbers, reference, rotors, memory = core
-        return cls(*numbers, None if reference is None else ReferencePoint(*reference), tuple(rotors), tuple(memory))
+    def _of_core(cls, core: _CoreStart) -> Start:
+        state, reference, rotors, memory = core
+        return cls(
+            **dict(zip(_STATE, state)),
+            reference=None if reference is None else ReferencePoint(*reference),
+            rotor_thrust_n=tuple(rotors),
+            controller_memory=tuple(memory),
+        )
 
 
 class Answer:
@@ -234,7 +229,7 @@ class Planner:
         tell = None if on_answer is None else _answer_teller(on_answer)
         changes = (text, goal is not None, list(removed))
         try:
-            core = self._core.replan(start._core(), tick, *changes, time_limit_s, max_iterations, tell, stop)
+            core = self._core.replan(start._to_core(), tick, *changes, time_limit_s, max_iterations, tell, stop)
         except ProblemError as error:
             raise _without_lines(error) from None
         return Answer(core)
@@ -249,7 +244,7 @@ class Planner:
 
         plan: columns of knots that it follows from its start on
         """
-        return Start._of_core(self._core.predicted(start._core(), _knots(plan), ticks))
+        return Start._of_core(self._core.predicted(start._to_core(), _knots(plan), ticks))
 
     def reference_of(self, plan: Mapping[str, npt.ArrayLike], tick: int) -> ReferencePoint:
         """The reference of a plan at a tick; after its last knot that one."""
