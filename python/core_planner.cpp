@@ -24,8 +24,8 @@ namespace downwash::python {
 namespace {
 
 /// A start: pose and speeds, the reference with its derivatives, rotor thrusts, the controller's memory.
-using CoreStart = std::tuple<std::array<double, 8>, std::optional<std::array<double, 9>>, std::vector<double>,
-                             std::vector<double>>;
+using CoreStart =
+    std::tuple<std::array<double, 8>, std::optional<std::array<double, 9>>, std::vector<double>, std::vector<double>>;
 
 Start start_of(const CoreStart& given) {
     const auto& [s, reference, rotor_thrust_n, memory] = given;
@@ -72,10 +72,9 @@ Plan plan_of(const Points& knots, double tick_s) {
                                   ": expected times on control ticks that rise from 0, at most an hour",
                               "plan");
         }
-        plan.reference.push_back({std::llround(ticks),
-                                  {{at(i, 1), at(i, 2), at(i, 3)},
-                                   {at(i, 4), at(i, 5), at(i, 6)},
-                                   {at(i, 7), at(i, 8), at(i, 9)}}});
+        plan.reference.push_back(
+            {std::llround(ticks),
+             {{at(i, 1), at(i, 2), at(i, 3)}, {at(i, 4), at(i, 5), at(i, 6)}, {at(i, 7), at(i, 8), at(i, 9)}}});
     }
     return plan;
 }

@@ -34,7 +34,8 @@ void Attendance::wait() {
         {
             const py::gil_scoped_release released;
             std::unique_lock lock(mutex_);
-            changed_.wait_for(lock, std::chrono::milliseconds(20), [this] { return is_closed_ || !callbacks_.empty(); });
+            changed_.wait_for(lock, std::chrono::milliseconds(20),
+                              [this] { return is_closed_ || !callbacks_.empty(); });
             callbacks.swap(callbacks_);
             is_last_told_ = false;
             is_closed = is_closed_;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Flies the mission: builds the programs of this folder against an installed Downwash, starts the simulated vehicle and
 # then the mission planner.
-# Usage: examples/mission/run.sh PREFIX [cpp|python] [options of the vehicle, default: real time]
+# Usage: examples/mission/run.sh PREFIX [cpp|python] [--no-replanning] [options of the vehicle; default: real time]
 # The exit code is that of the mission planner, or of the vehicle where that is not 0.
 set -euo pipefail
 
@@ -10,6 +10,15 @@ prefix=$(cd -P "$1" && pwd)
 language=${2:-cpp}
 build=${MISSION_BUILD:-$prefix/examples-mission}
 shift $(($# < 2 ? $# : 2))
+mission_options=()
+vehicle_options=()
+for option in "$@"; do
+    if [[ $option == --no-replanning ]]; then
+        mission_options+=("$option")
+    else
+        vehicle_options+=("$option")
+    fi
+done
 
 if [[ ! -e $build/vehicle ]]; then
     cmake -S "$here" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" >&2
@@ -31,9 +40,9 @@ esac
 problem=$here/bridge.yaml
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$build/vehicle" "$problem" "$folder/socket" "$@" &
+"$build/vehicle" "$problem" "$folder/socket" "${vehicle_options[@]}" &
 vehicle=$!
 status=0
-"${mission[@]}" "$problem" "$folder/socket" ${MISSION_OPTIONS:-} || status=$?
+"${mission[@]}" "$problem" "$folder/socket" "${mission_options[@]}" || status=$?
 wait "$vehicle" || status=$((status > 0 ? status : $?))
 exit "$status"

@@ -1,7 +1,7 @@
-// A simulated vehicle in a process of its own: the judge's plant and controller, noisy sensors, and a deck that is lower
-// than the mission planner was told. It listens on a socket, sends telemetry at every control tick, and follows the
-// references that it is sent. README.md describes the messages. In the end it says how the flight truly went.
-// Exit codes: 0 the flight was good, 2 bad input, 3 it was not, 4 the connection was lost.
+// A simulated vehicle in a process of its own: the judge's plant and controller, noisy sensors, and a deck that is
+// lower than the mission planner was told. It listens on a socket, sends telemetry at every control tick, and follows
+// the references that it is sent. README.md describes the messages. In the end it says how the flight truly went. Exit
+// codes: 0 the flight was good, 2 bad input, 3 it was not, 4 the connection was lost.
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +34,7 @@ struct Options {
     std::string problem, socket;
     std::string log;  ///< file for the true flight; empty: none
     double deck_lower_m = 0.05;
-    std::uint64_t world = 3;         ///< of the problem's uncertainty, that the vehicle flies in
+    std::uint64_t world = 2;         ///< of the problem's uncertainty, that the vehicle flies in
     bool is_lock_step = false;       ///< waits for the mission planner at every tick
     double speed = 1;                ///< simulated time over real time
     std::string failure;             ///< die, silence or garbage, to see what the mission planner does ...
@@ -78,10 +78,9 @@ class Commands {
 /// The plan in a message, with the names of solution.json. @throws json::exception, std::runtime_error
 Plan plan_of(const json& columns, double tick_s) {
     const auto column = [&](const char* name) { return columns.at(name).get<std::vector<double>>(); };
-    const std::vector<double> number[] = {
-        column("x_m"),    column("z_m"),            column("arm_rad"), column("vx_m_s"),
-        column("vz_m_s"), column("arm_rate_rad_s"), column("ax_m_s2"), column("az_m_s2"),
-        column("arm_acceleration_rad_s2")};
+    const std::vector<double> number[] = {column("x_m"),     column("z_m"),     column("arm_rad"),
+                                          column("vx_m_s"),  column("vz_m_s"),  column("arm_rate_rad_s"),
+                                          column("ax_m_s2"), column("az_m_s2"), column("arm_acceleration_rad_s2")};
     Plan plan{{}, tick_s};
     for (const double t_s : column("t_s")) {
         const std::size_t row = plan.reference.size();

@@ -29,15 +29,16 @@ json columns_of(const downwash::Plan& plan) {
 }
 
 Telemetry telemetry_of(const json& row) {
-    Telemetry now{row.at("tick"), row.at("x_m"), row.at("z_m"), row.at("pitch_rad"), row.at("arm_rad"),
-                  row.at("vz_m_s"), {}};
+    Telemetry now{
+        row.at("tick"), row.at("x_m"), row.at("z_m"), row.at("pitch_rad"), row.at("arm_rad"), row.at("vz_m_s"), {}};
     if (!row.at("range_up_m").is_null()) {
         now.range_up_m = row.at("range_up_m").get<double>();
     }
     return now;
 }
 
-/// Does something with the next message. What it throws of a message that it does not understand becomes ConnectionLost.
+/// Does something with the next message. What it throws of a message that it does not understand becomes
+/// ConnectionLost.
 template <class Use>
 void with_message(LineSocket& socket, const Use& use) {
     const auto line = socket.receive(timeout_s);
