@@ -177,7 +177,7 @@ class CorePlanner {
         return numbers_of(planner_.predicted(start, plan, tick_within(ticks)));
     }
 
-    std::array<double, 9> reference_of(const Points& knots, std::int64_t tick) {
+    [[nodiscard]] std::array<double, 9> reference_of(const Points& knots, std::int64_t tick) const {
         return numbers_of(downwash::reference_of(plan_of(knots, tick_s()), tick_within(tick)));
     }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <downwash/base/key_error.hpp>
 #include <downwash/problems/problem.hpp>
+#include <downwash/problems/problem_reader.hpp>
 
 /// The box "deck" of a problem. @throws downwash::InputError if there is none
 inline downwash::Obstacle& deck_of(downwash::Problem& problem) {
@@ -17,6 +19,20 @@ inline downwash::Obstacle& deck_of(downwash::Problem& problem) {
     return *found;
 }
 
+/// Reads a mission: a bridge with a deck, and a list of places for the end effector.
+/// @throws downwash::InputError, downwash::ProblemFileError
+inline downwash::Problem read_bridge(const std::string& file) {
+    downwash::Problem problem = downwash::read_problem(file);
+    deck_of(problem);
+    const std::vector<downwash::Goal> targets = downwash::goals_of(problem);
+    if (!problem.targets.empty() || !std::all_of(targets.begin(), targets.end(), [](const downwash::Goal& each) {
+            return each.end_effector.has_value();
+        })) {
+        downwash::throw_input_error("is no list of places for the end effector, which a mission needs", "goal");
+    }
+    return problem;
+}
+
 /// Height of the deck's underside [m].
 inline double underside_m(const downwash::Obstacle& deck) {
     return deck.center_world_m[2] - 0.5 * std::get<downwash::Box>(deck.shape).size_m[2];
@@ -24,7 +40,7 @@ inline double underside_m(const downwash::Obstacle& deck) {
 
 /// Whether a target is part of the deck: less than 0.2 m below its underside.
 inline bool hangs_on(const downwash::Obstacle& deck, const downwash::Goal& target) {
-    return target.end_effector && target.end_effector->z_m > underside_m(deck) - 0.2;
+    return target.end_effector->z_m > underside_m(deck) - 0.2;
 }
 
 /// Moves the deck down, and the targets that hang on it.

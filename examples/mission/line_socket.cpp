@@ -53,7 +53,7 @@ LineSocket LineSocket::connect_to(const std::string& path, double timeout_s) {
         const std::string why = std::strerror(errno);
         ::close(descriptor);
         if (Clock::now() > end) {
-            throw ConnectionLost("no vehicle listens at " + path + ": " + why);
+            throw ConnectionLost(std::string("no vehicle listens at ").append(path).append(": ").append(why));
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -81,7 +81,7 @@ LineSocket::~LineSocket() {
     ::close(descriptor_);
 }
 
-void LineSocket::send(const std::string& line) {
+void LineSocket::send(const std::string& line) const {
     const std::string text = line + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
         const ssize_t bytes = ::send(descriptor_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);

@@ -21,7 +21,7 @@ class LineSocket {
     LineSocket(const LineSocket&) = delete;
     LineSocket& operator=(const LineSocket&) = delete;
 
-    void send(const std::string& line);
+    void send(const std::string& line) const;
     /// The next line; nothing if none comes in time. A time of 0 takes what has arrived already.
     std::optional<std::string> receive(double timeout_s);
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <downwash/planner/planner.hpp>
-#include <downwash/problems/problem_reader.hpp>
 
 #include "bridge.hpp"
 #include "vehicle_link.hpp"
@@ -57,13 +56,20 @@ Problem first_leg(Problem bridge, bool is_lock_step) {
     return bridge;
 }
 
+SolveOptions search_options() {
+    SolveOptions options;
+    options.threads = 2;
+    options.stop_at_first_solution = true;
+    return options;
+}
+
 class Mission {
  public:
     Mission(VehicleLink& link, const Problem& bridge, bool replans)
         : link_(link),
           replans_(replans),
           bridge_(bridge),
-          planner_(first_leg(bridge, link.is_lock_step()), {.threads = 2, .stop_at_first_solution = true}) {}
+          planner_(first_leg(bridge, link.is_lock_step()), search_options()) {}
 
     void run() {
         read_telemetry();
@@ -267,7 +273,7 @@ int main(int count, char** words) {
         return 2;
     }
     try {
-        const Problem bridge = read_problem(words[1]);
+        const Problem bridge = read_bridge(words[1]);
         VehicleLink link(words[2]);
         Mission(link, bridge, replans).run();
         return 0;

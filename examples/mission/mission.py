@@ -115,7 +115,10 @@ class VehicleLink:
         self._sent.append(command)
 
     def end(self) -> None:
+        """Ends the mission, and waits until the vehicle has heard it."""
         self._send({"type": "end"})
+        while self._message()["type"] != "ended":
+            pass
 
     def _send(self, message: dict[str, Any]) -> None:
         try:
@@ -153,9 +156,12 @@ class Bridge:
     """The bridge as it is believed to be: its deck, and the targets, of which some hang on it."""
 
     def __init__(self, problem: downwash.Problem) -> None:
-        self.deck = next(each for each in problem["environment.obstacles"] if each["name"] == "deck")
+        decks = [each for each in problem["environment.obstacles"] if each["name"] == "deck" and "box" in each]
         goals = problem["goal"]
         self.targets = goals if isinstance(goals, list) else [goals]
+        if not decks or not all("end_effector" in each for each in self.targets):
+            raise downwash.InputError("a mission needs a box called 'deck' and a list of places for the end effector")
+        self.deck = decks[0]
 
     @property
     def underside_m(self) -> float:

@@ -23,6 +23,13 @@ fly() {
     [[ $status == "$expected" ]] || fail "$name: exit code $status instead of $expected: $(cat "$work/$name.log")"
 }
 
+wait_for_all() {
+    local job
+    for job in $(jobs -p); do
+        wait "$job"
+    done
+}
+
 # Usage: expect NAME TEXT
 expect() {
     grep -qF -- "$2" "$work/$1.log" || fail "$1: no '$2' in $(cat "$work/$1.log")"
@@ -40,9 +47,7 @@ for language in "${languages[@]}"; do
     fly "$language" 0 "$language" &
 done
 fly blind 3 cpp --no-replanning
-for job in $(jobs -p); do
-    wait "$job"
-done
+wait_for_all
 for language in "${languages[@]}"; do
     expect "$language" 'all targets held, 1 plans because of the deck'
     expect "$language" 'lower than believed: follow'
@@ -58,9 +63,7 @@ for language in "${languages[@]}"; do
     fly "$language-silence" 4 "$language" --fail silence &
     fly "$language-garbage" 4 "$language" --fail garbage &
 done
-for job in $(jobs -p); do
-    wait "$job"
-done
+wait_for_all
 for language in "${languages[@]}"; do
     expect "$language-die" 'contact with the vehicle is lost: the connection was closed'
     expect "$language-silence" 'contact with the vehicle is lost: no message for 2 s'

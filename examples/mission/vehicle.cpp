@@ -18,7 +18,6 @@
 
 #include <downwash/judge/simulated_vehicle.hpp>
 #include <downwash/planner/planner.hpp>
-#include <downwash/problems/problem_reader.hpp>
 #include <downwash/scene/scene.hpp>
 #include <downwash/simulation/uncertainty.hpp>
 
@@ -84,9 +83,10 @@ Plan plan_of(const json& columns, double tick_s) {
     Plan plan{{}, tick_s};
     for (const double t_s : column("t_s")) {
         const std::size_t row = plan.reference.size();
-        const std::int64_t tick = std::llround(t_s / tick_s);
+        constexpr double longest_s = 3600;
+        const std::int64_t tick = t_s >= 0 && t_s <= longest_s ? std::llround(t_s / tick_s) : -1;
         if (row == 0 ? tick != 0 : tick <= plan.reference.back().tick) {
-            throw std::runtime_error("its times do not rise from 0");
+            throw std::runtime_error("its times do not rise from 0, or are longer than an hour");
         }
         const auto at = [&](std::size_t i) { return number[i].at(row); };
         plan.reference.push_back({tick, {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}}});
@@ -99,7 +99,7 @@ Plan plan_of(const json& columns, double tick_s) {
 
 /// The bridge as it is: its deck is lower.
 Problem true_problem(const Options& options) {
-    Problem problem = read_problem(options.problem);
+    Problem problem = read_bridge(options.problem);
     lower_deck(problem, options.deck_lower_m);
     return plannable(problem).problem;
 }
@@ -133,7 +133,7 @@ class Vehicle {
             fail();
             link_.send(telemetry().dump());
             if (is_ended_by_mission()) {
-                return;
+                break;
             }
             goes_on = vehicle_.follow(commands_.at(tick_), commands_.at(tick_ + 1));
             watch_targets();
@@ -226,14 +226,15 @@ class Vehicle {
                 return false;
             }
             const json message = json::parse(*line, nullptr, false);
-            const std::string type = message.is_object() ? message.value("type", "") : "";
+            const bool has_type = message.is_object() && message.contains("type") && message["type"].is_string();
+            const std::string type = has_type ? message["type"] : "";
             if (type == "end" || type == "go") {
                 return type == "end";
             }
             const std::string why = type == "reference" ? taken(message) : "it is no message";
-            json answer{{"type", why.empty() ? "accepted" : "rejected"}, {"reason", why}};
-            answer["id"] = message.is_object() && message.contains("id") ? message["id"] : json(nullptr);
-            link_.send(answer.dump());
+            const json id = message.is_object() && message.contains("id") ? message["id"] : json(nullptr);
+            link_.send(why.empty() ? json{{"type", "accepted"}, {"id", id}}.dump()
+                                   : json{{"type", "rejected"}, {"id", id}, {"reason", why}}.dump());
         }
     }
 

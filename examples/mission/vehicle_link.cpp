@@ -103,4 +103,7 @@ void VehicleLink::send(const Command& command) {
 
 void VehicleLink::end() {
     socket_.send(json{{"type", "end"}}.dump());
+    for (bool has_heard = false; !has_heard;) {
+        with_message(socket_, [&](const std::string& type, const json&) { has_heard = type == "ended"; });
+    }
 }

@@ -51,6 +51,7 @@ class VehicleLink {
     void send(const Command& command);
     /// The last command that the vehicle has taken.
     [[nodiscard]] const Command& accepted() const { return accepted_; }
+    /// Ends the mission, and waits until the vehicle has heard it.
     void end();
 
  private:

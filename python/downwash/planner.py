@@ -16,20 +16,6 @@ from .solution import Columns, Progress, Solution, StopSignal, _teller
 
 __all__ = ["Answer", "Planner", "ReferencePoint", "Start"]
 
-_KNOT = (
-    "t_s",
-    "x_m",
-    "z_m",
-    "arm_rad",
-    "vx_m_s",
-    "vz_m_s",
-    "arm_rate_rad_s",
-    "ax_m_s2",
-    "az_m_s2",
-    "arm_acceleration_rad_s2",
-)
-
-
 _STATE = ("x_m", "z_m", "arm_rad", "pitch_rad", "vx_m_s", "vz_m_s", "pitch_rate_rad_s", "arm_rate_rad_s")
 
 _CoreStart = Tuple[Sequence[float], Optional[Sequence[float]], Sequence[float], Sequence[float]]
@@ -47,6 +33,9 @@ class ReferencePoint(NamedTuple):
     ax_m_s2: float = 0
     az_m_s2: float = 0
     arm_acceleration_rad_s2: float = 0
+
+
+_KNOT = ("t_s", *ReferencePoint._fields)
 
 
 @dataclass(frozen=True)
