@@ -79,7 +79,7 @@ class Mission {
             fly_to_target();
         }
         link_.end();
-        std::printf("%8.2f s  all targets held, %d plans because of the deck\n", now_s(), deck_plans_);
+        std::printf("%8.2f s  all targets held, plans because of the deck: %d\n", now_s(), deck_plans_);
     }
 
  private:

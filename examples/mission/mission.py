@@ -203,7 +203,7 @@ class Mission:
                 self._replan("next target", goal=self._target)
             self._fly_to_target()
         self._link.end()
-        print(f"{self._now_s:8.2f} s  all targets held, {self._deck_plans} plans because of the deck")
+        print(f"{self._now_s:8.2f} s  all targets held, plans because of the deck: {self._deck_plans}")
 
     @property
     def _target(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <thread>
@@ -34,6 +35,7 @@ struct Options {
     std::string log;  ///< file for the true flight; empty: none
     double deck_lower_m = 0.05;
     std::uint64_t world = 2;         ///< of the problem's uncertainty, that the vehicle flies in
+    std::optional<double> gust_m_s;  ///< gusts other than the problem's
     bool is_lock_step = false;       ///< waits for the mission planner at every tick
     double speed = 1;                ///< simulated time over real time
     std::string failure;             ///< die, silence or garbage, to see what the mission planner does ...
@@ -105,10 +107,11 @@ Problem true_problem(const Options& options) {
 }
 
 /// The world that the vehicle flies in; the one that is believed where the problem has no uncertainty.
-judge::FlightConditions conditions_of(const Problem& problem, std::uint64_t world) {
+judge::FlightConditions conditions_of(const Problem& problem, const Options& options) {
     judge::FlightConditions conditions;
     if (problem.uncertainty) {
-        conditions.world = draw_world(*problem.uncertainty, problem.robot, problem.planner.seed, world);
+        conditions.world = draw_world(*problem.uncertainty, problem.robot, problem.planner.seed, options.world);
+        conditions.world->gust_m_s = options.gust_m_s.value_or(conditions.world->gust_m_s);
     }
     return conditions;
 }
@@ -120,7 +123,7 @@ class Vehicle {
           link_(link),
           problem_(true_problem(options)),
           scene_(problem_.obstacles),
-          vehicle_(problem_, conditions_of(problem_, options.world)),
+          vehicle_(problem_, conditions_of(problem_, options)),
           commands_(problem_.start.configuration()),
           tick_s_(1 / problem_.robot.controller.rate_hz),
           held_(goals_of(problem_).size(), false) {}
@@ -310,6 +313,8 @@ bool read_options(int count, char** words, Options& options) {
             options.world = std::strtoull(value, nullptr, 10);
         } else if (word == "--speed") {
             options.speed = std::atof(value);
+        } else if (word == "--gust") {
+            options.gust_m_s = std::atof(value);
         } else if (word == "--log") {
             options.log = value;
         } else if (word == "--fail") {
@@ -348,7 +353,7 @@ int main(int count, char** words) {
     if (!read_options(count, words, options)) {
         std::fprintf(stderr,
                      "usage: %s PROBLEM.yaml SOCKET [--lock-step] [--speed N] [--world I] [--deck-lower METRES]\n"
-                     "       [--log FLIGHT.csv] [--fail die|silence|garbage]\n",
+                     "       [--gust M_S] [--log FLIGHT.csv] [--fail die|silence|garbage]\n",
                      words[0]);
         return 2;
     }
