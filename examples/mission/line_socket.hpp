@@ -21,13 +21,20 @@ class LineSocket {
     LineSocket(const LineSocket&) = delete;
     LineSocket& operator=(const LineSocket&) = delete;
 
-    void send(const std::string& line) const;
+    /// Never waits for the other process: what it does not take now is sent by later calls, of receive() too.
+    void send(const std::string& line);
+    /// Waits until all is sent, but no longer than that.
+    void drain(double timeout_s);
     /// The next line; nothing if none comes in time. A time of 0 takes what has arrived already.
     std::optional<std::string> receive(double timeout_s);
 
  private:
     explicit LineSocket(int descriptor) : descriptor_(descriptor) {}
 
+    void flush();
+    /// Waits until there is something to read, or until something can be sent. @return whether there is to read
+    bool wait(double timeout_s);
+
     int descriptor_;
-    std::string arrived_;
+    std::string arrived_, unsent_;
 };

@@ -372,6 +372,9 @@ def main(words: list[str]) -> int:
     except downwash.InputError as error:
         print(error, file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("mission: interrupted; the vehicle flies its last reference to the end and hovers", file=sys.stderr)
+        return 130
     return 0
 
 

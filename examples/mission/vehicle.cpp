@@ -37,7 +37,6 @@ struct Options {
     std::uint64_t world = 2;         ///< of the problem's uncertainty, that the vehicle flies in
     std::optional<double> gust_m_s;  ///< gusts other than the problem's
     bool is_lock_step = false;       ///< waits for the mission planner at every tick
-    double speed = 1;                ///< simulated time over real time
     std::string failure;             ///< die, silence or garbage, to see what the mission planner does ...
     double failure_s = 3;            ///< ... so long after the start
     double min_clearance_m = 0.03;   ///< that the vehicle has to keep; the planner plans with 0.05 m
@@ -140,12 +139,13 @@ class Vehicle {
             }
             goes_on = vehicle_.follow(commands_.at(tick_), commands_.at(tick_ + 1));
             watch_targets();
-            due += std::chrono::nanoseconds(std::llround(1e9 * tick_s_ / options_.speed));
+            due += std::chrono::nanoseconds(std::llround(1e9 * tick_s_));
             if (!options_.is_lock_step) {
                 std::this_thread::sleep_until(due);
             }
         }
         link_.send(json{{"type", "ended"}, {"outcome", judge::name_of(vehicle_.flight().outcome)}}.dump());
+        link_.drain(5);
     }
 
     /// Writes the true flight, with the names of trajectory.csv.
@@ -311,8 +311,6 @@ bool read_options(int count, char** words, Options& options) {
             options.deck_lower_m = std::atof(value);
         } else if (word == "--world") {
             options.world = std::strtoull(value, nullptr, 10);
-        } else if (word == "--speed") {
-            options.speed = std::atof(value);
         } else if (word == "--gust") {
             options.gust_m_s = std::atof(value);
         } else if (word == "--log") {
@@ -325,7 +323,7 @@ bool read_options(int count, char** words, Options& options) {
     }
     const bool can_fail = options.failure.empty() || options.failure == "die" || options.failure == "silence" ||
                           options.failure == "garbage";
-    return !options.socket.empty() && options.speed > 0 && options.world > 0 && can_fail;
+    return !options.socket.empty() && options.world > 0 && can_fail;
 }
 
 /// Flies, and says how it went. @return the exit code
@@ -352,7 +350,7 @@ int main(int count, char** words) {
     Options options;
     if (!read_options(count, words, options)) {
         std::fprintf(stderr,
-                     "usage: %s PROBLEM.yaml SOCKET [--lock-step] [--speed N] [--world I] [--deck-lower METRES]\n"
+                     "usage: %s PROBLEM.yaml SOCKET [--lock-step] [--world I] [--deck-lower METRES]\n"
                      "       [--gust M_S] [--log FLIGHT.csv] [--fail die|silence|garbage]\n",
                      words[0]);
         return 2;
