@@ -48,6 +48,8 @@ double rounded(double length_m) {
 Problem first_leg(Problem bridge, bool is_lock_step) {
     bridge.goal = goals_of(bridge).front();
     bridge.stops.clear();
+    bridge.planner.max_iterations.reset();
+    bridge.planner.time_limit_s.reset();
     if (is_lock_step) {
         bridge.planner.max_iterations = iterations;
     } else {
@@ -118,7 +120,7 @@ class Mission {
 
     /// Plans from the problem's start, where the vehicle hovers.
     void plan_first() {
-        const Start& start = planner_.problem().start;
+        const Start start = planner_.problem().start;
         following_ = {now(), start, Plan{{{0, at_rest(start.configuration())}}, link_.tick_s()}, Advice::stop};
         const Solution& solution = planner_.solve();
         if (solution.status != Status::solved) {

@@ -182,9 +182,10 @@ class Mission:
         self._bridge = Bridge(problem)
         self._arm_m: float = problem["robot.arm.length_m"]
         self._delay_s: float = problem["robot.controller.delay_s"]
-        limits: dict[str, object] = {"planner.time_limit_s": PLANNING_SHARE * LEAD_IN_HOVER_S}
-        if link.is_lock_step:
-            limits = {"planner.max_iterations": ITERATIONS, "planner.time_limit_s": None}
+        limits = {
+            "planner.max_iterations": ITERATIONS if link.is_lock_step else None,
+            "planner.time_limit_s": None if link.is_lock_step else PLANNING_SHARE * LEAD_IN_HOVER_S,
+        }
         first_leg = problem.replace({"goal": self._bridge.targets[0], **limits})
         self._planner = downwash.Planner(first_leg, threads=2, stop_at_first=True)
         self._rows: list[dict[str, Any]] = []
