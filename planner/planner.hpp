@@ -95,6 +95,8 @@ class DOWNWASH_EXPORT Planner {
     /// The problem as it is now: with all changes, from the last start to the goals that are left.
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
+    /// The same, to keep: a change of the scene makes another one.
+    [[nodiscard]] std::shared_ptr<const FlightModel> shared_model() const noexcept { return model_; }
     /// Of the scene as it was when a map was last needed; nullptr before.
     [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
     /// The last plan to the goal; empty before there is one.
