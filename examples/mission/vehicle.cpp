@@ -46,7 +46,8 @@ struct Options {
 /// References, each from a control tick on. They follow each other without jumps.
 class Commands {
  public:
-    explicit Commands(const Configuration& start) { plans_[0] = Plan{{{0, at_rest(start)}}, 0.01}; }
+    /// Begins with a hover.
+    Commands(const Configuration& start, double tick_s) { plans_[0] = Plan{{{0, at_rest(start)}}, tick_s}; }
 
     [[nodiscard]] ReferencePoint at(std::int64_t tick) const {
         const auto& [from, plan] = *std::prev(plans_.upper_bound(tick));
@@ -123,8 +124,8 @@ class Vehicle {
           problem_(true_problem(options)),
           scene_(problem_.obstacles),
           vehicle_(problem_, conditions_of(problem_, options)),
-          commands_(problem_.start.configuration()),
           tick_s_(1 / problem_.robot.controller.rate_hz),
+          commands_(problem_.start.configuration(), tick_s_),
           held_(goals_of(problem_).size(), false) {}
 
     /// Flies until the mission planner ends the mission, or the flight ends by itself.
@@ -282,8 +283,8 @@ class Vehicle {
     Problem problem_;
     Scene scene_;
     judge::SimulatedVehicle vehicle_;
-    Commands commands_;
     double tick_s_;
+    Commands commands_;
     std::int64_t tick_ = 0;
     std::mt19937 random_{1};
     std::normal_distribution<double> normal_;
