@@ -1,10 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/run_figures.hpp"
 #include "downwash/bench/statistics.hpp"
 
 namespace downwash::bench {
@@ -128,6 +130,13 @@ struct TargetResult {
     bool is_met = false;
 };
 
+/// A machine on which runs were made.
+struct MachineFigures {
+    Machine machine;
+    std::size_t runs = 0;
+    double median_load = 0, max_load = 0;
+};
+
 /// The results of a campaign, in figures.
 struct CampaignReport {
     CampaignPlan plan;
@@ -138,7 +147,11 @@ struct CampaignReport {
     std::vector<MarginFinding> margins;  ///< empty unless the campaign sweeps margins
     std::vector<FailureGroup> failures;
     std::vector<TargetResult> targets;
+    std::vector<MachineFigures> machines;  ///< those with most runs first; empty if they were not recorded
 
+    /// How many models of processors the runs were made on; 0 if that was not recorded. Times of several models are
+    /// not comparable, and a report that pools them says so.
+    [[nodiscard]] std::size_t processor_models() const;
     /// Whether plans were tested for certificates or flown in worlds.
     [[nodiscard]] bool has_worlds() const;
     /// Whether every target is met; false too while runs are missing and there is a target.
@@ -148,7 +161,12 @@ struct CampaignReport {
 /// Moments at which costs are compared [s].
 inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 
+[[nodiscard]] CampaignReport report_of(const CampaignPlan& plan, const std::vector<RunFigures>& runs);
 [[nodiscard]] CampaignReport report_of(const CampaignResults& results);
+
+/// The report of what a campaign has left in a folder. It needs some 0.5 kB of memory for a run.
+/// @throws CampaignError, DatabaseError as read_results()
+[[nodiscard]] CampaignReport read_report(const std::filesystem::path& folder);
 
 /// The report as a Markdown document.
 [[nodiscard]] std::string markdown_of(const CampaignReport& report);

@@ -171,7 +171,7 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
 
 /// A setting as what it is: a number, true or false, text; null for a limit that there is not.
 Json setting_json(std::string_view name, const std::string& value) {
-    constexpr std::string_view numbers[] = {"jobs", "time_limit_s", "max_iterations", "evaluation_worlds"};
+    constexpr std::string_view numbers[] = {"jobs", "shards", "time_limit_s", "max_iterations", "evaluation_worlds"};
     constexpr std::string_view flags[] = {"stop_at_first_solution", "as_believed"};
     if (std::ranges::find(flags, name) != std::end(flags)) {
         return value == "true";
@@ -199,6 +199,15 @@ std::string json_of(const CampaignReport& report) {
     document["stop_at_first_solution"] = plan.stop_at_first_solution;
     document["evaluation_worlds"] = plan.evaluation_worlds;
     document["left_out"] = plan.left_out;
+    document["processor_models"] = report.processor_models();
+    document["machines"] = list_json(report.machines, [](const MachineFigures& of) -> Json {
+        return {{"host", of.machine.host},
+                {"processor", of.machine.processor},
+                {"instruction_set", of.machine.instruction_set},
+                {"runs", of.runs},
+                {"median_load", of.median_load},
+                {"max_load", of.max_load}};
+    });
     document["totals"] = list_json(report.totals, [&](const auto& totals) { return totals_json(plan, totals); });
     document["cells"] = list_json(report.cells, [&](const auto& cell) { return cell_json(plan, cell); });
     document["comparisons"] =

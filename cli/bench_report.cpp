@@ -32,7 +32,7 @@ ExitCode run(const BenchReportArguments& given) {
     if (given.as_html) {
         require_pages();
     }
-    const bench::CampaignReport report = bench::report_of(bench::read_results(given.folder));
+    const bench::CampaignReport report = bench::read_report(given.folder);
     const std::string text = text_of(report, given);
     if (given.out) {
         write_result(*given.out, text);

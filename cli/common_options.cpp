@@ -57,6 +57,12 @@ void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::
         ->check(CLI::Range(1, max_threads));
 }
 
+void add_wall_limit(CLI::App& command, std::optional<double>& limit_s, const std::string& detail) {
+    add_value(command, "--wall-limit S", limit_s,
+              meaning_and("wall time of the whole command [s], reading and the aero map included", detail))
+        ->check(CLI::PositiveNumber);
+}
+
 CLI::Option* add_plan(CLI::App& command, std::string& plan) {
     return add_value(command, "--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
         ->required();

@@ -39,8 +39,9 @@ static_assert(static_cast<int>(ExitCode::terminated) == 128 + SIGTERM);
 
 Interruption::Interruption(std::optional<double> wall_limit_s) {
     if (wall_limit_s) {
-        deadline_ =
-            Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*wall_limit_s));
+        constexpr double max_s = 1e9;  // thirty years
+        deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(std::min(*wall_limit_s, max_s)));
     }
     const sigset_t set = awaited_signals();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);

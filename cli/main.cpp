@@ -150,6 +150,7 @@ void add_bench(CLI::App& program, Action& action) {
     CLI::App* bench = program.add_subcommand("bench", "Run campaigns: many searches, their success, times and costs");
     bench->require_subcommand(1);
     add_bench_run(*bench, action);
+    add_bench_merge(*bench, action);
     add_bench_report(*bench, action);
 }
 

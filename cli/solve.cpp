@@ -123,10 +123,7 @@ void add_solve(CLI::App& program, Action& action) {
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     add_force(command, given.force);
-    add_value(
-        command, "--wall-limit S", given.wall_limit_s,
-        "wall time of the whole command [s], reading and the aero map included; then the best plan so far is written")
-        ->check(CLI::PositiveNumber);
+    add_wall_limit(command, given.wall_limit_s, "then the best plan so far is written");
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

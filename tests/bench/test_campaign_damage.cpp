@@ -27,7 +27,7 @@ TEST_CASE("a file of results of another version says what to do") {
     const ScratchFolder folder;
     run_into(folder, small_campaign(1));
     CHECK(answer(folder, "PRAGMA user_version = 5").empty());
-    CHECK_THROWS_WITH(results_in(folder), Catch::Contains("its layout is number 5, not 6") &&
+    CHECK_THROWS_WITH(results_in(folder), Catch::Contains("its layout is number 5, not 7") &&
                                               Catch::Contains("run the campaign again into another folder"));
 }
 

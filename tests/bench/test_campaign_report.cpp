@@ -314,7 +314,7 @@ TEST_CASE("the same table is there as CSV, with what is infinite left empty") {
     const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
     CHECK(csv.substr(first).starts_with("\"a \"\"bridge\"\", old\",energy,mp-arm-ada,rrt-star,,,4,0,4,"));
     CHECK(commas(csv.substr(first, second - first)) == commas(csv.substr(0, first)) + 1);
-    CHECK(csv.ends_with(",91,96.25,,,,,,,,,,,\r\n"));  // flown: 91, 98 and two infinite ones
+    CHECK(csv.ends_with(",91,96.25,,,,,,,,,,,,\r\n"));  // flown: 91, 98 and two infinite ones
 }
 
 TEST_CASE("the report is the same in JSON, null for what is infinite") {
