@@ -115,8 +115,7 @@ void add_bench_run(CLI::App& bench, Action& action) {
     add_jobs(command, given.jobs, "that of the campaign, or one per processor");
     add_value(command, "--shard I/N", given.shard,
               "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
-    add_value(command, "--pilot DIR", given.pilot,
-              "with --shard: deal out the runs by the times that this campaign has measured; all shards need the same");
+    add_pilot(command, given.pilot, "with --shard, and the same for all shards");
     add_value(command, "--save DIR", given.saved,
               "keep a copy of the results there, every two minutes and at the end, and begin with it if it has more "
               "runs: for results on the disk of one node");

@@ -78,6 +78,12 @@ CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg) {
                      "arm angle relative to the multirotor [deg]; default: that of the problem's start");
 }
 
+void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs) {
+    add_value(command, "--pilot DIR", folder,
+              meaning_and("deal out the runs to shards by the times that the campaign in this folder has measured",
+                          needs));
+}
+
 void add_width(CLI::App& command, std::optional<int>& width_px) {
     add_value(command, "--width PX", width_px,
               fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,

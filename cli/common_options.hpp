@@ -54,6 +54,8 @@ CLI::Option* add_plan(CLI::App& command, std::string& plan);
 CLI::Option* add_run(CLI::App& command, std::string& folder);
 /// See arm_option().
 CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg);
+/// --pilot. @param needs what it stands beside
+void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs);
 void add_width(CLI::App& command, std::optional<int>& width_px);
 void add_no_labels(CLI::App& command, bool& no_labels);
 
