@@ -88,7 +88,10 @@ case $code in
 esac
 if ((restarts < most)); then
     echo "shard $shard ended with $code: it is put into the queue again" >&2
-    scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID" && exit 0
+    for ((try = 0; try < 20; ++try)); do # the controller may be away
+        scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID" && exit 0
+        sleep 15
+    done
 fi
 exit "$code"
 )sh";
