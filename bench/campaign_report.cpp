@@ -90,26 +90,45 @@ std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
     return costs;
 }
 
-std::vector<SolvedAt> solved_over_time(const Row& row) {
-    std::vector<double> times_s = figures_of(row, first_solution_s);
-    std::sort(times_s.begin(), times_s.end());
-    std::vector<SolvedAt> steps;
-    for (std::size_t i = 0; i < times_s.size() && std::isfinite(times_s[i]); ++i) {
-        const SolvedAt step{times_s[i], share_of(i + 1, times_s.size())};
-        if (!steps.empty() && steps.back().time_s == step.time_s) {
-            steps.back() = step;
+/// The finite ones of some values in their order, each with how many are not greater; of more than max_steps evenly
+/// chosen ones, the last one among them.
+std::vector<std::pair<double, std::size_t>> counted(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto end = std::find_if_not(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+    std::vector<std::pair<double, std::size_t>> all;
+    for (auto value = values.begin(); value != end; ++value) {
+        const auto count = static_cast<std::size_t>(value - values.begin()) + 1;
+        if (!all.empty() && all.back().first == *value) {
+            all.back().second = count;
         } else {
-            steps.push_back(step);
+            all.emplace_back(*value, count);
         }
+    }
+    return evenly_chosen(all, max_steps);
+}
+
+std::vector<SolvedAt> solved_over_time(const Row& row) {
+    const std::vector<double> times_s = figures_of(row, first_solution_s);
+    std::vector<SolvedAt> steps;
+    for (const auto& [time_s, count] : counted(times_s)) {
+        steps.push_back({time_s, share_of(count, times_s.size())});
+    }
+    return steps;
+}
+
+std::vector<HeldAt> held_over_cost(const Row& row) {
+    std::vector<HeldAt> steps;
+    for (const auto& [cost, count] : counted(figures_of(row, flown_cost))) {
+        steps.push_back({cost, count});
     }
     return steps;
 }
 
 std::vector<SeedFigures> seeds_of(const Row& row) {
     std::vector<SeedFigures> seeds;
-    for (const RunFigures* run : row) {
-        if (run != nullptr) {
-            SeedFigures of{run->seed, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)};
+    for (std::size_t place = 0; place < row.size(); ++place) {
+        if (const RunFigures* run = row[place]; run != nullptr) {
+            SeedFigures of{run->seed, place, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)};
             of.is_certified = run->is_certified;
             of.failures_in_worlds = run->worlds > 0 ? std::optional(run->failures_in_worlds) : std::nullopt;
             seeds.push_back(std::move(of));
@@ -138,6 +157,7 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
     cell.cost_over_time = cost_over_time(plan, row);
     cell.cost_curve = cost_curve(plan, row);
     cell.solved_over_time = solved_over_time(row);
+    cell.held_over_cost = held_over_cost(row);
     cell.in_worlds = worlds_of(row);
     cell.seeds = seeds_of(row);
     return cell;

@@ -31,6 +31,20 @@ std::vector<double> figures_of(const Row& row, const Figure& figure) {
     return values;
 }
 
+/// So many elements at most, evenly chosen; the last one is among them.
+template <class Element>
+std::vector<Element> evenly_chosen(const std::vector<Element>& all, std::size_t max_count) {
+    if (all.size() <= max_count) {
+        return all;
+    }
+    std::vector<Element> chosen;
+    chosen.reserve(max_count);
+    for (std::size_t i = 1; i <= max_count; ++i) {
+        chosen.push_back(all[i * all.size() / max_count - 1]);
+    }
+    return chosen;
+}
+
 [[nodiscard]] Spread spread_of(std::vector<double> values);
 
 /// The costs of the best plans so far at a moment of the searches.

@@ -23,7 +23,7 @@ struct DatabaseError : std::runtime_error {
 };
 
 /// A file of results grows no larger, and larger ones are not read [bytes].
-inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 30U;
+inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 32U;
 /// The same for one of its texts.
 inline constexpr int max_database_text_bytes = 1 << 24U;
 

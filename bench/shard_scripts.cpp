@@ -40,7 +40,8 @@ run() {
 )sh";
 
 /// Results on the disk of the node, and a copy on the disk that all nodes see.
-constexpr std::string_view scratch_setup = R"sh(scratch=${DOWNWASH_SCRATCH:-${SLURM_TMPDIR:-${TMPDIR:-/tmp}}}/downwash-$(id -u)-@DIGEST@
+constexpr std::string_view scratch_setup =
+    R"sh(scratch=${DOWNWASH_SCRATCH:-${SLURM_TMPDIR:-${TMPDIR:-/tmp}}}/downwash-$(id -u)-@DIGEST@
 here=$scratch/$(basename "$kept"))sh";
 
 constexpr std::string_view scratch_run = R"sh(code=2

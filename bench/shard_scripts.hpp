@@ -10,15 +10,15 @@ namespace downwash::bench {
 
 /// A campaign in shards, for other programs to start.
 struct ShardScripts {
-    std::string campaign;                ///< its name
-    std::filesystem::path program;       ///< this program, absolute
-    std::filesystem::path file;          ///< the campaign's file, absolute
-    std::filesystem::path folder;        ///< for scripts, logs and results, absolute; every node sees it
-    std::filesystem::path pilot;         ///< absolute; empty: none. See ShardRequest
+    std::string campaign;           ///< its name
+    std::filesystem::path program;  ///< this program, absolute
+    std::filesystem::path file;     ///< the campaign's file, absolute
+    std::filesystem::path folder;   ///< for scripts, logs and results, absolute; every node sees it
+    std::filesystem::path pilot;    ///< absolute; empty: none. See ShardRequest
     std::uint64_t shards = 1;
-    std::uint64_t jobs = 1;              ///< searches at a time in a shard
-    std::uint64_t task_minutes = 60;     ///< Slurm's time limit of a task
-    std::uint64_t at_once = 1;           ///< shards that GNU parallel runs at a time
+    std::uint64_t jobs = 1;           ///< searches at a time in a shard
+    std::uint64_t task_minutes = 60;  ///< Slurm's time limit of a task
+    std::uint64_t at_once = 1;        ///< shards that GNU parallel runs at a time
 };
 
 /// Names and contents of scripts.

@@ -53,7 +53,7 @@ ExitCode run(const BenchMergeArguments& given) {
     const std::filesystem::path out = given.out;
     const bench::MergedCampaign merged = bench::merge_shards(out, shards, given.replaces);
     if (has_pages() && merged.done > 0) {
-        write_result(out / "report.html", campaign_page(bench::json_of(bench::read_report(out))));
+        write_result(out / "report.html", campaign_page(bench::page_json_of(bench::read_report(out))));
     }
     fmt::print("{} of {} runs are in {}\n", merged.done, merged.plan.run_count(), out.string());
     if (merged.processors > 1) {

@@ -20,7 +20,7 @@ struct BenchReportArguments {
 
 std::string text_of(const bench::CampaignReport& report, const BenchReportArguments& as) {
     if (as.as_html) {
-        return campaign_page(bench::json_of(report));
+        return campaign_page(bench::page_json_of(report));
     }
     return as.as_json    ? bench::json_of(report) + "\n"
            : as.as_latex ? bench::latex_of(report)

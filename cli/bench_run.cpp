@@ -84,7 +84,7 @@ ExitCode run(const BenchRunArguments& given) {
     const bool is_over = progress.done == progress.planned;
     const bool has_page = has_pages() && progress.done > 0 && !shard;
     if (has_page) {
-        write_result(options.out / "report.html", campaign_page(bench::json_of(bench::read_report(options.out))));
+        write_result(options.out / "report.html", campaign_page(bench::page_json_of(bench::read_report(options.out))));
     }
     fmt::print("{} of {} runs are in {}{}; {}\n", progress.done, progress.planned, options.out.string(),
                has_page ? ", report.html shows them" : "",

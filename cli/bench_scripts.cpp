@@ -31,9 +31,10 @@ fs::path plain_path(const fs::path& given, const std::string& what) {
     const fs::path path = fs::absolute(given).lexically_normal();
     const std::string text = path.string();
     if (shell_word(text) != text || text.find('%') != std::string::npos) {
-        throw UsageError("{} {}: scripts for other programs hold this path, so it may have letters, digits and -_./+:@,= "
-                         "only",
-                         what, text);
+        throw UsageError(
+            "{} {}: scripts for other programs hold this path, so it may have letters, digits and -_./+:@,= "
+            "only",
+            what, text);
     }
     return path;
 }
@@ -90,15 +91,17 @@ void add_script_options(CLI::App& command, ScriptArguments& given) {
 }  // namespace
 
 void add_bench_slurm(CLI::App& bench, Action& action) {
-    auto [command, given] = add_command(bench, action, "slurm",
-                                        "Write scripts that run a campaign in shards on a cluster with Slurm; prints the "
-                                        "command that submits them",
-                                        run_slurm);
+    auto [command, given] =
+        add_command(bench, action, "slurm",
+                    "Write scripts that run a campaign in shards on a cluster with Slurm; prints the "
+                    "command that submits them",
+                    run_slurm);
     add_script_options(command, given);
     constexpr std::uint64_t max_minutes = 60 * 24 * 30;
-    add_value(command, "--task-time MIN", given.task_minutes,
-              "Slurm's time limit of a task [min]: before it is over the task keeps what is finished and goes back to the "
-              "queue; default 60")
+    add_value(
+        command, "--task-time MIN", given.task_minutes,
+        "Slurm's time limit of a task [min]: before it is over the task keeps what is finished and goes back to the "
+        "queue; default 60")
         ->check(CLI::Range(std::uint64_t{1}, max_minutes));
 }
 
