@@ -120,7 +120,7 @@ struct Machine {
     std::string processor;        ///< its model: "AMD EPYC 7B13"
     std::string instruction_set;  ///< the widest that our flights use there: "avx2"
 
-    auto operator<=>(const Machine&) const = default;
+    auto operator<=>(const Machine&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 };
 
 /// Where a run was made.

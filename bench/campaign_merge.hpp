@@ -27,10 +27,10 @@ struct MergedCampaign {
 
 /// Merges the results of shards into one file of results in another folder. It appears whole or not at all, and depends
 /// on the shards alone, not on the order in which they are named.
-/// @param replaces whether results that are in the folder already may be replaced
+/// @param folders of the shards   @param replaces whether results that are in the folder already may be replaced
 /// @throws CampaignError, DatabaseError: a file is damaged or no shard of the same campaign, a run is in two files, the
 /// folder holds results; the message names every file with its differences
-MergedCampaign merge_shards(const std::filesystem::path& out, const std::vector<std::filesystem::path>& shards,
+MergedCampaign merge_shards(const std::filesystem::path& out, const std::vector<std::filesystem::path>& folders,
                             bool replaces);
 
 }  // namespace downwash::bench

@@ -298,19 +298,20 @@ void RunWriter::add(const Run& finished) {
 }
 
 std::uint64_t RunWriter::key_of(const Machine& machine) {
-    const auto [known, is_new] = machines_.emplace(machine, 0);
-    if (is_new) {
-        database_.run("INSERT OR IGNORE INTO machines (host, processor, instruction_set) VALUES (?, ?, ?)",
-                      machine.host, machine.processor, machine.instruction_set);
-        database_.for_each<std::uint64_t, std::string, std::string, std::string>(
-            "SELECT id, host, processor, instruction_set FROM machines",
-            [&](std::uint64_t key, const auto&... columns) {
-                if (Machine{columns...} == machine) {
-                    known->second = key;
-                }
-            });
+    if (const auto known = machines_.find(machine); known != machines_.end()) {
+        return known->second;
     }
-    return known->second;
+    database_.run("INSERT OR IGNORE INTO machines (host, processor, instruction_set) VALUES (?, ?, ?)", machine.host,
+                  machine.processor, machine.instruction_set);
+    std::uint64_t key_of_machine = 0;
+    database_.for_each<std::uint64_t, std::string, std::string, std::string>(
+        "SELECT id, host, processor, instruction_set FROM machines", [&](std::uint64_t key, const auto&... columns) {
+            if (Machine{columns...} == machine) {
+                key_of_machine = key;
+            }
+        });
+    machines_.emplace(machine, key_of_machine);
+    return key_of_machine;
 }
 
 }  // namespace downwash::bench

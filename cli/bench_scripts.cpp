@@ -28,7 +28,7 @@ struct ScriptArguments {
 
 /// An absolute path that needs no quotes in a script. @throws UsageError
 fs::path plain_path(const fs::path& given, const std::string& what) {
-    const fs::path path = fs::absolute(given).lexically_normal();
+    fs::path path = fs::absolute(given).lexically_normal();
     const std::string text = path.string();
     if (shell_word(text) != text || text.find('%') != std::string::npos) {
         throw UsageError(
