@@ -79,9 +79,9 @@ CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg) {
 }
 
 void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs) {
-    add_value(command, "--pilot DIR", folder,
-              meaning_and("deal out the runs to shards by the times that the campaign in this folder has measured",
-                          needs));
+    add_value(
+        command, "--pilot DIR", folder,
+        meaning_and("deal out the runs to shards by the times that the campaign in this folder has measured", needs));
 }
 
 void add_width(CLI::App& command, std::optional<int>& width_px) {
