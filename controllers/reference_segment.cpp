@@ -59,8 +59,7 @@ double pitch_rate_ratio_at_ends(const ReferenceSegment& segment, const MotionLim
 
 /// The largest ratio at samples between the ends, and that of the jerk.
 double worst_ratio(const ReferenceSegment& segment, const MotionLimits& limits) {
-    double worst =
-        std::max(segment.peak_jerk_m_s3() / limits.max_jerk_m_s3, pitch_rate_ratio_at_ends(segment, limits));
+    double worst = std::max(segment.peak_jerk_m_s3() / limits.max_jerk_m_s3, pitch_rate_ratio_at_ends(segment, limits));
     for (std::int64_t i = 1; i < samples_of(segment); ++i) {
         worst = std::max(worst, ratio_at_sample(segment, i, limits));
     }
@@ -174,8 +173,8 @@ MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) 
     if (!limits.max_thrust_ratio || !(distance_m > 0)) {
         return limits;
     }
-    // |a e + g|^2 = a^2 + 2 a g e_z + g^2 is largest where a points as far up as it can; where it points down, something
-    // has to be left of g.
+    // |a e + g|^2 = a^2 + 2 a g e_z + g^2 is largest where a points as far up as it can; where it points down,
+    // something has to be left of g.
     constexpr double largest_fall = 0.99;
     const double up = std::abs(dz_m) / distance_m;
     const double spare = *limits.max_thrust_ratio * *limits.max_thrust_ratio - 1;
@@ -219,13 +218,13 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
         return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(duration_s / tick_s - 1e-9)));
     };
     const bool is_from_rest_to_rest = is_at_rest(from) && is_at_rest(to);
-    std::int64_t ticks = ticks_of(rest_to_rest_duration_s(
-        distance_m, arm_rad, is_from_rest_to_rest ? limits_along(limits, dx, dz) : limits));
+    std::int64_t ticks = ticks_of(
+        rest_to_rest_duration_s(distance_m, arm_rad, is_from_rest_to_rest ? limits_along(limits, dx, dz) : limits));
     if (is_from_rest_to_rest && !limits.max_pitch_rate_rad_s) {
         return ticks;
     }
-    // With a moving end, or a limit of the pitch rate, the shortest time has no closed form: begin with less than any motion within the limits
-    // needs, stretch until they are kept, then close in on the last step.
+    // With a moving end, or a limit of the pitch rate, the shortest time has no closed form: begin with less than any
+    // motion within the limits needs, stretch until they are kept, then close in on the last step.
     const double change[3] = {to.velocity[0] - from.velocity[0], to.velocity[1] - from.velocity[1],
                               to.velocity[2] - from.velocity[2]};
     const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,

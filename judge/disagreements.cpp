@@ -61,8 +61,8 @@ struct Peaks {
         acceleration = std::max(acceleration, std::hypot(p.acceleration[0], p.acceleration[1]));
         arm_rate = std::max(arm_rate, std::abs(p.velocity[2]));
         arm_acceleration = std::max(arm_acceleration, std::abs(p.acceleration[2]));
-        thrust_ratio =
-            std::max(thrust_ratio, std::hypot(p.acceleration[0], p.acceleration[1] + standard_gravity_m_s2) / standard_gravity_m_s2);
+        thrust_ratio = std::max(thrust_ratio, std::hypot(p.acceleration[0], p.acceleration[1] + standard_gravity_m_s2) /
+                                                  standard_gravity_m_s2);
         pitch_rate = std::max(pitch_rate, std::abs(pitch_of(p) - pitch_of(before)) / tick_s);
     }
 

@@ -8,7 +8,9 @@
 namespace downwash::planning {
 namespace {
 
-constexpr int tries_for_a_bridge = 150;
+constexpr int tries = 8;
+constexpr int tries_for_a_bridge = 60;
+constexpr int other_sides = 8;  ///< that are tried from one side
 constexpr int tries_over_a_bridge = 20;
 constexpr std::size_t max_known = 64;
 constexpr double known_share = 0.7;       ///< of the samples, once a way is known
@@ -57,14 +59,16 @@ std::optional<PassageSampler::Bridge> PassageSampler::found(Random& random) cons
         if (!collides(one_side, pitch_rad)) {
             continue;
         }
-        const double across_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
-        const double length_m = random.uniform(0, bridge_m_);
-        const auto across = lane::sin_cos(across_rad);
-        const Configuration other_side{one_side.x_m + length_m * across.cosine, one_side.z_m + length_m * across.sine,
-                                       one_side.arm_rad};
-        const Configuration middle = between(one_side, other_side, 0.5);
-        if (collides(other_side, pitch_rad) && space_.rejection_at(middle, pitch_rad) == Rejection::none) {
-            return Bridge{middle, across_rad, pitch_rad};
+        for (int other = 0; other < other_sides; ++other) {
+            const double across_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
+            const double length_m = random.uniform(0, bridge_m_);
+            const auto across = lane::sin_cos(across_rad);
+            const Configuration other_side{one_side.x_m + length_m * across.cosine,
+                                           one_side.z_m + length_m * across.sine, one_side.arm_rad};
+            const Configuration middle = between(one_side, other_side, 0.5);
+            if (space_.rejection_at(middle, pitch_rad) == Rejection::none && collides(other_side, pitch_rad)) {
+                return Bridge{middle, across_rad, pitch_rad};
+            }
         }
     }
     return std::nullopt;
@@ -99,9 +103,12 @@ ReferencePoint PassageSampler::beside_known(Random& random) const {
 
 bool PassageSampler::is_free(const ReferenceSegment& segment) const {
     constexpr std::int64_t ticks_between_poses = 3;
-    for (std::int64_t tick = 0; tick <= segment.ticks(); tick += ticks_between_poses) {
-        const ReferencePoint point = segment.at_tick(tick);
-        if (space_.rejection_at(configuration_of(point), tilt(point)) != Rejection::none) {
+    const auto is_free_at = [&](const ReferencePoint& point) {
+        return space_.rejection_at(configuration_of(point), tilt(point)) == Rejection::none;
+    };
+    // The same poses forwards and backwards.
+    for (std::int64_t tick = 0; 2 * tick <= segment.ticks(); tick += ticks_between_poses) {
+        if (!is_free_at(segment.at_tick(tick)) || !is_free_at(segment.at_tick(segment.ticks() - tick))) {
             return false;
         }
     }
@@ -171,15 +178,18 @@ std::optional<Passage> PassageSampler::way_over_bridge(Random& random) {
 }
 
 std::optional<Passage> PassageSampler::sample(Random& random) {
-    const bool is_beside_known = !known_.empty() && random.chance(known_share);
-    const std::optional<Passage> passage = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
-    if (!passage) {
-        return std::nullopt;
+    for (int i = 0; i < tries; ++i) {
+        const bool is_beside_known = !known_.empty() && random.chance(known_share);
+        const std::optional<Passage> passage = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
+        if (!passage) {
+            continue;
+        }
+        if (!is_beside_known && known_.size() < max_known) {
+            known_.push_back(passage->through);
+        }
+        return random.chance(0.5) ? passage : reversed(*passage);
     }
-    if (known_.size() < max_known) {
-        known_.push_back(passage->through);
-    }
-    return random.chance(0.5) ? passage : reversed(*passage);
+    return std::nullopt;
 }
 
 }  // namespace downwash::planning

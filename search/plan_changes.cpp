@@ -16,8 +16,8 @@ constexpr double moves_corner = 0.15;
 constexpr double moves_and_changes_speed = 0.35;
 
 constexpr double largest_shift_m = 1.0;
-constexpr double largest_speed_change = 0.5;  ///< as a share of the limits of motion
-constexpr double shortest_split_s = 1.0;      ///< a shorter segment gets no corner in between, ...
+constexpr double largest_speed_change = 0.5;     ///< as a share of the limits of motion
+constexpr double shortest_split_s = 1.0;         ///< a shorter segment gets no corner in between, ...
 constexpr double shortest_agile_split_s = 0.15;  ///< ... under a limit of thrust, with which ways are flown in far less
 
 }  // namespace

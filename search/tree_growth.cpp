@@ -98,10 +98,9 @@ std::optional<ReferencePoint> TreeGrowth::aim() {
     }
     // Goals are aimed at from any distance: what stands in between is found before anything is flown.
     const Configuration& nearest = tree_.nearest(*target_place, 1).front()->configuration;
-    const Configuration to =
-        space_.is_near_goal(*target_place)
-            ? *target_place
-            : space_.steered(nearest, *target_place, parameters_.range_share * space_.extent_m());
+    const Configuration to = space_.is_near_goal(*target_place)
+                                 ? *target_place
+                                 : space_.steered(nearest, *target_place, parameters_.range_share * space_.extent_m());
     if (const Rejection rejection = space_.rejection_at(to); rejection != Rejection::none) {
         flights_.count_rejection(rejection);
         return std::nullopt;

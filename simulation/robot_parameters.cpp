@@ -121,7 +121,8 @@ void add_rotors(Rows& rows) {
 Parameter<Robot> arm_limits() {
     auto limits = parameters::numbers<Robot>(
         "arm.limits_deg",
-        "least and greatest angle relative to the multirotor, the same for an arm that does not move; null turns through "
+        "least and greatest angle relative to the multirotor, the same for an arm that does not move; null turns "
+        "through "
         "360 degrees",
         {"lower", "upper"},
         [](const Robot& r, std::size_t) {

@@ -141,14 +141,16 @@ def judge(problem, states, thrusts):
     """The cost of a flight [s]; raises Refused."""
     if not states or difference(states[0], problem["start"]) > ROUNDING:
         raise Refused("the flight does not begin at the start")
-    for number, state in enumerate(states):
+    errors = [difference(state, problem["goal"]) for state in states]
+    end = next((number for number, error in enumerate(errors) if error <= MAX_GOAL_ERROR), None)
+    flown = states if end is None else states[: end + 1]
+    for number, state in enumerate(flown):
         check_state(problem, number, state)
-        if difference(state, problem["goal"]) <= MAX_GOAL_ERROR:
-            return number * STEP_S
-        if number + 1 < len(states):
-            check_step(number, state, thrusts[number], states[number + 1])
-    best = min(difference(state, problem["goal"]) for state in states)
-    raise Refused(f"no state meets the goal to within {MAX_GOAL_ERROR}: the nearest one differs by {best:.4f}")
+    for number, (state, after) in enumerate(zip(flown, flown[1:])):
+        check_step(number, state, thrusts[number], after)
+    if end is None:
+        raise Refused(f"no state meets the goal to within {MAX_GOAL_ERROR}: the nearest one differs by {min(errors):.4f}")
+    return end * STEP_S
 
 
 def main():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Flies dynobench's problems of the planar rotor and writes what came of it. bench/dynobench.sh calls it.
 
-Usage: bench/dynobench/measure.py ours FILE [--seeds N] [--limits S...] [PROBLEM.yaml...]
+Usage: bench/dynobench/measure.py ours FILE [--seeds N] [--limits S...] [--problems PROBLEM.yaml...]
        bench/dynobench/measure.py page OURS RANDOM OMPL >bench/results/dynobench.md
 The first adds a line of JSON for each search to FILE, the second makes the page of such files: the five problems, random
 scenes, and the lines of bench_dynobench_ompl.
@@ -225,7 +225,7 @@ def main():
     commands = parser.add_subparsers(required=True)
     ours = commands.add_parser("ours")
     ours.add_argument("file")
-    ours.add_argument("problems", nargs="*")
+    ours.add_argument("--problems", nargs="+")
     ours.add_argument("--seeds", type=int, default=5)
     ours.add_argument("--limits", type=float, nargs="+", default=[1.0, 10.0, 60.0])
     ours.set_defaults(run=search_all)
