@@ -7,10 +7,14 @@
 namespace downwash {
 
 double quantile(std::vector<double> values, double q) {
+    std::sort(values.begin(), values.end());
+    return quantile_of_sorted(values, q);
+}
+
+double quantile_of_sorted(const std::vector<double>& values, double q) {
     if (values.empty()) {
         return std::numeric_limits<double>::quiet_NaN();
     }
-    std::sort(values.begin(), values.end());
     const double at = q * static_cast<double>(values.size() - 1);
     const auto low = static_cast<std::size_t>(at);
     const double share = at - static_cast<double>(low);

@@ -83,6 +83,15 @@ class Bytes {
         const auto& [worlds, failures, alone] = figures;
         add(worlds, failures, alone);
     }
+    void put(const RunMachine& made_on) {
+        const auto& [machine, load] = made_on;
+        const auto& [host, processor, instruction_set] = machine;
+        add(host, processor, instruction_set, load);
+    }
+    void put(const ShardPlan& shards) {
+        const auto& [count, cell_costs_us] = shards;
+        add(count, cell_costs_us);
+    }
     void put(const Experiment& experiment) {
         const auto& [problem, objective] = experiment;
         add(problem, objective);
@@ -106,19 +115,25 @@ class Bytes {
 std::string checksum_of(const Run& run) {
     const auto& [experiment, planner, seed, status, wall_s, first_solution_s, cost, nearest_approach_m, iterations,
                  edges_simulated, states_checked, simulated_s, discarded, improvements, rejections, flight, error,
-                 certificate, first_certified_s, in_worlds] = run;
+                 certificate, first_certified_s, in_worlds, made_on] = run;
     Bytes bytes;
     bytes.add(experiment, planner, seed, status, wall_s, first_solution_s, cost, nearest_approach_m, iterations,
               edges_simulated, states_checked, simulated_s, discarded, improvements, rejections, flight, error,
               certificate, first_certified_s, in_worlds);
+    if (made_on) {  // results of layout 6 have none
+        bytes.add(*made_on);
+    }
     return bytes.digest();
 }
 
 std::string checksum_of(const CampaignPlan& plan) {
-    const auto& [settings, experiments, planners, seeds, expectations, left_out, time_limit_s, stops_at_first, worlds] =
-        plan;
+    const auto& [settings, experiments, planners, seeds, expectations, left_out, time_limit_s, stops_at_first, worlds,
+                 shards] = plan;
     Bytes bytes;
     bytes.add(settings, experiments, planners, seeds, expectations, left_out, time_limit_s, stops_at_first, worlds);
+    if (shards) {  // results of layout 6 have none
+        bytes.add(*shards);
+    }
     return bytes.digest();
 }
 

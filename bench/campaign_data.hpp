@@ -36,10 +36,19 @@ struct PlannerSetup {
     bool operator==(const PlannerSetup&) const = default;
 };
 
+/// How the runs of a campaign are dealt out to shards; see ShardAssignment.
+struct ShardPlan {
+    std::uint64_t count = 1;
+    /// Expected time of a run of each experiment and planner, experiments outermost [us]; empty: all runs take as long.
+    std::vector<std::uint64_t> cell_costs_us = {};
+
+    bool operator==(const ShardPlan&) const = default;
+};
+
 /// Everything that a campaign runs, and what the figures depend on.
 struct CampaignPlan {
     /// A file of results can only be continued with the settings it was begun with: limits, hashes of problems,
-    /// program, machine.
+    /// program, machine. Shards may run on any machine, and their settings name none.
     std::vector<std::pair<std::string, std::string>> settings;
     std::vector<Experiment> experiments;
     std::vector<PlannerSetup> planners;
@@ -48,7 +57,8 @@ struct CampaignPlan {
     std::vector<std::string> left_out;   ///< combinations that do not exist, and why
     std::optional<double> time_limit_s;  ///< of one search; empty: none
     bool stop_at_first_solution = false;
-    std::uint64_t evaluation_worlds = 0;  ///< in which each reported plan is flown
+    std::uint64_t evaluation_worlds = 0;   ///< in which each reported plan is flown
+    std::optional<ShardPlan> shards = {};  ///< of a campaign that is run in shards
 
     [[nodiscard]] std::size_t run_count() const { return experiments.size() * planners.size() * seeds.size(); }
 };
@@ -104,6 +114,23 @@ struct CertificateFigures {
     bool operator==(const CertificateFigures&) const = default;
 };
 
+/// A computer.
+struct Machine {
+    std::string host;
+    std::string processor;        ///< its model: "AMD EPYC 7B13"
+    std::string instruction_set;  ///< the widest that our flights use there: "avx2"
+
+    auto operator<=>(const Machine&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
+};
+
+/// Where a run was made.
+struct RunMachine {
+    Machine machine;
+    double load = 0;  ///< processes that ran or waited to run, mean of the last minute before the run ended
+
+    bool operator==(const RunMachine&) const = default;
+};
+
 /// One search and the flight of its plan.
 struct Run {
     std::size_t experiment = 0;  ///< in the campaign's plan
@@ -127,6 +154,7 @@ struct Run {
     std::optional<CertificateFigures> certificate = {};  ///< of its plan, where the problem has an uncertainty
     std::optional<double> first_certified_s = {};        ///< from the parsed problem; of a planner that asks for them
     std::optional<WorldFigures> in_worlds = {};          ///< of a solved run, if the campaign evaluates plans
+    std::optional<RunMachine> made_on = {};              ///< empty in results of versions that did not record it
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;

@@ -4,38 +4,41 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
+#include "downwash/base/quantile.hpp"
 #include "downwash/bench/campaign_rows.hpp"
+#include "downwash/bench/campaign_store.hpp"
 
 namespace downwash::bench {
 namespace {
 
 template <class Test>
 Share share_in(const Row& row, const Test& test) {
-    const std::vector<double> hits = figures_of(row, [&](const Run& run) { return test(run) ? 1.0 : 0.0; });
+    const std::vector<double> hits = figures_of(row, [&](const RunFigures& run) { return test(run) ? 1.0 : 0.0; });
     return share_of(static_cast<std::size_t>(std::count(hits.begin(), hits.end(), 1.0)), hits.size());
 }
 
 /// Why no flight of a run hovered at the goal; empty when one did.
-std::string cause_of(const Run& run) {
+std::string cause_of(const RunFigures& run) {
     if (run.holds()) {
         return "";
     }
     if (run.status == RunStatus::solved) {
-        return run.flight ? std::string(downwash::name_of(run.flight->outcome)) : "not flown";
+        return run.outcome ? std::string(downwash::name_of(*run.outcome)) : "not flown";
     }
     return std::string(name_of(run.status));
 }
 
 /// The cause and the error message, if there is one.
-std::string full_cause_of(const Run& run) {
+std::string full_cause_of(const RunFigures& run) {
     const std::string cause = cause_of(run);
-    return run.error.empty() ? cause : cause + ": " + run.error;
+    return run.error == nullptr ? cause : cause + ": " + *run.error;
 }
 
 std::vector<std::pair<std::string, std::size_t>> failures_by_cause(const Row& row) {
     std::map<std::string, std::size_t> counts;
-    for (const Run* run : row) {
+    for (const RunFigures* run : row) {
         if (run != nullptr && !run->holds()) {
             ++counts[cause_of(*run)];
         }
@@ -47,9 +50,9 @@ std::vector<std::pair<std::string, std::size_t>> failures_by_cause(const Row& ro
 
 double min_clearance_m(const Row& row) {
     double clearance_m = std::numeric_limits<double>::quiet_NaN();
-    for (const Run* run : row) {
-        if (run != nullptr && run->flight) {
-            clearance_m = std::fmin(clearance_m, run->flight->min_clearance_m);
+    for (const RunFigures* run : row) {
+        if (run != nullptr && run->outcome) {
+            clearance_m = std::fmin(clearance_m, run->min_clearance_m);
         }
     }
     return clearance_m;
@@ -68,10 +71,10 @@ std::vector<CostAt> cost_over_time(const CampaignPlan& plan, const Row& row) {
 /// From the first improvement to the end of the searches, sixteen moments per decade.
 std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
     double first_s = infinite, end_s = plan.time_limit_s.value_or(0);
-    for (const Run* run : row) {
-        if (run != nullptr && !run->improvements.empty()) {
-            first_s = std::min(first_s, run->improvements.front().wall_s);
-            end_s = std::max(end_s, run->improvements.back().wall_s);
+    for (const RunFigures* run : row) {
+        if (run != nullptr && !run->steps.empty()) {
+            first_s = std::min(first_s, run->steps.front().wall_s);
+            end_s = std::max(end_s, run->steps.back().wall_s);
         }
     }
     std::vector<CostAt> costs;
@@ -87,28 +90,47 @@ std::vector<CostAt> cost_curve(const CampaignPlan& plan, const Row& row) {
     return costs;
 }
 
-std::vector<SolvedAt> solved_over_time(const Row& row) {
-    std::vector<double> times_s = figures_of(row, first_solution_s);
-    std::sort(times_s.begin(), times_s.end());
-    std::vector<SolvedAt> steps;
-    for (std::size_t i = 0; i < times_s.size() && std::isfinite(times_s[i]); ++i) {
-        const SolvedAt step{times_s[i], share_of(i + 1, times_s.size())};
-        if (!steps.empty() && steps.back().time_s == step.time_s) {
-            steps.back() = step;
+/// The finite ones of some values in their order, each with how many are not greater; of more than max_steps evenly
+/// chosen ones, the last one among them.
+std::vector<std::pair<double, std::size_t>> counted(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto end = std::find_if_not(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+    std::vector<std::pair<double, std::size_t>> all;
+    for (auto value = values.begin(); value != end; ++value) {
+        const auto count = static_cast<std::size_t>(value - values.begin()) + 1;
+        if (!all.empty() && all.back().first == *value) {
+            all.back().second = count;
         } else {
-            steps.push_back(step);
+            all.emplace_back(*value, count);
         }
+    }
+    return evenly_chosen(all, max_steps);
+}
+
+std::vector<SolvedAt> solved_over_time(const Row& row) {
+    const std::vector<double> times_s = figures_of(row, first_solution_s);
+    std::vector<SolvedAt> steps;
+    for (const auto& [time_s, count] : counted(times_s)) {
+        steps.push_back({time_s, share_of(count, times_s.size())});
+    }
+    return steps;
+}
+
+std::vector<HeldAt> held_over_cost(const Row& row) {
+    std::vector<HeldAt> steps;
+    for (const auto& [cost, count] : counted(figures_of(row, flown_cost))) {
+        steps.push_back({cost, count});
     }
     return steps;
 }
 
 std::vector<SeedFigures> seeds_of(const Row& row) {
     std::vector<SeedFigures> seeds;
-    for (const Run* run : row) {
-        if (run != nullptr) {
-            SeedFigures of{run->seed, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)};
-            of.is_certified = run->certificate ? std::optional(run->certificate->is_given) : std::nullopt;
-            of.failures_in_worlds = run->in_worlds ? std::optional(run->in_worlds->failures) : std::nullopt;
+    for (std::size_t place = 0; place < row.size(); ++place) {
+        if (const RunFigures* run = row[place]; run != nullptr) {
+            SeedFigures of{run->seed, place, cause_of(*run), first_solution_s(*run), run->wall_s, flown_cost(*run)};
+            of.is_certified = run->is_certified;
+            of.failures_in_worlds = run->worlds > 0 ? std::optional(run->failures_in_worlds) : std::nullopt;
             seeds.push_back(std::move(of));
         }
     }
@@ -120,21 +142,22 @@ CellFigures cell_of(const CampaignPlan& plan, std::size_t experiment, std::size_
     cell.experiment = experiment;
     cell.planner = planner;
     cell.missing = static_cast<std::size_t>(std::count(row.begin(), row.end(), nullptr));
-    cell.solved = share_in(row, [](const Run& run) { return run.status == RunStatus::solved; });
-    cell.failed_flights = share_in(row, [](const Run& run) { return run.has_failed_flight(); });
-    cell.held = share_in(row, [](const Run& run) { return run.holds(); });
+    cell.solved = share_in(row, [](const RunFigures& run) { return run.status == RunStatus::solved; });
+    cell.failed_flights = share_in(row, [](const RunFigures& run) { return run.has_failed_flight(); });
+    cell.held = share_in(row, [](const RunFigures& run) { return run.holds(); });
     cell.failures_by_cause = failures_by_cause(row);
     cell.first_solution_s = spread_of(figures_of(row, first_solution_s));
     cell.verified_s = spread_of(figures_of(row, verified_s));
-    cell.answer_s = spread_of(figures_of(row, [](const Run& run) { return run.wall_s; }));
+    cell.answer_s = spread_of(figures_of(row, [](const RunFigures& run) { return run.wall_s; }));
     cell.flown_cost = spread_of(figures_of(row, flown_cost));
     cell.min_clearance_m = min_clearance_m(row);
-    for (const Run* run : row) {
+    for (const RunFigures* run : row) {
         cell.discarded += run != nullptr ? run->discarded : 0;
     }
     cell.cost_over_time = cost_over_time(plan, row);
     cell.cost_curve = cost_curve(plan, row);
     cell.solved_over_time = solved_over_time(row);
+    cell.held_over_cost = held_over_cost(row);
     cell.in_worlds = worlds_of(row);
     cell.seeds = seeds_of(row);
     return cell;
@@ -197,7 +220,7 @@ void compare_planners(const std::vector<Row>& rows, CampaignReport& report) {
 void list_failures(const std::vector<Row>& rows, CampaignReport& report) {
     for (std::size_t cell = 0; cell < rows.size(); ++cell) {
         const std::size_t begin = report.failures.size();
-        for (const Run* run : rows[cell]) {
+        for (const RunFigures* run : rows[cell]) {
             if (run == nullptr || run->holds()) {
                 continue;
             }
@@ -209,8 +232,8 @@ void list_failures(const std::vector<Row>& rows, CampaignReport& report) {
                                       : report.failures.emplace_back(FailureGroup{
                                             report.cells[cell].experiment, report.cells[cell].planner, cause, {}, {}});
             group.seeds.push_back(run->seed);
-            if (run->nearest_approach_m) {
-                group.nearest_approach_m.push_back(*run->nearest_approach_m);
+            if (!std::isnan(run->nearest_approach_m)) {
+                group.nearest_approach_m.push_back(run->nearest_approach_m);
             }
         }
     }
@@ -280,7 +303,33 @@ void find_margins(CampaignReport& report) {
     }
 }
 
+/// The machines of all runs, those with most runs first.
+std::vector<MachineFigures> machines_of(const std::vector<RunFigures>& runs) {
+    std::map<Machine, std::vector<double>> loads;
+    for (const RunFigures& run : runs) {
+        if (run.machine != nullptr) {
+            loads[*run.machine].push_back(run.load);
+        }
+    }
+    std::vector<MachineFigures> machines;
+    for (auto& [machine, of] : loads) {
+        const std::size_t count = of.size();
+        const double max_load = *std::max_element(of.begin(), of.end());
+        machines.push_back({machine, count, quantile(std::move(of), 0.5), max_load});
+    }
+    std::stable_sort(machines.begin(), machines.end(), [](const auto& a, const auto& b) { return a.runs > b.runs; });
+    return machines;
+}
+
 }  // namespace
+
+std::size_t CampaignReport::processor_models() const {
+    std::set<std::string> models;
+    for (const MachineFigures& of : machines) {
+        models.insert(of.machine.processor);
+    }
+    return models.size();
+}
 
 bool CampaignReport::has_worlds() const {
     return std::any_of(cells.begin(), cells.end(), [](const CellFigures& cell) { return cell.in_worlds.has_any(); });
@@ -290,17 +339,17 @@ bool CampaignReport::meets_its_targets() const {
     return std::all_of(targets.begin(), targets.end(), [](const TargetResult& target) { return target.is_met; });
 }
 
-CampaignReport report_of(const CampaignResults& results) {
+CampaignReport report_of(const CampaignPlan& plan, const std::vector<RunFigures>& runs) {
     CampaignReport report;
-    report.plan = results.plan;
-    report.done = results.runs.size();
+    report.plan = plan;
+    report.done = runs.size();
     const std::size_t planners = report.plan.planners.size();
     std::map<std::uint32_t, std::size_t> place_of_seed;
     for (const std::uint32_t seed : report.plan.seeds) {
         place_of_seed.emplace(seed, place_of_seed.size());
     }
     std::vector<Row> rows(report.plan.experiments.size() * planners, Row(report.plan.seeds.size(), nullptr));
-    for (const Run& run : results.runs) {
+    for (const RunFigures& run : runs) {
         if (const auto place = place_of_seed.find(run.seed); place != place_of_seed.end()) {
             rows.at(run.experiment * planners + run.planner).at(place->second) = &run;
         }
@@ -313,7 +362,25 @@ CampaignReport report_of(const CampaignResults& results) {
     list_failures(rows, report);
     find_margins(report);
     check_targets(rows, report);
+    report.machines = machines_of(runs);
     return report;
+}
+
+CampaignReport report_of(const CampaignResults& results) {
+    FiguresMaker maker;
+    std::vector<RunFigures> runs;
+    for (const Run& run : results.runs) {
+        runs.push_back(maker.figures_of(run));
+    }
+    return report_of(results.plan, runs);
+}
+
+CampaignReport read_report(const std::filesystem::path& folder) {
+    FiguresMaker maker;
+    std::vector<RunFigures> runs;
+    const CampaignPlan plan = read_runs(
+        folder, [](const CampaignPlan&) {}, [&](const Run& run) { runs.push_back(maker.figures_of(run)); });
+    return report_of(plan, runs);
 }
 
 }  // namespace downwash::bench

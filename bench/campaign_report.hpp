@@ -1,10 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/run_figures.hpp"
 #include "downwash/bench/statistics.hpp"
 
 namespace downwash::bench {
@@ -27,9 +29,16 @@ struct SolvedAt {
     Share solved;
 };
 
+/// How many seeds have a flight that held and cost no more.
+struct HeldAt {
+    double cost = 0;
+    std::size_t held = 0;
+};
+
 /// The result of one seed.
 struct SeedFigures {
     std::uint32_t seed = 0;
+    std::size_t place = 0;        ///< among the campaign's seeds
     std::string cause;            ///< why there is no flight that held; empty when there is
     double first_solution_s = 0;  ///< infinite without a solution, as is flown_cost without a flight that held
     double answer_s = 0;
@@ -72,9 +81,11 @@ struct CellFigures {
     Spread flown_cost;           ///< of the flights that held
     double min_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
     std::uint64_t discarded = 0;
-    std::vector<CostAt> cost_over_time;      ///< at cost_moments_s; empty where searches stop at the first solution
-    std::vector<CostAt> cost_curve;          ///< the same at moments close enough to draw
-    std::vector<SolvedAt> solved_over_time;  ///< a step for every first solution, in the order of time
+    std::vector<CostAt> cost_over_time;  ///< at cost_moments_s; empty where searches stop at the first solution
+    std::vector<CostAt> cost_curve;      ///< the same at moments close enough to draw
+    /// A step for every first solution, in the order of time; evenly chosen ones of more than max_steps.
+    std::vector<SolvedAt> solved_over_time;
+    std::vector<HeldAt> held_over_cost;  ///< the same for executed costs
     WorldsFigures in_worlds;
     std::vector<SeedFigures> seeds;  ///< that were attempted
 };
@@ -128,6 +139,13 @@ struct TargetResult {
     bool is_met = false;
 };
 
+/// A machine on which runs were made.
+struct MachineFigures {
+    Machine machine;
+    std::size_t runs = 0;
+    double median_load = 0, max_load = 0;
+};
+
 /// The results of a campaign, in figures.
 struct CampaignReport {
     CampaignPlan plan;
@@ -138,17 +156,29 @@ struct CampaignReport {
     std::vector<MarginFinding> margins;  ///< empty unless the campaign sweeps margins
     std::vector<FailureGroup> failures;
     std::vector<TargetResult> targets;
+    std::vector<MachineFigures> machines;  ///< those with most runs first; empty if they were not recorded
 
+    /// How many models of processors the runs were made on; 0 if that was not recorded. Times of several models are
+    /// not comparable, and a report that pools them says so.
+    [[nodiscard]] std::size_t processor_models() const;
     /// Whether plans were tested for certificates or flown in worlds.
     [[nodiscard]] bool has_worlds() const;
     /// Whether every target is met; false too while runs are missing and there is a target.
     [[nodiscard]] bool meets_its_targets() const;
 };
 
+/// How many steps a curve of a report has at most.
+inline constexpr std::size_t max_steps = 1000;
+
 /// Moments at which costs are compared [s].
 inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 
+[[nodiscard]] CampaignReport report_of(const CampaignPlan& plan, const std::vector<RunFigures>& runs);
 [[nodiscard]] CampaignReport report_of(const CampaignResults& results);
+
+/// The report of what a campaign has left in a folder. It needs some 0.5 kB of memory for a run.
+/// @throws CampaignError, DatabaseError as read_results()
+[[nodiscard]] CampaignReport read_report(const std::filesystem::path& folder);
 
 /// The report as a Markdown document.
 [[nodiscard]] std::string markdown_of(const CampaignReport& report);
@@ -156,6 +186,10 @@ inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 /// The same figures as JSON (`downwash/campaign-report/v1`), with those of every seed; null for what is infinite or
 /// missing.
 [[nodiscard]] std::string json_of(const CampaignReport& report);
+
+/// The same for a page, which has to stay small: of more than a few thousand seeds and steps it has evenly chosen ones,
+/// and `seed_step` says of how many seeds one is there.
+[[nodiscard]] std::string page_json_of(const CampaignReport& report);
 
 /// The table of a paper: LaTeX for the package booktabs, a row for every problem and planner.
 [[nodiscard]] std::string latex_of(const CampaignReport& report);

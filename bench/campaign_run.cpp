@@ -14,6 +14,7 @@
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/plan_evaluation.hpp"
+#include "downwash/bench/saved_copy.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
@@ -56,8 +57,9 @@ std::string target_text(const CampaignExpectation& target) {
     return text;
 }
 
-int job_count(const Campaign& campaign) {
-    return static_cast<int>(campaign.jobs.value_or(std::min(processor_count(), 256U)));
+/// Shards run on many computers under one setting: what one of them has says nothing about the others.
+int job_count(const Campaign& campaign, bool is_sharded) {
+    return static_cast<int>(campaign.jobs.value_or(is_sharded ? 1U : std::min(processor_count(), 256U)));
 }
 
 std::optional<double> time_limit_of(const Campaign& campaign) {
@@ -65,7 +67,7 @@ std::optional<double> time_limit_of(const Campaign& campaign) {
                                    : std::optional(campaign.time_limit_s.value_or(default_time_limit_s));
 }
 
-std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign& read) {
+std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign& read, bool is_sharded) {
     const Campaign& c = read.campaign;
     const auto number_or_none = [](const std::optional<double>& value) { return value ? to_text(*value) : "none"; };
     std::vector<std::pair<std::string, std::string>> settings{
@@ -73,9 +75,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"description", c.description.empty() ? "none" : c.description},
         {"version", std::string(version())},
         {"commit", std::string(source_commit())},
-        {"host", host_name()},
-        {"processor", processor()},
-        {"jobs", std::to_string(job_count(c))},
+        {"jobs", std::to_string(job_count(c, is_sharded))},
         {"time_limit_s", number_or_none(time_limit_of(c))},
         {"max_iterations", c.max_iterations ? std::to_string(*c.max_iterations) : "none"},
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
@@ -88,6 +88,9 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"margins_m", c.margins_m ? listed(*c.margins_m, [](double m) { return to_text(m); }) : "each problem's own"},
         {"parameters", c.parameters.empty() ? "each problem's own" : listed_sets(c.parameters)},
         {"seeds", seeds_text(c.seeds.all())}};
+    if (!is_sharded) {  // continued on this computer only
+        settings.insert(settings.begin() + 4, {{"host", host_name()}, {"processor", processor()}});
+    }
     for (const Problem& problem : read.problems) {
         settings.emplace_back("problem " + problem.name, problem_sha256(problem));
     }
@@ -146,13 +149,15 @@ struct Task {
 };
 
 /// Seeds outermost, so that an interrupted campaign has about as many runs of every planner.
-std::vector<Task> missing_runs(const CampaignPlan& plan, const CampaignStore& store) {
+/// @param shard its number, from 1; empty: all runs
+std::vector<Task> runs_of(const CampaignPlan& plan, std::optional<std::uint64_t> shard) {
+    const std::optional<ShardAssignment> shards = shard ? std::optional(ShardAssignment(plan)) : std::nullopt;
     std::vector<Task> tasks;
-    for (const std::uint32_t seed : plan.seeds) {
+    for (std::size_t s = 0; s < plan.seeds.size(); ++s) {
         for (std::size_t e = 0; e < plan.experiments.size(); ++e) {
             for (std::size_t p = 0; p < plan.planners.size(); ++p) {
-                if (!store.has(e, p, seed)) {
-                    tasks.push_back({e, p, seed});
+                if (!shards || shards->shard_of(e, p, s) == *shard) {
+                    tasks.push_back({e, p, plan.seeds[s]});
                 }
             }
         }
@@ -243,10 +248,10 @@ static_assert(static_cast<int>(RunStatus::solved) == static_cast<int>(Status::so
 
 }  // namespace
 
-CampaignPlan plan_of(const ReadCampaign& read) {
+CampaignPlan plan_of(const ReadCampaign& read, const std::optional<ShardRequest>& shard) {
     const Campaign& c = read.campaign;
     CampaignPlan plan;
-    plan.settings = settings_of(read);
+    plan.settings = settings_of(read, shard.has_value());
     for (const Problem& problem : read.problems) {
         for (const CostFunction& objective : objectives_of(c, problem)) {
             plan.experiments.push_back({problem.name, text_of(objective)});
@@ -282,14 +287,24 @@ CampaignPlan plan_of(const ReadCampaign& read) {
     plan.time_limit_s = time_limit_of(c);
     plan.stop_at_first_solution = c.stop_at_first_solution;
     plan.evaluation_worlds = c.evaluation_worlds;
+    if (shard) {
+        plan.shards = shard_plan_of(plan, *shard);
+        plan.settings.emplace_back("shards", std::to_string(plan.shards->count));
+        plan.settings.emplace_back("shard_costs", costs_text(*plan.shards));
+    }
     return plan;
 }
 
 CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions& options) {
-    const CampaignPlan plan = plan_of(read);
-    CampaignStore store(options.out, plan, options.resumes);
-    const std::vector<Task> tasks = missing_runs(plan, store);
-    const int jobs = job_count(read.campaign);
+    const CampaignPlan plan = plan_of(read, options.shard);
+    const auto shard = options.shard ? std::optional(options.shard->number) : std::nullopt;
+    SavedCopy saved(options.out, options.saved);
+    saved.restore();
+    CampaignStore store(options.out, plan, options.resumes, shard);
+    std::vector<Task> tasks = runs_of(plan, shard);
+    const std::size_t planned = tasks.size();
+    std::erase_if(tasks, [&](const Task& task) { return store.has(task.experiment, task.planner, task.seed); });
+    const int jobs = job_count(read.campaign, shard.has_value());
 
     std::vector<Problem> problems;                     // one for each experiment
     std::vector<std::shared_ptr<const AeroMap>> maps;  // empty where each run reads it from the cache, as programs do
@@ -343,22 +358,30 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                               evaluations[task.experiment].get());
             run.experiment = task.experiment;
             run.planner = task.planner;
+            run.made_on = RunMachine{this_machine(), system_load()};
             const std::scoped_lock lock(writing);
             if (!options.stop.stop_requested()) {
                 store.add(run);
+                saved.save_now_and_then();
             }
         } catch (const std::bad_alloc&) {  // not finished: --resume repeats it
             ++out_of_memory;
         }
     };
     const double earlier = static_cast<double>(store.size());
-    run_parallel(tasks.size(), jobs, do_task, [&](double share) {
+    const auto on_progress = [&](double share) {
         if (options.on_progress) {
-            options.on_progress((earlier + share * static_cast<double>(tasks.size())) /
-                                static_cast<double>(plan.run_count()));
+            options.on_progress((earlier + share * static_cast<double>(tasks.size())) / static_cast<double>(planned));
         }
-    });
-    return {plan.run_count(), store.size(), out_of_memory};
+    };
+    try {
+        run_parallel(tasks.size(), jobs, do_task, on_progress);
+    } catch (...) {
+        saved.save();
+        throw;
+    }
+    saved.save();
+    return {planned, store.size(), out_of_memory};
 }
 
 }  // namespace downwash::bench

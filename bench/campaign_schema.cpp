@@ -4,13 +4,14 @@
 
 #include "downwash/base/version.hpp"
 #include "downwash/bench/campaign_checksums.hpp"
+#include "downwash/bench/machine.hpp"
 
 namespace downwash::bench {
 namespace {
 
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 6;
+constexpr std::uint64_t layout_version = 7;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -75,6 +76,19 @@ CREATE TABLE expectations (
   first_certified_median_s REAL);
 )";
 
+/// What layout 7 has in addition.
+constexpr const char* layout_of_machines = R"(
+CREATE TABLE machines (
+  id INTEGER PRIMARY KEY, host TEXT NOT NULL, processor TEXT NOT NULL, instruction_set TEXT NOT NULL,
+  UNIQUE (host, processor, instruction_set));
+CREATE TABLE run_machines (
+  runid INTEGER PRIMARY KEY, machineid INTEGER NOT NULL, load REAL NOT NULL,
+  FOREIGN KEY (runid) REFERENCES runs(id) ON DELETE CASCADE,
+  FOREIGN KEY (machineid) REFERENCES machines(id));
+CREATE TABLE shard (count INTEGER NOT NULL, number INTEGER);
+CREATE TABLE shard_costs (place INTEGER PRIMARY KEY, microseconds INTEGER NOT NULL);
+)";
+
 /// In the order of CampaignExpectation.
 constexpr const char* expectation_columns =
     "variant, algorithm, solved_ratio, failed_flights, first_solution_median_s, first_solution_95_s, "
@@ -103,8 +117,8 @@ void write_what_runs(const Database& database, const CampaignPlan& plan) {
             "INSERT INTO experiments (name, totaltime, timelimit, runcount, version, hostname, cpuinfo, date, seed, "
             "setup, problem, objective) VALUES (?, 0, ?, ?, ?, ?, ?, datetime('now'), ?, ?, ?, ?)",
             experiment.name(), plan.time_limit_s, std::uint64_t{plan.seeds.size()},
-            "Downwash " + std::string(version()), setting(plan, "host"), setting(plan, "processor"),
-            std::to_string(plan.seeds.at(0)), all_settings(plan), experiment.problem, experiment.objective);
+            "Downwash " + std::string(version()), host_name(), processor(), std::to_string(plan.seeds.at(0)),
+            all_settings(plan), experiment.problem, experiment.objective);
     }
     for (std::size_t i = 0; i < plan.planners.size(); ++i) {
         const PlannerSetup& planner = plan.planners[i];
@@ -117,13 +131,46 @@ void write_what_runs(const Database& database, const CampaignPlan& plan) {
     }
 }
 
+using Schema = std::vector<std::array<std::string, 4>>;
+
 /// Every table, index, view and trigger as it was made.
-std::vector<std::array<std::string, 4>> schema_of(const Database& database) {
-    std::vector<std::array<std::string, 4>> schema;
+Schema schema_of(const Database& database) {
+    Schema schema;
     database.for_each<std::string, std::string, std::string, std::string>(
         "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY name",
         [&](const auto&... columns) { schema.push_back({columns...}); });
     return schema;
+}
+
+/// The same as we make it.
+const Schema& our_schema(bool has_machines) {
+    const auto make = [](bool with_machines) {
+        const Database ours(":memory:", true);
+        ours.execute(layout);
+        if (with_machines) {
+            ours.execute(layout_of_machines);
+        }
+        return schema_of(ours);
+    };
+    static const Schema former = make(false), present = make(true);
+    return has_machines ? present : former;
+}
+
+void write_shards(const Database& database, const ShardPlan& shards, std::optional<std::uint64_t> number) {
+    database.insert("shard", shards.count, number);
+    for (const std::uint64_t cost_us : shards.cell_costs_us) {
+        database.insert("shard_costs (microseconds)", cost_us);
+    }
+}
+
+void read_shards(const Database& database, CampaignPlan& plan) {
+    database.for_each<std::uint64_t>("SELECT count FROM shard", [&](std::uint64_t count) {
+        plan.shards = ShardPlan{count, {}};
+    });
+    if (plan.shards) {
+        database.for_each<std::uint64_t>("SELECT microseconds FROM shard_costs ORDER BY place",
+                                         [&](std::uint64_t cost_us) { plan.shards->cell_costs_us.push_back(cost_us); });
+    }
 }
 
 }  // namespace
@@ -136,27 +183,49 @@ void require_layout(const Database& database, const std::filesystem::path& file)
     if (database.number("PRAGMA application_id") != application_id) {
         throw CampaignError(file.string() + " holds no results of a campaign; choose another folder");
     }
-    if (const std::uint64_t found = database.number("PRAGMA user_version"); found != layout_version) {
+    if (const std::uint64_t found = database.number("PRAGMA user_version");
+        found != layout_version && found != layout_without_machines) {
         throw CampaignError(file.string() + " holds no results that this version can read: its layout is number " +
                             std::to_string(found) + ", not " + std::to_string(layout_version) +
                             ". Report it with the version of downwash that wrote it, or run the campaign again into "
                             "another folder");
     }
     // A table may be a view that never ends, or have triggers that change what we read.
-    const Database ours(":memory:", true);
-    ours.execute(layout);
-    if (schema_of(database) != schema_of(ours)) {
+    const bool has_machines = database.number("PRAGMA user_version") != layout_without_machines;
+    if (schema_of(database) != our_schema(has_machines)) {
         throw CampaignError(file.string() +
                             " has other tables than `downwash bench run` makes: it is damaged, or another program "
                             "wrote into it. Restore it from a copy, or run the campaign again into another folder");
     }
 }
 
-void write_plan(const Database& database, const CampaignPlan& plan) {
+void require_present_layout(const Database& database, const std::filesystem::path& file) {
+    if (database.number("PRAGMA user_version") != layout_version) {
+        throw CampaignError(file.string() +
+                            " was begun by an earlier version of downwash, which did not record the machine of each "
+                            "run. `downwash bench report` reads it; to add runs, run the campaign again into another "
+                            "folder");
+    }
+}
+
+std::optional<std::uint64_t> shard_number(const Database& database) {
+    std::optional<std::uint64_t> number;
+    if (database.number("PRAGMA user_version") == layout_version) {
+        database.for_each<std::optional<std::uint64_t>>("SELECT number FROM shard",
+                                                        [&](const auto& found) { number = found; });
+    }
+    return number;
+}
+
+void write_plan(const Database& database, const CampaignPlan& plan, std::optional<std::uint64_t> shard) {
     database.execute("PRAGMA application_id = " + std::to_string(application_id));
     database.execute("PRAGMA user_version = " + std::to_string(layout_version));
     database.execute(layout);
+    database.execute(layout_of_machines);
     write_what_runs(database, plan);
+    if (plan.shards) {
+        write_shards(database, *plan.shards, shard);
+    }
     for (const CampaignExpectation& target : plan.expectations) {
         database.insert("expectations (" + std::string(expectation_columns) + ")", downwash::name_of(target.variant),
                         target.algorithm, target.solved_ratio, target.failed_flights, target.first_solution_median_s,
@@ -219,6 +288,9 @@ CampaignPlan read_plan(const Database& database, const std::filesystem::path& fi
             plan.stop_at_first_solution = stops != 0;
             plan.evaluation_worlds = worlds;
         });
+    if (database.number("PRAGMA user_version") != layout_without_machines) {
+        read_shards(database, plan);
+    }
     std::string checksum;
     database.for_each<Text>("SELECT checksum FROM campaign_checksum", [&](const Text& found) { checksum = found; });
     if (checksum != checksum_of(plan)) {

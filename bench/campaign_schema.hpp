@@ -21,11 +21,22 @@ inline constexpr const char* results_file = "campaign.db";
 /// Whether nothing was written yet: SQLite makes an empty file, and a kill may leave one.
 [[nodiscard]] bool is_new(const Database& database);
 
-/// @throws CampaignError unless the file has exactly the tables of this version
+/// The layout of versions that did not record the machine of each run. It can be read, but not continued.
+inline constexpr std::uint64_t layout_without_machines = 6;
+
+/// @throws CampaignError unless the file has exactly the tables of a layout that this version reads
 void require_layout(const Database& database, const std::filesystem::path& file);
 
+/// @throws CampaignError unless runs can be added to the file. @pre require_layout()
+void require_present_layout(const Database& database, const std::filesystem::path& file);
+
 /// Makes the tables and writes what is going to run. @pre is_new(database)
-void write_plan(const Database& database, const CampaignPlan& plan);
+/// @param shard its number, if the file is going to hold a shard alone
+void write_plan(const Database& database, const CampaignPlan& plan, std::optional<std::uint64_t> shard);
+
+/// The number of the shard that a file holds; empty where it holds none, or several that were merged.
+/// @pre require_layout()
+[[nodiscard]] std::optional<std::uint64_t> shard_number(const Database& database);
 
 /// @throws CampaignError when what is read is not what was written
 [[nodiscard]] CampaignPlan read_plan(const Database& database, const std::filesystem::path& file);

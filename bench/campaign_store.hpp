@@ -1,14 +1,34 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <set>
-#include <tuple>
+#include <utility>
 
 #include "downwash/bench/campaign_data.hpp"
+#include "downwash/bench/campaign_runs.hpp"
 #include "downwash/bench/campaign_schema.hpp"
 #include "downwash/bench/database.hpp"
 
 namespace downwash::bench {
+
+/// Device and inode.
+using FileIdentity = std::pair<std::uint64_t, std::uint64_t>;
+
+/// Locks a folder for this process, and makes it if need be.
+class CampaignLock {
+ public:
+    /// @throws CampaignError when another process holds it, or there can be no such folder
+    explicit CampaignLock(const std::filesystem::path& folder);
+    ~CampaignLock();
+    CampaignLock(const CampaignLock&) = delete;
+    CampaignLock& operator=(const CampaignLock&) = delete;
+
+ private:
+    int descriptor_;
+};
 
 /// The results of a campaign on disk: one SQLite file with the tables of OMPL's Planner Arena (experiments,
 /// plannerConfigs, enums, runs, progress) and our own. A run that was added stays, whatever happens next.
@@ -17,8 +37,10 @@ class CampaignStore {
     /// Begins the results of a campaign in a folder, or continues those that are there.
     /// @param resumes whether existing results may be continued; they are an error otherwise. Runs in them that are
     /// damaged are removed and missing then
+    /// @param shard its number, if the results are those of a shard
     /// @throws CampaignError when they were begun with other settings, or another program is running the campaign
-    CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes);
+    CampaignStore(const std::filesystem::path& folder, const CampaignPlan& plan, bool resumes,
+                  std::optional<std::uint64_t> shard = std::nullopt);
     ~CampaignStore();
     CampaignStore(const CampaignStore&) = delete;
     CampaignStore& operator=(const CampaignStore&) = delete;
@@ -29,26 +51,25 @@ class CampaignStore {
     }
     [[nodiscard]] std::size_t size() const noexcept { return done_.size(); }
 
-    /// Adds a run and commits it. @throws DatabaseError when it cannot be written
+    /// Adds a run and commits it.
+    /// @throws DatabaseError when it cannot be written   @throws CampaignError when the file was taken away
     void add(const Run& finished);
 
  private:
-    /// Locks a folder for this process.
-    class FolderLock {
-     public:
-        explicit FolderLock(const std::filesystem::path& folder);
-        ~FolderLock();
-        FolderLock(const FolderLock&) = delete;
-        FolderLock& operator=(const FolderLock&) = delete;
-
-     private:
-        int descriptor_;
-    };
-
-    FolderLock lock_;
+    CampaignLock lock_;
+    std::filesystem::path file_;
     Database database_;
-    std::set<std::tuple<std::size_t, std::size_t, std::uint32_t>> done_;
+    FileIdentity identity_;
+    RunWriter writer_;
+    std::set<RunKey> done_;
 };
+
+/// Reads what a campaign has left in a folder, finished or not, one run after the other.
+/// @param begin gets the plan first   @param take gets every run, in the order in which they were added
+/// @return the plan
+/// @throws CampaignError, DatabaseError as read_results(), after the last run that is whole
+CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<void(const CampaignPlan&)>& begin,
+                       const std::function<void(Run&&)>& take);
 
 /// Reads what a campaign has left in a folder, finished or not.
 /// @throws CampaignError, DatabaseError: no such file, another layout, a file that was changed or damaged; the message

@@ -26,20 +26,20 @@ WorldsFigures worlds_of(const Row& row) {
     WorldsFigures figures;
     std::size_t attempts = 0, certified = 0;
     std::uint64_t flights = 0, failures = 0;
-    for (const Run* run : row) {
+    for (const RunFigures* run : row) {
         if (run == nullptr) {
             continue;
         }
         ++attempts;
-        if (run->certificate) {
+        if (run->is_certified) {
             ++figures.tested;
-            certified += run->certificate->is_given ? 1 : 0;
+            certified += *run->is_certified ? 1 : 0;
         }
-        if (run->in_worlds) {
+        if (run->worlds > 0) {
             ++figures.flown;
-            flights += run->in_worlds->worlds;
-            failures += run->in_worlds->failures;
-            for (const ParameterFlights& alone : run->in_worlds->alone) {
+            flights += run->worlds;
+            failures += run->failures_in_worlds;
+            for (const ParameterFlights& alone : *run->alone) {
                 if (run->holds()) {
                     count(alone, figures.alone);
                 }

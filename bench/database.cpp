@@ -126,6 +126,20 @@ Database::Statement Database::prepare(std::string_view sql) const {
     return Statement(prepared);
 }
 
+const Database::Statement& Database::kept(std::string_view sql) const {
+    auto found = kept_.find(sql);
+    if (found == kept_.end()) {
+        found = kept_.emplace(std::string(sql), prepare(sql)).first;
+    }
+    *work_left_ = max_work_;
+    return found->second;
+}
+
+Database::Prepared::~Prepared() {
+    sqlite3_reset(statement_.get());  // an error of the statement was reported when it was run
+    sqlite3_clear_bindings(statement_.get());
+}
+
 bool Database::step(const Statement& statement) const {
     const int result = sqlite3_step(statement.get());
     if (result != SQLITE_ROW && result != SQLITE_DONE) {

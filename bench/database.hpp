@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -21,7 +23,7 @@ struct DatabaseError : std::runtime_error {
 };
 
 /// A file of results grows no larger, and larger ones are not read [bytes].
-inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 30U;
+inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 32U;
 /// The same for one of its texts.
 inline constexpr int max_database_text_bytes = 1 << 24U;
 
@@ -37,10 +39,10 @@ class Database {
     /// Runs one statement; the values are those of its question marks.
     template <class... Values>
     void run(std::string_view sql, const Values&... values) const {
-        const Statement statement = prepare(sql);
+        const Prepared prepared(*this, sql);
         int parameter = 0;
-        (bind(statement, ++parameter, values), ...);
-        while (step(statement)) {
+        (bind(prepared.statement(), ++parameter, values), ...);
+        while (step(prepared.statement())) {
         }
     }
 
@@ -71,6 +73,9 @@ class Database {
     /// Runs several statements without values.
     void execute(const std::string& sql) const;
 
+    /// Its name, for messages.
+    [[nodiscard]] const std::string& file() const noexcept { return file_; }
+
     /// Key of the row that was inserted last.
     [[nodiscard]] std::uint64_t last_key() const;
 
@@ -81,7 +86,21 @@ class Database {
     };
     using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 
+    /// A statement that is kept for the next run() of the same text, during one of these.
+    class Prepared {
+     public:
+        Prepared(const Database& database, std::string_view sql) : statement_(database.kept(sql)) {}
+        ~Prepared();
+        Prepared(const Prepared&) = delete;
+        Prepared& operator=(const Prepared&) = delete;
+        [[nodiscard]] const Statement& statement() const { return statement_; }
+
+     private:
+        const Statement& statement_;
+    };
+
     [[nodiscard]] Statement prepare(std::string_view sql) const;
+    [[nodiscard]] const Statement& kept(std::string_view sql) const;
     [[nodiscard]] bool step(const Statement& statement) const;
     void bind(const Statement& statement, int parameter, double value) const;
     void bind(const Statement& statement, int parameter, std::uint64_t value) const;
@@ -112,6 +131,7 @@ class Database {
     std::uint64_t max_work_ = 0;                ///< of one statement, in steps of SQLite's virtual machine
     std::unique_ptr<std::uint64_t> work_left_;  ///< of the present one
     std::unique_ptr<sqlite3, Close> database_;
+    mutable std::map<std::string, Statement, std::less<>> kept_;  ///< by their texts
 };
 
 /// All that is written during its lifetime, or none of it. All that is read is of one moment.

@@ -5,11 +5,19 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/bench/campaign_report.hpp"
+#include "downwash/bench/campaign_rows.hpp"
 
 namespace downwash::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// How much of a report is written.
+struct Detail {
+    std::size_t seed_step = 1;  ///< one of so many seeds
+    std::size_t max_steps = SIZE_MAX;
+    std::size_t max_failed_seeds = SIZE_MAX;  ///< of one cause
+};
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value + 0.0) : Json();  // no "-0.0"
@@ -54,6 +62,10 @@ Json steps_json(const std::vector<SolvedAt>& steps) {
     });
 }
 
+Json held_json(const std::vector<HeldAt>& steps) {
+    return list_json(steps, [](const HeldAt& at) -> Json { return {{"cost", at.cost}, {"held", at.held}}; });
+}
+
 /// Null where no plan was tested or flown in worlds.
 Json worlds_json(const WorldsFigures& figures) {
     if (!figures.has_any()) {
@@ -72,14 +84,17 @@ Json worlds_json(const WorldsFigures& figures) {
              })}};
 }
 
-/// By column.
-Json seeds_json(const std::vector<SeedFigures>& seeds) {
+/// By column. Chosen by seed, so that all planners have the same ones.
+Json seeds_json(const std::vector<SeedFigures>& seeds, std::size_t step) {
     Json columns;
     for (const char* name :
          {"seed", "cause", "first_solution_s", "whole_run_s", "flown_cost", "certified", "failures_in_worlds"}) {
         columns[name] = Json::array();
     }
     for (const SeedFigures& of : seeds) {
+        if (of.place % step != 0) {
+            continue;
+        }
         columns["seed"].push_back(of.seed);
         columns["cause"].push_back(of.cause.empty() ? Json() : Json(of.cause));
         columns["first_solution_s"].push_back(number(of.first_solution_s));
@@ -91,7 +106,7 @@ Json seeds_json(const std::vector<SeedFigures>& seeds) {
     return columns;
 }
 
-Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
+Json cell_json(const CampaignPlan& plan, const CellFigures& cell, const Detail& detail) {
     Json causes = Json::object();
     for (const auto& [cause, count] : cell.failures_by_cause) {
         causes[cause] = count;
@@ -118,9 +133,10 @@ Json cell_json(const CampaignPlan& plan, const CellFigures& cell) {
             {"discarded", cell.discarded},
             {"cost_over_time", costs_json(cell.cost_over_time)},
             {"cost_curve", costs_json(cell.cost_curve)},
-            {"solved_over_time", steps_json(cell.solved_over_time)},
+            {"solved_over_time", steps_json(evenly_chosen(cell.solved_over_time, detail.max_steps))},
+            {"held_over_cost", held_json(evenly_chosen(cell.held_over_cost, detail.max_steps))},
             {"in_worlds", worlds_json(cell.in_worlds)},
-            {"seeds", seeds_json(cell.seeds)}};
+            {"seeds", seeds_json(cell.seeds, detail.seed_step)}};
 }
 
 Json totals_json(const CampaignPlan& plan, const PlannerTotals& totals) {
@@ -171,7 +187,7 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
 
 /// A setting as what it is: a number, true or false, text; null for a limit that there is not.
 Json setting_json(std::string_view name, const std::string& value) {
-    constexpr std::string_view numbers[] = {"jobs", "time_limit_s", "max_iterations", "evaluation_worlds"};
+    constexpr std::string_view numbers[] = {"jobs", "shards", "time_limit_s", "max_iterations", "evaluation_worlds"};
     constexpr std::string_view flags[] = {"stop_at_first_solution", "as_believed"};
     if (std::ranges::find(flags, name) != std::end(flags)) {
         return value == "true";
@@ -185,9 +201,25 @@ Json setting_json(std::string_view name, const std::string& value) {
     return optional_json(parse_number<double>(value));
 }
 
-}  // namespace
+Json failure_json(const CampaignPlan& plan, const FailureGroup& failure, const Detail& detail) {
+    const bool is_whole = failure.seeds.size() <= detail.max_failed_seeds;
+    std::vector<double> distances_m = failure.nearest_approach_m;
+    if (!is_whole && !distances_m.empty()) {  // the page shows their range
+        const auto [min, max] = std::minmax_element(distances_m.begin(), distances_m.end());
+        distances_m = {*min, *max};
+    }
+    return {{"experiment", plan.experiments[failure.experiment].name()},
+            {"planner", plan.planners[failure.planner].name()},
+            {"cause", failure.cause},
+            {"count", failure.seeds.size()},
+            {"seeds", is_whole ? failure.seeds
+                               : std::vector<std::uint32_t>(
+                                     failure.seeds.begin(),
+                                     failure.seeds.begin() + static_cast<std::ptrdiff_t>(detail.max_failed_seeds))},
+            {"nearest_approach_m", distances_m}};
+}
 
-std::string json_of(const CampaignReport& report) {
+Json document_of(const CampaignReport& report, const Detail& detail) {
     const CampaignPlan& plan = report.plan;
     Json document{{"schema", "downwash/campaign-report/v1"}};
     for (const auto& [name, value] : plan.settings) {
@@ -199,18 +231,22 @@ std::string json_of(const CampaignReport& report) {
     document["stop_at_first_solution"] = plan.stop_at_first_solution;
     document["evaluation_worlds"] = plan.evaluation_worlds;
     document["left_out"] = plan.left_out;
+    document["processor_models"] = report.processor_models();
+    document["machines"] = list_json(report.machines, [](const MachineFigures& of) -> Json {
+        return {{"host", of.machine.host},
+                {"processor", of.machine.processor},
+                {"instruction_set", of.machine.instruction_set},
+                {"runs", of.runs},
+                {"median_load", of.median_load},
+                {"max_load", of.max_load}};
+    });
     document["totals"] = list_json(report.totals, [&](const auto& totals) { return totals_json(plan, totals); });
-    document["cells"] = list_json(report.cells, [&](const auto& cell) { return cell_json(plan, cell); });
+    document["cells"] = list_json(report.cells, [&](const auto& cell) { return cell_json(plan, cell, detail); });
     document["comparisons"] =
         list_json(report.comparisons, [&](const auto& comparison) { return comparison_json(plan, comparison); });
     document["margins"] = list_json(report.margins, [&](const auto& finding) { return margin_json(plan, finding); });
-    document["failures"] = list_json(report.failures, [&](const FailureGroup& failure) -> Json {
-        return {{"experiment", plan.experiments[failure.experiment].name()},
-                {"planner", plan.planners[failure.planner].name()},
-                {"cause", failure.cause},
-                {"seeds", failure.seeds},
-                {"nearest_approach_m", failure.nearest_approach_m}};
-    });
+    document["failures"] =
+        list_json(report.failures, [&](const auto& failure) { return failure_json(plan, failure, detail); });
     document["bars"] = list_json(report.targets, [&](const TargetResult& target) -> Json {
         return {{"experiment", plan.experiments[target.experiment].name()},
                 {"planner", plan.planners[target.planner].name()},
@@ -218,7 +254,26 @@ std::string json_of(const CampaignReport& report) {
                 {"found", target.found},
                 {"kept", target.is_met}};
     });
-    return document.dump(2, ' ', false, Json::error_handler_t::replace);
+    document["seed_step"] = detail.seed_step;
+    return document;
+}
+
+}  // namespace
+
+std::string json_of(const CampaignReport& report) {
+    return document_of(report, {}).dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string page_json_of(const CampaignReport& report) {
+    // All that is drawn has to be laid out by a browser within a second or two.
+    constexpr std::size_t max_seeds = 5000, page_steps = 10000, min_steps = 20, max_failed_seeds = 200;
+    Detail detail;
+    if (report.done > max_seeds) {
+        detail.seed_step = (report.done + max_seeds - 1) / max_seeds;
+        detail.max_steps = std::max(min_steps, page_steps / report.cells.size());
+        detail.max_failed_seeds = max_failed_seeds;
+    }
+    return document_of(report, detail).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace downwash::bench

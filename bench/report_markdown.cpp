@@ -87,6 +87,7 @@ class Document {
         costs();
         comparisons();
         failures();
+        machines();
         return text_;
     }
 
@@ -118,6 +119,16 @@ class Document {
     [[nodiscard]] std::string experiment(std::size_t number) const { return in_cell(plan_.experiments[number].name()); }
     [[nodiscard]] std::string planner(std::size_t number) const { return in_cell(plan_.planners[number].name()); }
 
+    /// Of merged shards the settings name no processor.
+    [[nodiscard]] std::string processors() const {
+        const std::size_t models = report_.processor_models();
+        const std::string named = bench::setting(plan_, "processor");
+        return !named.empty() ? named
+               : models == 1  ? report_.machines.front().machine.processor
+               : models == 0  ? "unknown processor"
+                              : fmt::format("{} models of processors", models);
+    }
+
     void head() {
         add("# Campaign {}\n\n", setting("campaign"));
         if (setting("description") != "none") {
@@ -127,14 +138,20 @@ class Document {
         const std::string limit = plan_.time_limit_s ? number_text(*plan_.time_limit_s, " s") : "no time limit";
         const std::string iterations = setting("max_iterations");
         add("Downwash {} at commit {}; {}; {} search{} at a time with one thread each; {} per search{}{}; seeds {}.\n",
-            setting("version"), setting("commit"), setting("processor"), setting("jobs"),
-            setting("jobs") == "1" ? "" : "es", limit,
-            iterations == "none" ? std::string() : ", " + iterations + " iterations", stop, setting("seeds"));
+            setting("version"), setting("commit"), processors(), setting("jobs"), setting("jobs") == "1" ? "" : "es",
+            limit, iterations == "none" ? std::string() : ", " + iterations + " iterations", stop, setting("seeds"));
         add("{} of {} runs done{}\n\n", report_.done, plan_.run_count(),
             report_.done < plan_.run_count() ? ": **the campaign is not finished**, the figures are of the runs so far."
                                              : ".");
         add("Shares are of all attempted seeds, with 95 % Wilson intervals (Wilson 1927). Quantiles are over all "
             "attempted seeds too: a seed without a value\ncounts as infinite; `none` is a quantile of that kind.\n\n");
+        if (report_.processor_models() > 1) {
+            add("**The times below are of {} models of processors together**, listed under Machines. Do not compare "
+                "them "
+                "with other times; compare planners by\ntheir pairs, which are of equal seeds but not of equal "
+                "processors either.\n\n",
+                report_.processor_models());
+        }
         for (const std::string& what : plan_.left_out) {
             add("Left out, since it does not exist: {}\n\n", what);
         }
@@ -340,6 +357,25 @@ class Document {
             add("{}- {}, {}: {}{}: seeds {}\n", &failure == report_.failures.data() ? "\n" : "",
                 plan_.experiments[failure.experiment].name(), plan_.planners[failure.planner].name(),
                 in_cell(failure.cause), distance_text(failure.nearest_approach_m), seeds_text(failure.seeds));
+        }
+    }
+
+    void machines() {
+        if (report_.machines.empty()) {
+            return;
+        }
+        constexpr std::size_t max_rows = 50;
+        add("\n## Machines\n\nWhere the runs were made. `load`: processes that ran or waited to run when a run ended, "
+            "mean "
+            "of the last minute.\n\n");
+        heads({"host", "processor", "instruction set", "runs", "median load", "maximum load"});
+        for (std::size_t i = 0; i < std::min(report_.machines.size(), max_rows); ++i) {
+            const MachineFigures& of = report_.machines[i];
+            row(in_cell(of.machine.host), in_cell(of.machine.processor), of.machine.instruction_set, of.runs,
+                number_text(of.median_load), number_text(of.max_load));
+        }
+        if (report_.machines.size() > max_rows) {
+            add("\nAnd {} more hosts.\n", report_.machines.size() - max_rows);
         }
     }
 

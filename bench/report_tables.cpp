@@ -96,12 +96,16 @@ std::string latex_of(const CampaignReport& report) {
         "% Campaign {}, Downwash {} at commit {}, {} of {} runs; needs \\usepackage{{booktabs}}.\n"
         "% Shares with 95 % Wilson intervals, of flights in worlds with those of Clopper and Pearson; medians with "
         "quartiles over all attempted seeds.\n"
-        "\\begin{{tabular}}{{llrrrr{}}}\n\\toprule\n"
+        "{}\\begin{{tabular}}{{llrrrr{}}}\n\\toprule\n"
         "Problem & Planner & Solved and held [\\%] & Failed flights [\\%] & First solution [s] & Executed cost{} "
         "\\\\\n",
         in_latex(setting(plan, "campaign")), in_latex(setting(plan, "version")), in_latex(setting(plan, "commit")),
-        report.done, plan.run_count(), has_worlds ? "rrr" : "",
-        has_worlds ? " & Failed in worlds [\\%] & Certified [\\%] & First certified [s]" : "");
+        report.done, plan.run_count(),
+        report.processor_models() > 1
+            ? fmt::format("% Times are of {} models of processors together: do not compare them.\n",
+                          report.processor_models())
+            : "",
+        has_worlds ? "rrr" : "", has_worlds ? " & Failed in worlds [\\%] & Certified [\\%] & First certified [s]" : "");
     std::size_t experiment = plan.experiments.size();
     for (const CellFigures& cell : report.cells) {
         const bool is_first = cell.experiment != experiment;
@@ -131,17 +135,18 @@ std::string csv_of(const CampaignReport& report) {
     }
     text +=
         ",certified,certified_low,certified_high,first_certified_s_50,flights_in_worlds,failed_in_worlds,"
-        "failed_in_worlds_low,failed_in_worlds_high\r\n";
+        "failed_in_worlds_low,failed_in_worlds_high,processor_models\r\n";
     for (const CellFigures& cell : report.cells) {
         const Experiment& experiment = plan.experiments[cell.experiment];
         const PlannerSetup& planner = plan.planners[cell.planner];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
                             in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
                             in_csv(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
                             cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
                             csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m),
                             csv_spread(cell.first_solution_s), csv_spread(cell.verified_s), csv_spread(cell.answer_s),
-                            csv_spread(cell.flown_cost), csv_worlds(cell.in_worlds));
+                            csv_spread(cell.flown_cost), csv_worlds(cell.in_worlds),
+                            report.processor_models() > 0 ? std::to_string(report.processor_models()) : "");
     }
     return text;
 }

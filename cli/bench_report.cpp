@@ -20,7 +20,7 @@ struct BenchReportArguments {
 
 std::string text_of(const bench::CampaignReport& report, const BenchReportArguments& as) {
     if (as.as_html) {
-        return campaign_page(bench::json_of(report));
+        return campaign_page(bench::page_json_of(report));
     }
     return as.as_json    ? bench::json_of(report) + "\n"
            : as.as_latex ? bench::latex_of(report)
@@ -32,7 +32,7 @@ ExitCode run(const BenchReportArguments& given) {
     if (given.as_html) {
         require_pages();
     }
-    const bench::CampaignReport report = bench::report_of(bench::read_results(given.folder));
+    const bench::CampaignReport report = bench::read_report(given.folder);
     const std::string text = text_of(report, given);
     if (given.out) {
         write_result(*given.out, text);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "downwash/base/text.hpp"
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_run.hpp"
 #include "downwash/bench/campaign_store.hpp"
@@ -10,6 +11,7 @@
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
+#include "downwash/cli/usage_error.hpp"
 #include "downwash/report/campaign_page.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -18,13 +20,44 @@ namespace {
 
 struct BenchRunArguments {
     std::string campaign;
-    std::optional<std::string> out;
+    std::optional<std::string> out, shard, pilot, saved;
     std::optional<std::uint64_t> jobs;
+    std::optional<double> wall_limit_s;
     bool resumes = false, no_cache = false, is_quiet = false;
 };
 
+/// The part of a campaign that --shard and --pilot ask for; empty: all of it. @throws UsageError
+std::optional<bench::ShardRequest> shard_of(const BenchRunArguments& given) {
+    if (!given.shard) {
+        if (given.pilot) {
+            throw UsageError("--pilot deals out shards: expected --shard I/N beside it");
+        }
+        return std::nullopt;
+    }
+    const std::size_t slash = given.shard->find('/');
+    const auto number = parse_number<std::uint64_t>(given.shard->substr(0, slash));
+    const auto count =
+        parse_number<std::uint64_t>(slash != std::string::npos ? given.shard->substr(slash + 1) : std::string());
+    if (!number || !count || *number < 1 || *number > *count || *count > bench::max_shards) {
+        throw UsageError("--shard is '{}': expected I/N, for example 3/16, with 1 <= I <= N <= {}",
+                         excerpt(*given.shard), bench::max_shards);
+    }
+    return bench::ShardRequest{*number, *count, given.pilot.value_or("")};
+}
+
+/// The folder of the results: that of a shard stands in the folder of its campaign.
+std::filesystem::path out_of(const BenchRunArguments& given, const std::string& campaign,
+                             const std::optional<bench::ShardRequest>& shard) {
+    if (given.out) {
+        return *given.out;
+    }
+    const std::filesystem::path folder = "downwash-out/bench-" + campaign;
+    return shard ? folder / bench::shard_folder_name(shard->number, shard->count) : folder;
+}
+
 ExitCode run(const BenchRunArguments& given) {
-    Interruption interruption;
+    const std::optional<bench::ShardRequest> shard = shard_of(given);
+    Interruption interruption({given.wall_limit_s, {}});
     interruption.expect_results();
     ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated,
                                       given.is_quiet ? nullptr : print_warning);
@@ -32,7 +65,9 @@ ExitCode run(const BenchRunArguments& given) {
         read.campaign.jobs = *given.jobs;
     }
     bench::CampaignRunOptions options;
-    options.out = given.out.value_or("downwash-out/bench-" + read.campaign.name);
+    options.out = out_of(given, read.campaign.name, shard);
+    options.shard = shard;
+    options.saved = given.saved.value_or("");
     options.resumes = given.resumes;
     options.map_cache = cache_folder(given.no_cache);
     options.stop = interruption.token();
@@ -47,14 +82,15 @@ ExitCode run(const BenchRunArguments& given) {
         progress = bench::run_campaign(read, options);
     }
     const bool is_over = progress.done == progress.planned;
-    const bool has_page = has_pages() && progress.done > 0;
+    const bool has_page = has_pages() && progress.done > 0 && !shard;
     if (has_page) {
-        write_result(options.out / "report.html",
-                     campaign_page(bench::json_of(bench::report_of(bench::read_results(options.out)))));
+        write_result(options.out / "report.html", campaign_page(bench::page_json_of(bench::read_report(options.out))));
     }
     fmt::print("{} of {} runs are in {}{}; {}\n", progress.done, progress.planned, options.out.string(),
                has_page ? ", report.html shows them" : "",
-               is_over ? "see downwash bench report " + options.out.string() : "--resume continues with the others");
+               !is_over ? "--resume continues with the others"
+               : shard  ? "downwash bench merge joins all shards"
+                        : "see downwash bench report " + options.out.string());
     if (progress.out_of_memory > 0) {
         print_error(
             fmt::format("downwash: {} of the runs found no memory and are not finished: --resume repeats them; fewer "
@@ -62,7 +98,8 @@ ExitCode run(const BenchRunArguments& given) {
                         progress.out_of_memory));
         return ExitCode::bad_input;
     }
-    return is_over ? ExitCode::done : interruption.code();
+    const bool is_late = !is_over && interruption.code() == ExitCode::done;
+    return is_late ? ExitCode::no_solution : is_over ? ExitCode::done : interruption.code();
 }
 
 }  // namespace
@@ -76,6 +113,14 @@ void add_bench_run(CLI::App& bench, Action& action) {
     command.add_flag("--resume", given.resumes,
                      "continue with the results that are there, if they were begun with the same settings");
     add_jobs(command, given.jobs, "that of the campaign, or one per processor");
+    add_value(command, "--shard I/N", given.shard,
+              "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
+    add_pilot(command, given.pilot, "with --shard, and the same for all shards");
+    add_value(command, "--save DIR", given.saved,
+              "keep a copy of the results there, every two minutes and at the end, and begin with it if it has more "
+              "runs: for results on the disk of one node");
+    add_wall_limit(command, given.wall_limit_s,
+                   "then searches that have not ended are dropped, the exit code is 1, and --resume continues");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
 }

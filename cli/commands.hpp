@@ -32,7 +32,10 @@ void add_aeromap_compare(CLI::App& aeromap, Action& action);
 void add_aeromap_hold(CLI::App& aeromap, Action& action);
 void add_aeromap_plot(CLI::App& aeromap, Action& action);
 void add_bench_run(CLI::App& bench, Action& action);
+void add_bench_merge(CLI::App& bench, Action& action);
+void add_bench_parallel(CLI::App& bench, Action& action);
 void add_bench_report(CLI::App& bench, Action& action);
+void add_bench_slurm(CLI::App& bench, Action& action);
 void add_study_uncertainty(CLI::App& study, Action& action);
 void add_thesis_studies(CLI::App& study, Action& action);
 

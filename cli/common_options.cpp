@@ -57,6 +57,12 @@ void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::
         ->check(CLI::Range(1, max_threads));
 }
 
+void add_wall_limit(CLI::App& command, std::optional<double>& limit_s, const std::string& detail) {
+    add_value(command, "--wall-limit S", limit_s,
+              meaning_and("wall time of the whole command [s], reading and the aero map included", detail))
+        ->check(CLI::PositiveNumber);
+}
+
 CLI::Option* add_plan(CLI::App& command, std::string& plan) {
     return add_value(command, "--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
         ->required();
@@ -70,6 +76,12 @@ CLI::Option* add_run(CLI::App& command, std::string& folder) {
 CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg) {
     return add_value(command, "--arm-deg A", arm_deg,
                      "arm angle relative to the multirotor [deg]; default: that of the problem's start");
+}
+
+void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs) {
+    add_value(
+        command, "--pilot DIR", folder,
+        meaning_and("deal out the runs to shards by the times that the campaign in this folder has measured", needs));
 }
 
 void add_width(CLI::App& command, std::optional<int>& width_px) {

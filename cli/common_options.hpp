@@ -46,12 +46,16 @@ void add_no_cache(CLI::App& command, bool& no_cache);
 void add_threads(CLI::App& command, int& threads);
 /// @param otherwise says how many there are without the option
 void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::string& otherwise);
+/// --wall-limit. @param detail what happens then
+void add_wall_limit(CLI::App& command, std::optional<double>& limit_s, const std::string& detail);
 /// What it takes: see plan_file().
 CLI::Option* add_plan(CLI::App& command, std::string& plan);
 /// What it takes: see run_folder().
 CLI::Option* add_run(CLI::App& command, std::string& folder);
 /// See arm_option().
 CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg);
+/// --pilot. @param needs what it stands beside
+void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs);
 void add_width(CLI::App& command, std::optional<int>& width_px);
 void add_no_labels(CLI::App& command, bool& no_labels);
 

@@ -47,8 +47,9 @@ static_assert(static_cast<int>(ExitCode::terminated) == 128 + SIGTERM);
 
 Interruption::Interruption(const CommandLimits& limits) : memory_bytes_(limits.memory_bytes) {
     if (limits.wall_s) {
-        deadline_ =
-            Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*limits.wall_s));
+        constexpr double max_s = 1e9;  // thirty years
+        deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(std::min(*limits.wall_s, max_s)));
     }
     const sigset_t set = awaited_signals();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);

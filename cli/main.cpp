@@ -149,8 +149,9 @@ void add_aeromap(CLI::App& program, Action& action) {
 void add_bench(CLI::App& program, Action& action) {
     CLI::App* bench = program.add_subcommand("bench", "Run campaigns: many searches, their success, times and costs");
     bench->require_subcommand(1);
-    add_bench_run(*bench, action);
-    add_bench_report(*bench, action);
+    for (const auto add : {add_bench_run, add_bench_slurm, add_bench_parallel, add_bench_merge, add_bench_report}) {
+        add(*bench, action);
+    }
 }
 
 void add_study(CLI::App& program, Action& action) {

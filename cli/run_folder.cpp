@@ -23,7 +23,7 @@ bool is_there(const fs::path& file) {
 }  // namespace
 
 void add_force(CLI::App& command, bool& force) {
-    command.add_flag("--force", force, "replace what is in the folder, even a run of another problem");
+    command.add_flag("--force", force, "replace what is in the folder; even a run of another problem");
 }
 
 RunFolder claimed_folder(const fs::path& path, const Problem& problem, const std::string& problem_file, bool force) {

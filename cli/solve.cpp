@@ -123,10 +123,7 @@ void add_solve(CLI::App& program, Action& action) {
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     add_force(command, given.force);
-    add_value(
-        command, "--wall-limit S", given.limits.wall_s,
-        "wall time of the whole command [s], reading and the aero map included; then the best plan so far is written")
-        ->check(CLI::PositiveNumber);
+    add_wall_limit(command, given.limits.wall_s, "then the best plan so far is written");
     add_value(
         command, "--max-memory SIZE", given.limits.memory_bytes,
         "memory of the whole command, as 500MiB or 4GiB; where a search grows beyond it, it ends, and the best plan "

@@ -12,18 +12,22 @@ namespace {
 
 /// What a part of the study has left, and the runs of each of its planners on each problem.
 struct PartResults {
-    CampaignResults results;
+    CampaignPlan plan;
+    std::vector<RunFigures> runs;
     std::vector<Row> rows;  ///< problems outermost
 };
 
 PartResults results_of(const StudyPart& part, const std::filesystem::path& folder) {
-    PartResults of{{plan_of(part.read), {}}, {}};
+    PartResults of{plan_of(part.read), {}, {}};
     if (std::filesystem::exists(folder / part.name / results_file)) {
-        of.results = read_results(folder / part.name);
+        FiguresMaker maker;
+        of.plan = read_runs(
+            folder / part.name, [](const CampaignPlan&) {},
+            [&](const Run& run) { of.runs.push_back(maker.figures_of(run)); });
     }
-    const std::size_t planners = of.results.plan.planners.size();
-    of.rows.resize(of.results.plan.experiments.size() * planners);
-    for (const Run& run : of.results.runs) {
+    const std::size_t planners = of.plan.planners.size();
+    of.rows.resize(of.plan.experiments.size() * planners);
+    for (const RunFigures& run : of.runs) {
         of.rows.at(run.experiment * planners + run.planner).push_back(&run);
     }
     return of;
@@ -50,32 +54,33 @@ struct Runs {
     }
 };
 
-bool is_reliable(const Run& run) {
-    return run.in_worlds && static_cast<double>(run.in_worlds->failures) <=
-                                max_failure_share * static_cast<double>(run.in_worlds->worlds);
+bool is_reliable(const RunFigures& run) {
+    return run.worlds > 0 &&
+           static_cast<double>(run.failures_in_worlds) <= max_failure_share * static_cast<double>(run.worlds);
 }
 
 SetupFigures setup_figures(const Runs& runs, const Costs& reference) {
     const auto share_in = [&](const auto& test) {
-        const auto hits = std::count_if(runs.row.begin(), runs.row.end(), [&](const Run* run) { return test(*run); });
+        const auto hits =
+            std::count_if(runs.row.begin(), runs.row.end(), [&](const RunFigures* run) { return test(*run); });
         return share_of(static_cast<std::size_t>(hits), runs.row.size());
     };
     SetupFigures figures;
     figures.attempted = runs.row.size();
-    figures.planned = share_in([](const Run& run) { return run.first_solution_s.has_value(); });
+    figures.planned = share_in([](const RunFigures& run) { return run.first_solution_s.has_value(); });
     figures.reliable = share_in(is_reliable);
     figures.in_worlds = worlds_of(runs.row);
     figures.first_solution_s =
-        spread_of(figures_of(runs.row, [](const Run& run) { return run.first_solution_s.value_or(infinite); }));
+        spread_of(figures_of(runs.row, [](const RunFigures& run) { return run.first_solution_s.value_or(infinite); }));
     std::vector<double> durations_s, ratios;
     for (std::size_t i = 0; i < runs.row.size(); ++i) {
-        const Run& run = *runs.row[i];
+        const RunFigures& run = *runs.row[i];
         if (!run.holds()) {
             continue;
         }
-        durations_s.push_back(run.flight->duration_s);
+        durations_s.push_back(run.duration_s);
         if (const auto cost = reference.find({runs.problems[i], run.seed}); cost != reference.end()) {
-            ratios.push_back(run.flight->cost / cost->second);
+            ratios.push_back(run.flight_cost / cost->second);
         }
     }
     figures.duration_s = spread_of(durations_s);
@@ -86,7 +91,7 @@ SetupFigures setup_figures(const Runs& runs, const Costs& reference) {
 
 /// Adds the figures of every planner of a part.
 void add_part(const StudyPart& part, const PartResults& of, const Costs& reference, StudyFigures& all) {
-    const CampaignPlan& plan = of.results.plan;
+    const CampaignPlan& plan = of.plan;
     for (std::size_t p = 0; p < plan.planners.size(); ++p) {
         const auto add = [&](const Runs& runs, const std::string& problem, std::vector<SetupFigures>& into) {
             SetupFigures figures = setup_figures(runs, reference);
@@ -112,10 +117,10 @@ void add_part(const StudyPart& part, const PartResults& of, const Costs& referen
 Costs reference_costs(const std::vector<StudyPart>& parts, const std::vector<PartResults>& results) {
     Costs costs;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        const CampaignPlan& plan = results[i].results.plan;
-        for (const Run& run : results[i].results.runs) {
+        const CampaignPlan& plan = results[i].plan;
+        for (const RunFigures& run : results[i].runs) {
             if (run.holds() && setup_name(plan.planners[run.planner], parts[i]) == reference_setup) {
-                costs[{plan.experiments[run.experiment].problem, run.seed}] = run.flight->cost;
+                costs[{plan.experiments[run.experiment].problem, run.seed}] = run.flight_cost;
             }
         }
     }
@@ -129,10 +134,10 @@ StudyFigures figures_of(const std::vector<StudyPart>& parts, const std::filesyst
     std::vector<PartResults> results;
     for (const StudyPart& part : parts) {
         results.push_back(results_of(part, folder));
-        figures.planned += results.back().results.plan.run_count();
-        figures.done += results.back().results.runs.size();
+        figures.planned += results.back().plan.run_count();
+        figures.done += results.back().runs.size();
     }
-    const CampaignPlan& first = results.at(0).results.plan;
+    const CampaignPlan& first = results.at(0).plan;
     for (const char* name : {"version", "commit", "processor", "jobs", "time_limit_s", "seeds", "evaluation_worlds"}) {
         figures.settings.emplace_back(name, setting(first, name));
     }

@@ -13,7 +13,7 @@ from .problem import Path
 __all__ = ["Campaign"]
 
 _APPLICATION_ID = 0x446F776E  # "Down" in ASCII
-_LAYOUT = 6
+_LAYOUTS = (6, 7)  # 7 has the machine of each run
 _NAMES = """runs.id AS run, experiments.problem, experiments.objective, plannerConfigs.variant,
     plannerConfigs.algorithm, plannerConfigs.margin_m, runs.seed"""
 _OF_RUNS = """runs JOIN experiments ON runs.experimentid = experiments.id
@@ -21,7 +21,7 @@ _OF_RUNS = """runs JOIN experiments ON runs.experimentid = experiments.id
 
 
 class Campaign:
-    """What `downwash bench run` left in a folder, finished or not, as frames; these need pandas.
+    """What `downwash bench run` or `bench merge` left in a folder, finished or not, as frames; these need pandas.
 
     Every frame begins with the columns `run` (a number), `problem`, `objective`, `variant`, `algorithm`, `margin_m`
     (NaN: the problem's own) and `seed`. `downwash bench report` gives statistics with their intervals.
@@ -39,17 +39,18 @@ class Campaign:
                     database.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
                 ]
                 self.settings: dict[str, str] = dict(
-                    database.execute("SELECT name, value FROM campaign ORDER BY place") if marks[1] == _LAYOUT else ()
+                    database.execute("SELECT name, value FROM campaign ORDER BY place") if marks[1] in _LAYOUTS else ()
                 )
         except sqlite3.DatabaseError as error:
             raise InputError(f"{self._file} cannot be read: {error}") from None
         if marks[0] != _APPLICATION_ID:
             raise InputError(f"{self._file} holds no results of a campaign; choose another folder")
-        if marks[1] != _LAYOUT:
+        if marks[1] not in _LAYOUTS:
             raise InputError(
                 f"{self._file} holds no results that this version can read: its layout is number {marks[1]}, "
-                f"not {_LAYOUT}"
+                f"not {_LAYOUTS[-1]}"
             )
+        self._has_machines = marks[1] != _LAYOUTS[0]
 
     def _open(self) -> sqlite3.Connection:
         return sqlite3.connect(f"file:{os.path.abspath(self._file)}?mode=ro", uri=True)
@@ -101,6 +102,17 @@ class Campaign:
     def rejections(self) -> Any:
         """A row for every cause for which a search rejected edges: cause, edges."""
         return self._frame("rejections.cause, rejections.edges", "JOIN rejections ON rejections.runid = runs.id")
+
+    def machines(self) -> Any:
+        """A row for every run: host, processor (its model), instruction_set, and load, the processes that ran or waited
+        to run when the run ended. Raises InputError for results of versions that did not record them."""
+        if not self._has_machines:
+            raise InputError(f"{self._file} does not say where its runs were made: an earlier version wrote it")
+        return self._frame(
+            "machines.host, machines.processor, machines.instruction_set, run_machines.load",
+            """JOIN run_machines ON run_machines.runid = runs.id
+            JOIN machines ON machines.id = run_machines.machineid""",
+        )
 
     def __repr__(self) -> str:
         return f"<downwash.Campaign {self.settings.get('campaign', '')} in {self.folder}>"

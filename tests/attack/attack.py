@@ -11,8 +11,11 @@ import sys
 import tempfile
 import time
 
+import tries
+import writing
 from program import Finding, Program
-from tries import KINDS
+
+KINDS = tries.KINDS + writing.KINDS
 
 
 def main() -> int:

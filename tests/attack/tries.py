@@ -352,7 +352,7 @@ KINDS = [
     Kind("geometry", 350, Geometry),
     Kind("results", 1600, Results),
     Kind("robots", 360, Robots),
-    Kind("kills", 200, Kills),
+    Kind("kills", 400, Kills),
     Kind("interrupts", 80, Interrupts),
     Kind("tours", 100, Tours),
     Kind("cache", 120, Cache),

@@ -2,8 +2,11 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
@@ -37,10 +40,22 @@ inline CampaignResults results_in(const ScratchFolder& folder) {
     return read_results(folder / "results");
 }
 
+/// What does not depend on time, in the order of planners and seeds.
+inline std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> repeatable(
+    const CampaignResults& results) {
+    std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> figures;
+    for (const Run& run : results.runs) {
+        figures.emplace_back(run.planner, run.seed, run.status, run.cost.value_or(-1),
+                             run.flight ? run.flight->cost : -1);
+    }
+    std::sort(figures.begin(), figures.end());
+    return figures;
+}
+
 /// The first value of the first row that SQLite answers.
-inline std::string answer(const ScratchFolder& folder, const std::string& question) {
+inline std::string answer_in(const std::filesystem::path& results, const std::string& question) {
     sqlite3* database = nullptr;
-    REQUIRE(sqlite3_open((folder / "results" / results_file).c_str(), &database) == SQLITE_OK);
+    REQUIRE(sqlite3_open((results / results_file).c_str(), &database) == SQLITE_OK);
     std::string text;
     const auto keep = [](void* kept, int, char** values, char**) {
         *static_cast<std::string*>(kept) = values[0] != nullptr ? values[0] : "NULL";
@@ -50,6 +65,9 @@ inline std::string answer(const ScratchFolder& folder, const std::string& questi
     CHECK((result == SQLITE_OK || result == SQLITE_ABORT));
     sqlite3_close(database);
     return text;
+}
+inline std::string answer(const ScratchFolder& folder, const std::string& question) {
+    return answer_in(folder / "results", question);
 }
 
 }  // namespace downwash::test

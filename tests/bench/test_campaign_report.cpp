@@ -314,7 +314,7 @@ TEST_CASE("the same table is there as CSV, with what is infinite left empty") {
     const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
     CHECK(csv.substr(first).starts_with("\"a \"\"bridge\"\", old\",energy,mp-arm-ada,rrt-star,,,4,0,4,"));
     CHECK(commas(csv.substr(first, second - first)) == commas(csv.substr(0, first)) + 1);
-    CHECK(csv.ends_with(",91,96.25,,,,,,,,,,,\r\n"));  // flown: 91, 98 and two infinite ones
+    CHECK(csv.ends_with(",91,96.25,,,,,,,,,,,,\r\n"));  // flown: 91, 98 and two infinite ones
 }
 
 TEST_CASE("the report is the same in JSON, null for what is infinite") {
@@ -403,4 +403,36 @@ TEST_CASE("flights in worlds are pooled over the seeds, with the interval of Clo
                Contains("| bridge, energy | mp-arm-ada rrt-star | aero.ceiling_scale | 0/4 | 1/4 |"));
     CHECK_THAT(csv_of(report), Contains(",400,6,"));
     CHECK_THAT(latex_of(report), Contains("6/400 [0.6, 3.2]"));
+}
+
+TEST_CASE("the page of a large campaign has some of its seeds, the same of every planner, and all counts") {
+    CampaignResults results = some_results();
+    CHECK(nlohmann::json::parse(page_json_of(report_of(results))).at("seed_step") == 1);
+    CHECK(nlohmann::json::parse(page_json_of(report_of(results))) ==
+          nlohmann::json::parse(json_of(report_of(results))));
+    results.plan.seeds.clear();
+    results.runs.clear();
+    constexpr std::uint32_t seeds = 6000;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        results.plan.seeds.push_back(seed);
+        results.runs.push_back(solved(0, seed, 0.1 + 1e-5 * seed, 100 + 0.01 * seed));
+        results.runs.push_back(seed % 4 == 0 ? unsolved(1, seed, RunStatus::none) : solved(1, seed));
+    }
+    const CampaignReport report = report_of(results);
+    CHECK(report.cells[0].solved_over_time.size() == max_steps);
+    CHECK(report.cells[0].solved_over_time.back().solved.hits == seeds);
+    CHECK(report.cells[0].held_over_cost.back().held == seeds);
+    const std::string text = page_json_of(report);
+    CHECK(text.size() < 1000000);
+    const auto page = nlohmann::json::parse(text);
+    CHECK(page.at("seed_step") == 3);  // 12000 runs, 5000 of them at most
+    const auto& cells = page.at("cells");
+    CHECK(cells[0].at("seeds").at("seed").size() == 2000);
+    CHECK(cells[0].at("seeds").at("seed") == cells[1].at("seeds").at("seed"));
+    CHECK(cells[1].at("solved").at("hits") == 4500);
+    CHECK(page.at("failures")[0].at("count") == 1500);
+    CHECK(page.at("failures")[0].at("seeds").size() == 200);
+    const auto whole = nlohmann::json::parse(json_of(report));
+    CHECK(whole.at("cells")[1].at("seeds").at("seed").size() == seeds);
+    CHECK(whole.at("failures")[0].at("seeds").size() == 1500);
 }

@@ -15,23 +15,12 @@ using namespace downwash::test;   // NOLINT(google-build-using-namespace): a tes
 
 namespace {
 
-/// What does not depend on time, in the order of planners and seeds.
-std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> repeatable(
-    const CampaignResults& results) {
-    std::vector<std::tuple<std::size_t, std::uint32_t, RunStatus, double, double>> figures;
-    for (const Run& run : results.runs) {
-        figures.emplace_back(run.planner, run.seed, run.status, run.cost.value_or(-1),
-                             run.flight ? run.flight->cost : -1);
-    }
-    std::sort(figures.begin(), figures.end());
-    return figures;
-}
-
 /// All figures of a run but its improvements and its flight.
 auto figures_of(const Run& run) {
     return std::tie(run.experiment, run.planner, run.seed, run.status, run.wall_s, run.first_solution_s, run.cost,
                     run.nearest_approach_m, run.iterations, run.edges_simulated, run.states_checked, run.simulated_s,
-                    run.discarded, run.rejections, run.error, run.certificate, run.first_certified_s, run.in_worlds);
+                    run.discarded, run.rejections, run.error, run.certificate, run.first_certified_s, run.in_worlds,
+                    run.made_on);
 }
 
 }  // namespace
@@ -83,6 +72,7 @@ TEST_CASE("what is read from a file of results is what was written, by one progr
     written.certificate = CertificateFigures{true, 437, 1, 3};
     written.first_certified_s = 0.7;
     written.in_worlds = WorldFigures{200, 7, {{"aero.ceiling_scale", false, true}, {"wind.steady_m_s.x", true, false}}};
+    written.made_on = RunMachine{{"node 7", "AMD EPYC 7B13", "avx2"}, 1.25};
     {
         CampaignStore store(folder / "results", plan, false);
         store.add(written);

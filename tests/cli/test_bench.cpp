@@ -128,6 +128,46 @@ TEST_CASE("A signal ends a campaign at once, with what is finished") {
     CHECK(result.out == "0 of 200 runs are in out; --resume continues with the others\n");
 }
 
+TEST_CASE("Shards are run one by one and merged; the merge names runs that are missing and the command for them") {
+    const Workspace work;
+    write_campaign(work, "seeds: {count: 3}\nmax_iterations: 5");
+    for (const std::string shard : {"1/3", "3/3"}) {
+        CHECK_THAT(work.succeed("bench run campaign.yaml --shard", shard).out,
+                   StartsWith("2 of 2 runs are in downwash-out/bench-trial/shard-000" + shard.substr(0, 1)));
+    }
+    const std::string folder = "downwash-out/bench-trial/shard-000";
+    const Result partial = work.run("bench merge merged", folder + "1-of-0003", folder + "3-of-0003");
+    CHECK(partial.code == 1);
+    const std::string command = "bench run CAMPAIGN --shard 2/3 --resume --jobs 1 --out " + folder + "2-of-0003";
+    CHECK_THAT(partial.out, StartsWith("4 of 6 runs are in merged\n") && Contains("shard 2: 2 runs are missing: ") &&
+                                Contains("downwash " + command + "\n"));
+    work.succeed(words("bench run campaign.yaml", command.substr(std::string("bench run CAMPAIGN ").size()).c_str()));
+    CHECK(work.succeed("bench merge merged --force", folder + "1-of-0003", folder + "2-of-0003", folder + "3-of-0003")
+              .out == "6 of 6 runs are in merged\n");
+    CHECK(work.json("bench report merged").at("runs_done") == 6);
+    CHECK(work.text("merged/report.html").empty() != has_pages);
+}
+
+TEST_CASE("A campaign ends with its wall time, and --resume continues") {
+    const Workspace work;
+    write_campaign(work, endless);
+    const Result ended = work.run("bench run campaign.yaml --out out --wall-limit 0.5");
+    CHECK(ended.code == 1);
+    CHECK_THAT(ended.out, Contains("--resume continues with the others"));
+}
+
+TEST_CASE("A shard that cannot be is rejected with what was expected") {
+    const Workspace work;
+    write_campaign(work, quick);
+    for (const char* shard : {"0/3", "4/3", "3", "a/b", "1/", "1/999999999", "-1/3"}) {
+        CAPTURE(shard);
+        check_rejected(work.run("bench run campaign.yaml --shard", shard), "expected I/N, for example 3/16");
+    }
+    check_rejected(work.run("bench run campaign.yaml --shard 1/9"), "9 shards are more than the campaign has runs");
+    check_rejected(work.run("bench run campaign.yaml --pilot out"), "--pilot deals out shards");
+    check_rejected(work.run("bench merge merged nowhere"), "nowhere/campaign.db does not exist");
+}
+
 TEST_CASE("Errors in a campaign file are reported with their place") {
     const Workspace work;
     write_campaign(work, "seads: 3");

@@ -24,6 +24,8 @@ def test_frames_hold_what_the_report_counts(results, json_of):
     assert set(campaign.world_flights()["worlds"]) == {3}
     assert (campaign.progress().groupby("run")["time_s"].diff().dropna() >= 0).all()
     assert len(campaign.certificates()) <= 4
+    machines = campaign.machines()
+    assert len(machines) == 4 and (machines["host"] != "").all() and (machines["load"] >= 0).all()
     assert (campaign.rejections()["edges"] >= 0).all()
 
 

@@ -12,11 +12,12 @@ inline thread_local long allocations = 0;
 
 }  // namespace downwash::test
 
-void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
+// Where it is inlined, GCC takes what delete frees for memory of another allocator.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
     ++downwash::test::allocations;
     return std::malloc(size);
 }
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
     if (void* memory = operator new(size, std::nothrow)) {
         return memory;
     }

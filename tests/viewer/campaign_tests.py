@@ -214,6 +214,26 @@ class Campaign(page_test.BrowserTest):
         self.assertLess(size, 2e6)
         self.assertLess(opened, 1000)
 
+    def test_a_page_says_what_it_leaves_out_and_what_it_pools(self):
+        figures = sample_campaign.campaign()
+        figures["seed_step"] = 5
+        figures["processor_models"] = 2
+        del figures["settings"]["processor"]
+        for cell in figures["cells"]:
+            cell["seeds"] = {name: values[::5] for name, values in cell["seeds"].items()}
+        failure = figures["failures"][0]
+        failure["seeds"] = failure["seeds"][:1]
+        self.assertTrue(self.show(figures))
+        text = self.js("return document.getElementById('page').textContent")
+        self.assertIn("dots: every 5th seed", text)
+        self.assertIn("of 2 models of processors together", text)
+        self.assertIn("a host", text)
+        self.assertIn(f"{failure['seeds'][0]} …", text)
+        held = figures["cells"][0]["held"]
+        self.assertIn(f"{held['hits']} of {held['attempts']} flights held",
+                      self.one("#cost-shares svg", "e.getAttribute('aria-label') ?? e.outerHTML"))
+        self.assertEqual(self.browser.complaints(), [])
+
     def test_the_programs_page_holds_the_figures_of_its_report(self):
         if not page_test.arguments.campaign:
             self.skipTest("no page of the program given")

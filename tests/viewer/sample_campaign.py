@@ -49,6 +49,7 @@ def cell(problem, planner, seeds, chance, scale):
         "cost_over_time": [{"time_s": t, "cost": spread(costs_at(t))} for t in (0.1, 0.3, 1.0)],
         "cost_curve": [{"time_s": t, "cost": spread(costs_at(t))} for t in moments],
         "solved_over_time": [{"time_s": t, "solved": share(i + 1, seeds)} for i, t in enumerate(ordered)],
+        "held_over_cost": [{"cost": c, "held": i + 1} for i, c in enumerate(sorted(c for c in costs if c))],
         "in_worlds": {"tested": seeds, "certified": share(held.count(True), seeds), "first_certified_s": spread(first),
                       "flown": seeds, "failed": share(3 * held.count(False), 10 * seeds),
                       "alone": [{"parameter": "aero.ceiling_scale", "plans": seeds, "failed_low": 0,
@@ -86,6 +87,7 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
     comparisons = [comparison(f"{cells[i]['problem']}, energy", cells[i], cells[i + 1])
                    for i in range(0, len(cells), count)]
     failures = [{"experiment": f"{c['problem']}, energy", "planner": c["planner"], "cause": "collision",
+                 "count": c["failed_flights"]["hits"],
                  "seeds": [seed for seed, cause in zip(c["seeds"]["seed"], c["seeds"]["cause"]) if cause],
                  "nearest_approach_m": []}
                 for c in cells if c["failed_flights"]["hits"]]
@@ -99,6 +101,9 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
                      "commit": "0123456789ab", "processor": "a processor", "jobs": 2, "time_limit_s": 1,
                      "max_iterations": None, "seeds": f"1-{seeds}"},
         "runs_planned": runs, "runs_done": runs, "time_limit_s": 1, "stop_at_first_solution": False, "left_out": [],
+        "processor_models": 1, "seed_step": 1,
+        "machines": [{"host": "a host", "processor": "a processor", "instruction_set": "avx2", "runs": runs, "median_load": 1.5,
+                      "max_load": 2}],
         "totals": totals, "cells": cells, "comparisons": comparisons,
         "margins": sweep if margins != (None,) else [], "failures": failures,
         "bars": [{"experiment": "bridge, energy", "planner": "mp-arm-ada", "bar": "failed flights at most 0",

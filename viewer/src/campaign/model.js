@@ -2,7 +2,7 @@
 
 import {read_embedded} from "../embedded.js";
 
-const lists = ["settings", "totals", "cells", "comparisons", "margins", "failures", "bars", "left_out"];
+const lists = ["settings", "totals", "cells", "comparisons", "margins", "failures", "bars", "left_out", "machines"];
 
 export function read_figures(text) { return read_embedded(text, "downwash/campaign-report/v1", "campaign", lists); }
 
@@ -75,6 +75,8 @@ export function build_model(figures) {
         shown: make_shown(planners),
         /** Whether planners with several margins are among them. */
         is_sweep: figures.margins.length > 0,
+        /** "dots: seeds" of a small campaign; a large one shows some of its seeds only. */
+        dots: figures.seed_step > 1 ? `dots: every ${figures.seed_step}th seed` : "dots: seeds",
         is_unfinished: figures.runs_done < figures.runs_planned,
         time_limit_s: figures.time_limit_s,
     };

@@ -55,10 +55,11 @@ function box(spread, y, frame, style) {
     ];
 }
 
-function make_boxes(model, {id, title, note, measure, axis_of}) {
+function make_boxes(model, {id, title, note, measure, of_seeds, axis_of}) {
     const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
         const cells = shown_cells(model, experiment);
-        const all = cells.flatMap((cell) => cell.seeds[measure]).filter((value) => Number.isFinite(value) && value > 0);
+        const all = cells.flatMap((cell) => [...cell.seeds[measure], ...Object.values(cell[measure])])
+                        .filter((value) => Number.isFinite(value) && value > 0);
         if (all.length === 0) {
             return "None of the planners shown has a value here.";
         }
@@ -73,10 +74,10 @@ function make_boxes(model, {id, title, note, measure, axis_of}) {
             y: null,
             draw: (frame) => cells.map((cell, index) => {
                 const y = row_at(frame, index, row_height), {style, name} = cell.planner;
-                const without = cell.seeds[measure].filter((value) => !Number.isFinite(value)).length;
+                const {hits, attempts} = of_seeds(cell), without = attempts - hits;
                 return [
                     dots(cell.seeds[measure], y, frame, style), box(cell[measure], y, frame, style),
-                    row_name(frame, y - 12, name + (without > 0 ? `, ${without} of ${cell.seeds.seed.length} without` : ""))
+                    row_name(frame, y - 12, name + (without > 0 ? `, ${without} of ${attempts} without` : ""))
                 ];
             }),
         };
@@ -84,22 +85,24 @@ function make_boxes(model, {id, title, note, measure, axis_of}) {
     return make_figure(id, title, note, panels);
 }
 
-const how_to_read = "Box: quartiles and median; whiskers: least and 95 %; dots: seeds. Quantiles are over all " +
+const how_to_read = (model) => `Box: quartiles and median; whiskers: least and 95 %; ${model.dots}. Quantiles are over all ` +
     "attempted seeds, those without a value counting as infinite: then a box is open to the right.";
 
 export const make_first_solutions = (model) => make_boxes(model, {
     id: "first-solutions",
     title: "Time to the first solution",
-    note: how_to_read,
+    note: how_to_read(model),
     measure: "first_solution_s",
+    of_seeds: ({solved}) => solved,
     axis_of: () => ({name: "time of the search [s]", is_log: true}),
 });
 
 export const make_flown_costs = (model) => make_boxes(model, {
     id: "flown-costs",
     title: "Executed cost",
-    note: `Cost of the reported plan's flight with direct aerodynamics, where it held. ${how_to_read}`,
+    note: `Cost of the reported plan's flight with direct aerodynamics, where it held. ${how_to_read(model)}`,
     measure: "flown_cost",
+    of_seeds: ({held}) => held,
     axis_of: ({unit}) => ({name: `executed cost${unit ? ` [${unit}]` : ""}`}),
 });
 
@@ -174,7 +177,7 @@ export function make_pairs(model) {
     }
     return make_figure(
         "pairs", "Differences on equal seeds",
-        "Dots: seeds on which both have a value; tick: their median. Left of zero the first planner is the cheaper or " +
+        `${model.dots[0].toUpperCase()}${model.dots.slice(1)} on which both have a value; tick: their median. Left of zero the first planner is the cheaper or ` +
             "the faster one. The counts say on how many seeds the first, and the second, has the smaller value; no plan " +
             "loses to any plan. p is that of the two-sided sign test over them.",
         [

@@ -70,20 +70,18 @@ export function make_success(model) {
 export function make_cost_shares(model) {
     const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
         const cells = shown_cells(model, experiment).map((cell) => {
-            const costs = [...cell.seeds.flown_cost].sort((a, b) => a - b);
-            const finite = costs.filter(Number.isFinite);
-            return {cell, finite, steps: finite.map((at, i) => {
-                        const share = (i + 1) / costs.length;
-                        return {at, share, low: share, high: share};
+            return {cell, steps: cell.held_over_cost.map(({cost, held}) => {
+                        const share = held / cell.held.attempts;
+                        return {at: cost, share, low: share, high: share};
                     })};
         });
-        const all = cells.flatMap(({finite}) => finite);
+        const all = cells.flatMap(({cell, steps}) => steps.length > 0 ? [cell.flown_cost["0"], ...steps.map(({at}) => at)] : []);
         if (all.length === 0) {
             return "No flight of the planners shown held.";
         }
         const told = cells.map(
-            ({cell, finite}) => `${cell.planner.name}: ${finite.length} of ${cell.seeds.seed.length} flights held` +
-                (finite.length > 0 ? `, costs ${plain(finite[0])} to ${plain(finite[finite.length - 1])}` : ""));
+            ({cell, steps}) => `${cell.planner.name}: ${cell.held.hits} of ${cell.held.attempts} flights held` +
+                (steps.length > 0 ? `, costs ${plain(cell.flown_cost["0"])} to ${plain(steps[steps.length - 1].at)}` : ""));
         return {
             label: `Share of seeds whose flight held and cost no more. ${told.join("; ")}.`,
             x: {

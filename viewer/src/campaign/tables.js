@@ -155,13 +155,14 @@ function failures_list({figures}) {
     return table(
         "Failures", ["problem", "planner", "cause", "count", "seeds"], 3,
         figures.failures.map(
-            ({experiment, planner, cause, seeds, nearest_approach_m}) =>
-                [experiment, planner, cause + distance(nearest_approach_m), String(seeds.length), seeds.join(" ")]));
+            ({experiment, planner, cause, count, seeds, nearest_approach_m}) =>
+                [experiment, planner, cause + distance(nearest_approach_m), String(count),
+                 seeds.join(" ") + (count > seeds.length ? " …" : "")]));
 }
 
 export function make_tables(model) {
     const {figures} = model;
-    const count = figures.failures.reduce((sum, {seeds}) => sum + seeds.length, 0);
+    const count = figures.failures.reduce((sum, failure) => sum + failure.count, 0);
     return h(
         "section", {class: "tables", id: "tables", "aria-labelledby": "tables-title"},
         h("h2", {id: "tables-title"}, "Tables"),
@@ -185,6 +186,15 @@ export function make_tables(model) {
             null);
 }
 
+/** Where the runs were made; null where that was not recorded. */
+function machines_table({machines}) {
+    return machines.length === 0 ? null : table(
+        "Machines", ["host", "processor", "instruction set", "runs", "median load", "maximum load"], 3,
+        machines.slice(0, 100).map(
+            ({host, processor, instruction_set, runs, median_load, max_load}) =>
+                [host, processor, instruction_set, String(runs), plain(median_load), plain(max_load)]));
+}
+
 export function make_settings({figures}) {
     return h(
         "section", {class: "repeat", "aria-labelledby": "settings-title"},
@@ -193,5 +203,6 @@ export function make_settings({figures}) {
           Object.entries(figures.settings)
               .map(([name, value]) => h("div", null, h("dt", null, foreign(name)),
                                         h("dd", {class: /^[0-9a-f]{64}$/.test(value) ? "hash" : null},
-                                          foreign(value ?? "none"))))));
+                                          foreign(value ?? "none"))))),
+        machines_table(figures));
 }

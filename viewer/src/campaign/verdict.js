@@ -8,7 +8,7 @@ const counted = (count, one, many) => `${number(count, ",d")} ${count === 1 ? on
 /** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
 export function verdict_of(model) {
     const {bars, failures, runs_done, runs_planned} = model.figures;
-    const without = failures.reduce((sum, {seeds}) => sum + seeds.length, 0);
+    const without = failures.reduce((sum, {count}) => sum + count, 0);
     const held = `${counted(runs_done, "run", "runs")}: ${number(runs_done - without, ",d")} ended with a flight that ` +
         `held, ${number(without, ",d")} did not.`;
     const missed = bars.filter((bar) => !bar.kept);
@@ -40,7 +40,7 @@ export function verdict_of(model) {
 }
 
 export function make_head(model, theme_switch) {
-    const {settings, stop_at_first_solution} = model.figures;
+    const {settings, stop_at_first_solution, machines, processor_models} = model.figures;
     const fact = (key, value) => h("span", {class: "fact"}, h("span", {class: "muted"}, key), " ", foreign(value));
     const limits = [
         settings.time_limit_s === null ? null : `${settings.time_limit_s} s`,
@@ -55,8 +55,12 @@ export function make_head(model, theme_switch) {
             h("p", {class: "description"}, foreign(settings.description)) :
             null,
         h("p", {class: "facts"}, fact("a search", limits.join(", ") || "without limits"), fact("seeds", settings.seeds),
-          fact("searches at a time", settings.jobs), fact("on", settings.processor),
-          fact("commit", settings.commit)));
+          fact("searches at a time", settings.jobs), fact("on", settings.processor ?? (processor_models === 1 ? machines[0].processor : `${processor_models} models of processors`)),
+          fact("commit", settings.commit)),
+        processor_models > 1 ?
+            h("p", {class: "facts", role: "note"},
+              `All times are of ${processor_models} models of processors together: do not compare them with other times.`) :
+            null);
 }
 
 export function make_verdict(model) {
