@@ -22,7 +22,7 @@ namespace {
 constexpr double lead_in_flight_s = 1;      ///< from the telemetry that a plan is made from to its first tick
 constexpr double lead_in_hover_s = 3;       ///< the same where there is time
 constexpr double planning_share = 0.8;      ///< of the lead, for planning
-constexpr std::uint64_t iterations = 1000;  ///< of a search in lock step, where time does not count
+constexpr std::uint64_t iterations = 3000;  ///< of a search in lock step, where time does not count
 constexpr std::size_t readings = 50;        ///< of the range finder for a mean: exact to some millimetres
 constexpr double max_drift_m = 0.15;
 constexpr int max_attempts = 6;  ///< plans for one target

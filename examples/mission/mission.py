@@ -24,7 +24,7 @@ import numpy as np
 LEAD_IN_FLIGHT_S = 1  # from the telemetry that a plan is made from to its first tick
 LEAD_IN_HOVER_S = 3  # the same where there is time
 PLANNING_SHARE = 0.8  # of the lead, for planning
-ITERATIONS = 1000  # of a search in lock step, where time does not count
+ITERATIONS = 3000  # of a search in lock step, where time does not count
 READINGS = 50  # of the range finder for a mean: exact to some millimetres
 MAX_DRIFT_M = 0.15
 MAX_ATTEMPTS = 6  # plans for one target
