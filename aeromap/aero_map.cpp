@@ -55,6 +55,16 @@ double cell_side_m(const std::vector<MapLayer>& layers) {
     return grid_m / std::max(1.0, std::ceil(grid_m / side_m));
 }
 
+/// Whether K depends on more than what is over and under the disc.
+bool sees_beside(const std::vector<MapLayer>& layers) {
+    return std::any_of(layers.begin(), layers.end(), [](const MapLayer& layer) {
+        const DirectEffect& effect = *layer.effect;
+        return effect.is_of_walls() || is_multirotor(effect.settings().ground.model) ||
+               is_multirotor(effect.settings().ceiling.model) || effect.ground().depends_on_wall() ||
+               effect.ceiling().depends_on_wall();
+    });
+}
+
 }  // namespace
 
 double map_cells(const std::vector<MapLayer>& layers, const Bounds& extent) {
@@ -133,20 +143,32 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress,
 AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed, int threads,
                          const StopCondition& is_over) const {
     AeroMap next(Empty(), std::move(layers), plane_, extent_);
-    const auto sees_beside = [](const MapLayer& layer) {
-        const DirectEffect& effect = *layer.effect;
-        return effect.is_of_walls() || is_multirotor(effect.settings().ground.model) ||
-               is_multirotor(effect.settings().ceiling.model) || effect.ground().depends_on_wall() ||
-               effect.ceiling().depends_on_wall();
-    };
     const bool is_same_grid = next.cell_m_ == cell_m_ && next.columns_ == columns_ && next.rows_ == rows_ &&
                               layers_.size() == next.layers_.size();
-    if (!is_same_grid || std::any_of(next.layers_.begin(), next.layers_.end(), sees_beside)) {
+    if (!is_same_grid || sees_beside(next.layers_)) {
         next.build(threads, {}, is_over);
     } else {
         next.build(threads, {}, is_over, this, next.columns_beside(changed));
     }
     return next;
+}
+
+bool AeroMap::is_touched(const std::vector<Scene::Bounds>& changed, const Bounds& part) const {
+    const bool is_inside = part.x_low_m >= extent_.x_low_m && part.x_high_m <= extent_.x_high_m &&
+                           part.z_low_m >= extent_.z_low_m && part.z_high_m <= extent_.z_high_m;
+    if (!is_inside || (!changed.empty() && sees_beside(layers_))) {
+        return true;
+    }
+    return std::any_of(changed.begin(), changed.end(), [&](const Scene::Bounds& box) {
+        // Cells are refined by blocks of them: one that is touched may change all of its own.
+        constexpr std::size_t block = FactorPatches::block_cells;
+        const ColumnRange columns = columns_beside({box});
+        const std::size_t first = columns.first / block * block;
+        const std::size_t last = (columns.last / block + 1) * block;
+        return columns.first < columns.last &&
+               extent_.x_low_m + static_cast<double>(first) * cell_m_ <= part.x_high_m &&
+               extent_.x_low_m + static_cast<double>(last) * cell_m_ >= part.x_low_m;
+    });
 }
 
 /// The columns whose discs are over or under some boxes, or so near them that it matters for what is flyable; none

@@ -62,6 +62,10 @@ class DOWNWASH_EXPORT AeroMap {
     [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed,
                                   int threads = 1, const StopCondition& is_over = {}) const;
 
+    /// Whether a part of the map may be another once boxes have changed; see rebuilt(). A part outside the extent is
+    /// evaluated directly, in the old scene: then the answer is yes.
+    [[nodiscard]] bool is_touched(const std::vector<Scene::Bounds>& changed, const Bounds& part) const;
+
     /// The content of the map as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
 

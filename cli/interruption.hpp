@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 #include <thread>
@@ -10,13 +11,18 @@
 
 namespace downwash::cli {
 
-/// During its lifetime SIGINT, SIGTERM and the end of the command's wall time end the program at once or, where there
-/// are results to save, request a stop. After a stop was requested a signal always ends the program at once.
+/// What a command may take; empty: no limit.
+struct CommandLimits {
+    std::optional<double> wall_s = {};               ///< counts from the construction of an Interruption on
+    std::optional<std::uint64_t> memory_bytes = {};  ///< resident memory of the process
+};
+
+/// During its lifetime SIGINT, SIGTERM and the command's limits end the program at once or, where there are results to
+/// save, request a stop. After a stop was requested a signal always ends the program at once.
 /// Create it before any other thread: threads inherit that these signals are blocked.
 class Interruption {
  public:
-    /// @param wall_limit_s counts from here on; empty: no limit
-    explicit Interruption(std::optional<double> wall_limit_s = std::nullopt);
+    explicit Interruption(const CommandLimits& limits = {});
     ~Interruption();
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
@@ -33,10 +39,12 @@ class Interruption {
     using Clock = std::chrono::steady_clock;
 
     void wait();
-    void end_by_limit();
+    [[nodiscard]] std::optional<std::chrono::nanoseconds> next_look() const;
+    void end_by_limit(const char* what, const char* option);
     void end_by_signal(int signal);
 
-    std::optional<Clock::time_point> deadline_;  ///< empty also after it has passed
+    std::optional<Clock::time_point> deadline_;  ///< empty also after a limit was reached
+    std::optional<std::uint64_t> memory_bytes_;  ///< likewise
     std::stop_source stop_;
     std::atomic<int> signal_ = 0;
     std::atomic<bool> has_results_ = false;

@@ -27,7 +27,7 @@ struct SolveArguments {
     PlannerOptions planner;
     int threads = default_threads();
     std::optional<std::string> out;
-    std::optional<double> wall_limit_s;
+    CommandLimits limits;
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, tries_remedies = false;
     bool force = false;
 };
@@ -68,7 +68,7 @@ void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet)
 }
 
 ExitCode run(const SolveArguments& given) {
-    Interruption interruption(given.wall_limit_s);
+    Interruption interruption(given.limits);
     std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
@@ -123,7 +123,12 @@ void add_solve(CLI::App& program, Action& action) {
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     add_force(command, given.force);
-    add_wall_limit(command, given.wall_limit_s, "then the best plan so far is written");
+    add_wall_limit(command, given.limits.wall_s, "then the best plan so far is written");
+    add_value(
+        command, "--max-memory SIZE", given.limits.memory_bytes,
+        "memory of the whole command, as 500MiB or 4GiB; where a search grows beyond it, it ends, and the best plan "
+        "so far is written")
+        ->transform(CLI::AsSizeValue(false));
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);

@@ -144,10 +144,12 @@ struct LyapunovReference {
 /// All laws one after the other: altitude, position, attitude, rotors. Between position and attitude the rates of the
 /// demanded tilt count as zero, of which the thesis says nothing; the claim about V holds for each law by itself.
 /// @param state its thrusts are those of the rotors at this moment   @param ceiling_factor see lyapunov_thrusts()
+/// @return the tilt that the position law asked for
 template <class T, class P>
-void lyapunov_commands(const BasicSpaceModel<P, 0>& model, const SpaceAllocation& allocation, const LyapunovLaw& law,
-                       const dynamics::SpaceState<T, 0>& state, const LyapunovReference<T>& reference,
-                       const T& ceiling_factor, T thrust_n[max_rotors]) {
+TiltDemand<T> lyapunov_commands(const BasicSpaceModel<P, 0>& model, const SpaceAllocation& allocation,
+                                const LyapunovLaw& law, const dynamics::SpaceState<T, 0>& state,
+                                const LyapunovReference<T>& reference, const T& ceiling_factor,
+                                T thrust_n[max_rotors]) {
     using dynamics::LaneVector;
     const dynamics::LaneRotation<T> attitude = dynamics::rotation_of(state.q + 3);
     const EulerAngles<T> angles = euler_angles(attitude);
@@ -163,6 +165,7 @@ void lyapunov_commands(const BasicSpaceModel<P, 0>& model, const SpaceAllocation
     const LaneVector<T> torque = attitude_torque(model, law, angles, LaneVector<T>{state.u[3], state.u[4], state.u[5]},
                                                  dynamics::rotor_spin_of(model, state.thrust_n), target);
     lyapunov_thrusts(allocation, acting_n, torque, ceiling_factor, thrust_n);
+    return tilt;
 }
 
 }  // namespace downwash::controllers

@@ -38,6 +38,10 @@ Motion Loop::motion() const {
     return of_file_point(plant_->vehicle(), state_.motion);
 }
 
+Motion Loop::seen(std::int64_t tick) const {
+    return sensors_.seen(motion(), tape_at(world_, tick));
+}
+
 void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
     const Tape tape = tape_at(world_, tick);
     const Motion now = motion();

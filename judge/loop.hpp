@@ -20,6 +20,9 @@ class Loop {
     /// Of the point of the robot file.
     [[nodiscard]] Motion motion() const;
 
+    /// What the controller sees in a tick that begins now. @param tick from the start of the flight
+    [[nodiscard]] Motion seen(std::int64_t tick) const;
+
     /// Another plant from here on: one that touches something. @pre it outlives the loop
     void fly_with(const Plant& plant) noexcept { plant_ = &plant; }
     [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }

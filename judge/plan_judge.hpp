@@ -77,8 +77,8 @@ class DOWNWASH_EXPORT PlanJudge {
     [[nodiscard]] JudgedFlight fly(const Plan& plan, const FlightConditions& conditions) const;
 
  private:
-    struct Setting;
-    std::unique_ptr<const Setting> setting_;
+    struct Shared;
+    std::unique_ptr<const Shared> setting_;
 };
 
 }  // namespace downwash::judge

@@ -285,6 +285,7 @@ void AnyOrder::take_if_better(const PlaceOrder& order, Solution found, double be
     solution_.tree = std::move(found.tree);
     solution_.certificate = found.certificate;
     solution_.execution = std::move(found.execution);
+    solution_.stops = std::move(found.stops);
 }
 
 /// Which targets are left out, and why. Where no flight to one was found, the solution is approximate.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "downwash/planner/planner.hpp"
+#include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/search/search_space.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -59,8 +60,11 @@ Goal hover_at(const Configuration& rest) {
 
 Braking::Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                  std::vector<FlownWorld> worlds, int threads)
-    : problem_(problem), model_(std::move(model)), map_(std::move(map)), worlds_(std::move(worlds)), threads_(threads) {
+    : problem_(problem), model_(std::move(model)), map_(std::move(map)), worlds_(std::move(worlds)) {
     worlds_.insert(worlds_.begin(), model_->nominal_world());
+    FlightRules rules = rules_of_execution();
+    rules.finds_min_clearance = true;
+    pool_ = std::make_unique<FlightPool>(*model_, map_.get(), rules, nullptr, threads);
 }
 
 Bounds Braking::reach(const Problem& problem, const Start& from) {
@@ -79,13 +83,24 @@ Bounds Braking::reach(const Problem& problem, const Start& from) {
             std::clamp(reach.z_high_m, bounds.z_low_m, bounds.z_high_m) + swing_m};
 }
 
-std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) const {
-    const ReferencePoint reference = reference_at(from);
+std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     const double tick_s = model_->tick().tick_s;
-    Problem stop = problem_;
-    stop.stops.clear();
-    stop.start = from;
-    std::optional<Stop> best;
+    std::vector<Try> tries;
+    for (const Way& way : ways) {
+        const MotionLimits limits = harder_limits(problem_.motion, way.harder);
+        const Configuration rest = rest_of(from, limits, way);
+        if (is_inside(problem_.bounds, rest)) {
+            Plan plan{{{0, from}}, tick_s};
+            plan.reference.push_back({shortest_ticks(from, at_rest(rest), limits, tick_s), at_rest(rest)});
+            tries.push_back({std::move(plan), hover_at(rest)});
+        }
+    }
+    return tries;
+}
+
+/// Mostly the first way is safe. Where it is not, all are flown in the nominal world, and those that are safe there in
+/// the others, until one is safe in all of them.
+std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) const {
     std::vector<FlightState> vehicles = fleet;
     if (vehicles.empty()) {
         const FlightState here = start_state(*model_, from);
@@ -94,49 +109,68 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
             vehicles.back().world = memory_at_start(world, here.plant);
         }
     }
-    for (const Way& way : ways) {
-        const MotionLimits limits = harder_limits(problem_.motion, way.harder);
-        const Configuration rest = rest_of(reference, limits, way);
-        if (!is_inside(problem_.bounds, rest)) {
-            continue;
-        }
-        Plan plan{{{0, reference}}, tick_s};
-        plan.reference.push_back({shortest_ticks(reference, at_rest(rest), limits, tick_s), at_rest(rest)});
-        stop.goal = hover_at(rest);
-        const std::size_t failing = failures(stop, plan, vehicles);
-        if (!best || failing < best->failures) {
-            best = {std::move(plan), failing};
-        }
-        if (failing == 0) {
-            break;
+    std::vector<Try> tries = all_tries(reference_at(from));
+    if (tries.empty()) {
+        return std::nullopt;
+    }
+    const auto is_safe = [](const Try& each) { return each.failures == 0; };
+    const std::span all(tries);
+    fly(all.first(1), vehicles, 0, worlds_.size());
+    std::size_t flown = 1;
+    if (!is_safe(tries.front())) {
+        fly(all.subspan(1), vehicles, 0, 1);
+        std::stable_partition(tries.begin() + 1, tries.end(), is_safe);
+        constexpr std::size_t together = 2;
+        while (flown < all.size() &&
+               std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(flown), is_safe)) {
+            const std::size_t count = std::min(together, all.size() - flown);
+            fly(all.subspan(flown, count), vehicles, 1, worlds_.size());
+            flown += count;
         }
     }
-    return best;
+    const auto best = std::min_element(tries.begin(), tries.begin() + static_cast<std::ptrdiff_t>(flown),
+                                       [](const Try& a, const Try& b) { return a.failures < b.failures; });
+    return Stop{std::move(best->plan), best->failures};
 }
 
-std::size_t Braking::failures(const Problem& stop, const Plan& plan, const std::vector<FlightState>& fleet) const {
+void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
+                  std::size_t last_world) const {
     const double here_m = model_->collisions().clearance_m(pose_of(fleet.front()));
-    const double margin_m = std::min(stop.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
-    const Plan held = with_hover(plan, stop.goal, *model_);
+    const double margin_m = std::min(problem_.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
+    const std::int64_t settling = std::llround(goal_settling_s / model_->tick().tick_s);
     std::vector<FlightJob> jobs;
-    for (std::size_t i = 0; i < worlds_.size(); ++i) {
-        jobs.push_back({fleet[i], {}, 0, &worlds_[i]});
+    for (const Try& each : tries) {
+        const Plan held = with_hover(each.plan, each.hover, *model_);
+        std::vector<FlightLeg> legs;
+        for (std::size_t i = 1; i < held.reference.size(); ++i) {
+            legs.push_back({segment_to(held, i)});
+        }
+        for (std::size_t i = first_world; i < last_world; ++i) {
+            jobs.push_back({fleet[i], legs, settling, &worlds_[i], 0, &each.hover});
+        }
     }
-    WorldFlights flights(stop, model_, map_, threads_);
-    flights.advance(jobs, held, 0, held.reference.size() - 1, 0);
-    // Where the vehicle is not quite as believed it may still be settling.
-    const auto failing = static_cast<std::size_t>(std::count_if(jobs.begin() + 1, jobs.end(), [](const FlightJob& job) {
-        return job.rejection() != Rejection::none && job.rejection() != Rejection::goal_missed;
-    }));
-    const bool is_good = jobs.front().rejection() == Rejection::none && min_clearance_m(jobs.front()) >= margin_m;
-    return failing + (is_good ? 0 : 1);
+    pool_->fly(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const FlightJob& job = jobs[i];
+        const bool is_nominal = job.world == worlds_.data();
+        const Rejection rejection = job.rejection();
+        // Where the vehicle is not quite as believed it may still be settling.
+        const bool fails = is_nominal ? rejection != Rejection::none || min_clearance_m(job) < margin_m
+                                      : rejection != Rejection::none && rejection != Rejection::goal_missed;
+        tries[i / (last_world - first_world)].failures += fails ? 1 : 0;
+    }
 }
 
-SafeStops stops_along(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
-                      const std::shared_ptr<const AeroMap>& map, const std::vector<FlownWorld>& worlds,
-                      const Plan& plan, int threads, const StopCondition& is_over) {
+StopFinder::StopFinder(const Problem& problem, std::shared_ptr<const FlightModel> model,
+                       std::shared_ptr<const AeroMap> map, std::vector<FlownWorld> worlds, int threads)
+    : problem_(problem),
+      model_(model),
+      worlds_(std::move(worlds)),
+      braking_(problem, model, map, worlds_, threads),
+      flights_(problem, model, map, threads) {}
+
+SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {
     constexpr double step_s = 0.5;
-    const Braking braking(problem, model, map, worlds, threads);
     const auto step = std::max<std::int64_t>(1, std::llround(step_s / plan.tick_s));
     std::vector<std::int64_t> ticks;
     for (const ReferenceKnot& knot : plan.reference) {
@@ -149,14 +183,11 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
     for (const std::int64_t tick : ticks) {
         moments.reference.push_back({tick, reference_of(plan, tick)});
     }
-    WorldFlights flights(problem, model, map, threads);
-    std::vector<FlownWorld> all = worlds;
-    all.insert(all.begin(), model->nominal_world());
-    const FlightState believed = start_state(*model, problem.start);
-    std::vector<FlightJob> fleet{{believed, {}, 0, all.data()}};
-    const std::vector<std::optional<FlightState>> starts = flights.starts_in(worlds);
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        fleet.push_back({starts[i].value_or(believed), {}, 0, &all[i + 1]});
+    const FlightState believed = start_state(*model_, problem_.start);
+    std::vector<FlightJob> fleet{{believed, {}, 0, &model_->nominal_world()}};
+    const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds_);
+    for (std::size_t i = 0; i < worlds_.size(); ++i) {
+        fleet.push_back({starts[i].value_or(believed), {}, 0, &worlds_[i]});
     }
     SafeStops stops;
     std::int64_t without = 0;
@@ -164,7 +195,7 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
         throw_if_over(is_over);
         const std::int64_t tick = ticks[i];
         if (i > 0) {
-            flights.advance(fleet, moments, i - 1, i, std::nullopt);
+            flights_.advance(fleet, moments, i - 1, i, std::nullopt);
         }
         std::vector<FlightState> vehicles;
         vehicles.reserve(fleet.size());
@@ -173,7 +204,7 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
         }
         SafeStops::Moment& moment = stops.moments.emplace_back();
         moment.tick = tick;
-        const auto stop = braking.best_stop(start_of(*model, vehicles.front(), moments.reference[i].point), vehicles);
+        const auto stop = braking_.best_stop(start_of(*model_, vehicles.front(), moments.reference[i].point), vehicles);
         if (stop && stop->failures == 0) {
             moment.rest = stop->plan.last();
             moment.duration_s = stop->plan.duration_s();
@@ -185,6 +216,11 @@ SafeStops stops_along(const Problem& problem, const std::shared_ptr<const Flight
         stops.share_without = static_cast<double>(without) / static_cast<double>(ticks.back());
     }
     return stops;
+}
+
+bool stops_less(const SafeStops& plan, const SafeStops& other) {
+    constexpr double clearly = 0.01;
+    return plan.share_without > other.share_without + clearly;
 }
 
 }  // namespace downwash::planning

@@ -2,12 +2,15 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/world_flights.hpp"
+#include "downwash/simulation/flight_batch.hpp"
+#include "downwash/simulation/world.hpp"
 
 namespace downwash::planning {
 
@@ -40,24 +43,44 @@ class DOWNWASH_EXPORT Braking {
     [[nodiscard]] static Bounds reach(const Problem& problem, const Start& from);
 
  private:
-    /// In how many worlds a stop is not safe.
-    [[nodiscard]] std::size_t failures(const Problem& stop, const Plan& plan,
-                                       const std::vector<FlightState>& fleet) const;
+    /// A way to brake that does not leave the bounds.
+    struct Try {
+        Plan plan;
+        Goal hover;
+        std::size_t failures = 0;  ///< in the worlds in which it was flown
+    };
+    [[nodiscard]] std::vector<Try> all_tries(const ReferencePoint& from) const;
+    /// Flies some of them side by side, in the worlds from the first to before the last.
+    void fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
+             std::size_t last_world) const;
 
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;
     std::shared_ptr<const AeroMap> map_;
     std::vector<FlownWorld> worlds_;  ///< the nominal one first
-    int threads_;
+    std::unique_ptr<FlightPool> pool_;
 };
 
-/// Where the vehicle can stop as it follows a plan from the problem's start, in every world from where it is in that
+/// Where vehicles can stop as they follow plans of a problem from its start, in every world from where they are in that
 /// world. Reference and way to brake are the same in all of them.
-/// @param map of the planner's own model; nullptr: surfaces do not act   @throws WorkStopped
-[[nodiscard]] DOWNWASH_EXPORT SafeStops stops_along(const Problem& problem,
-                                                    const std::shared_ptr<const FlightModel>& model,
-                                                    const std::shared_ptr<const AeroMap>& map,
-                                                    const std::vector<FlownWorld>& worlds, const Plan& plan,
-                                                    int threads, const StopCondition& is_over);
+class DOWNWASH_EXPORT StopFinder {
+ public:
+    /// As for Braking.
+    StopFinder(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
+               std::vector<FlownWorld> worlds, int threads = 1);
+
+    /// @param plan from the problem's start on   @throws WorkStopped when it is over before all stops are known
+    [[nodiscard]] SafeStops along(const Plan& plan, const StopCondition& is_over = {});
+
+ private:
+    const Problem& problem_;
+    std::shared_ptr<const FlightModel> model_;
+    std::vector<FlownWorld> worlds_;  ///< without the nominal one
+    Braking braking_;
+    WorldFlights flights_;
+};
+
+/// Whether a plan has no safe stop for clearly more of its time than another one: by a hundredth of it.
+[[nodiscard]] DOWNWASH_EXPORT bool stops_less(const SafeStops& plan, const SafeStops& other);
 
 }  // namespace downwash::planning

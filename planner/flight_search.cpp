@@ -32,15 +32,16 @@ Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
 class FlightSearch {
  public:
     FlightSearch(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                 const Course& before, ProblemWorlds* worlds, const SolveOptions& options, Solution& solution)
+                 const Course& before, const PlanChecks& checks, const SolveOptions& options, Solution& solution)
         : options_(options),
           before_(before),
           goals_(before.goals),
           solution_(solution),
           clock_(part, options, solution),
-          worlds_(worlds),
-          search_worlds_(worlds != nullptr ? worlds->for_search(before) : SearchWorlds{}),
-          task_(part, model, map, before.vehicle, worlds != nullptr ? &search_worlds_ : nullptr,
+          worlds_(checks.worlds),
+          stop_finder_(before.goals.size() == whole.stops.size() ? checks.stops : nullptr),
+          search_worlds_(worlds_ != nullptr ? worlds_->for_search(before) : SearchWorlds{}),
+          task_(part, model, map, before.vehicle, worlds_ != nullptr ? &search_worlds_ : nullptr,
                 before.plan.reference.empty() ? 0 : before.plan.reference.back().tick),
           start_(before.plan.reference.empty() ? before.vehicle : start_state(model, whole.start)),
           attempts_(before.attempts) {
@@ -58,6 +59,7 @@ class FlightSearch {
     [[nodiscard]] bool is_over() { return weak_goal_ || clock_.is_over(); }
     [[nodiscard]] bool survives_execution(const Plan& plan, double cost);
     [[nodiscard]] bool is_certified(const Plan& plan, double cost);
+    [[nodiscard]] bool can_stop(const Plan& plan);
     [[nodiscard]] std::vector<Counterexample> lessons();
     void accept(const Plan& plan, double cost, std::uint64_t iteration);
     void account(std::uint64_t iterations, const FlightStatistics& statistics);
@@ -70,6 +72,7 @@ class FlightSearch {
     Solution& solution_;
     SearchClock clock_;
     ProblemWorlds* worlds_;
+    StopFinder* stop_finder_;  ///< of plans to the last goal
     SearchWorlds search_worlds_;
     SearchTask task_;
     FlightState start_;                   ///< of the whole flight
@@ -78,6 +81,7 @@ class FlightSearch {
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
     std::uint64_t attempts_;                       ///< plans that asked for a certificate
     std::optional<Certificate> certificate_;       ///< of the plan that was executed last
+    std::optional<SafeStops> stops_;               ///< along that plan
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     std::optional<std::size_t> weakest_;           ///< part of that plan
     std::optional<std::size_t> weak_goal_;         ///< see PartSearch
@@ -115,7 +119,21 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
         discarded_ = obstruction_of(*execution_, task_.space);
         return false;
     }
-    return worlds_ == nullptr || is_certified(plan, cost);
+    return (worlds_ == nullptr || is_certified(plan, cost)) && can_stop(plan);
+}
+
+/// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case.
+bool FlightSearch::can_stop(const Plan& plan) {
+    stops_.reset();
+    if (stop_finder_ == nullptr) {
+        return true;
+    }
+    try {
+        stops_ = stop_finder_->along(before_.continued_by(plan), [this] { return clock_.is_over(); });
+    } catch (const WorkStopped&) {  // too late to know, and to find another one
+        return solution_.status != Status::solved;
+    }
+    return !solution_.stops || !stops_less(*stops_, *solution_.stops);
 }
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
@@ -169,6 +187,7 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
     solution_.plan = plan;
     solution_.cost = cost;
     solution_.certificate = certificate_;
+    solution_.stops = stops_;
     if (certificate_ && !solution_.planning.first_certified_wall_s) {
         solution_.planning.first_certified_wall_s = known_at_s_;
     }
@@ -291,9 +310,9 @@ bool is_good(const Execution& flight, double safety_margin_m) {
 }
 
 std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
-                                          const AeroMap* map, const Course& before, ProblemWorlds* worlds,
+                                          const AeroMap* map, const Course& before, const PlanChecks& checks,
                                           const SolveOptions& options, Solution& solution) {
-    FlightSearch search(part, whole, model, map, before, worlds, options, solution);
+    FlightSearch search(part, whole, model, map, before, checks, options, solution);
     part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
     return search.weak_goal();
 }

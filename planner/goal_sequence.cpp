@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/planner/braking.hpp"
 #include "downwash/planner/search_budget.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -78,6 +79,7 @@ class GoalSequence {
     [[nodiscard]] SolveOptions options_of_part(const Round& round);
     [[nodiscard]] double share(std::size_t part) const;
     [[nodiscard]] double cost_of_way(const Solution& way) const;
+    [[nodiscard]] bool is_better(const Solution& way) const;
     void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
                            std::uint64_t iterations_before);
     void take(Round round);
@@ -122,7 +124,7 @@ void GoalSequence::run() {
         const double share = left_.share_of(work);
         is_last = share > 0.5;
         Round round = try_round(left_.part(is_last ? 1 : share));
-        if (round.way.status == Status::solved && cost_of_way(round.way) < cost_of_way(solution_)) {
+        if (round.way.status == Status::solved && is_better(round.way)) {
             take(std::move(round));
         }
     }
@@ -223,6 +225,7 @@ bool GoalSequence::search_part(Round& round) {
     if (is_last) {
         way.status = Status::solved;
         way.execution = std::move(found.execution);
+        way.stops = std::move(found.stops);
         note_improvements(course, found.planning, begun_at_s, iterations_before);
         return true;
     }
@@ -291,6 +294,16 @@ double GoalSequence::cost_of_way(const Solution& way) const {
     return way.execution ? cost_of(*way.execution, problem_.planner.objective) : way.cost;
 }
 
+/// Than the best way so far: one that can be left for a hover for clearly more of its time or, else, a cheaper one.
+bool GoalSequence::is_better(const Solution& way) const {
+    if (way.stops && solution_.stops) {
+        if (stops_less(*way.stops, *solution_.stops) || stops_less(*solution_.stops, *way.stops)) {
+            return stops_less(*solution_.stops, *way.stops);
+        }
+    }
+    return cost_of_way(way) < cost_of_way(solution_);
+}
+
 /// What the search for the last part found, as ways through all goals.
 /// @param begun_at_s,iterations_before of the whole when it began
 void GoalSequence::note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
@@ -336,6 +349,7 @@ void GoalSequence::take(Round round) {
     solution_.tree = std::move(way.tree);
     solution_.certificate = way.certificate;
     solution_.execution = std::move(way.execution);
+    solution_.stops = std::move(way.stops);
     solution_.planning.flight_wall_s = way.planning.flight_wall_s;
     solution_.planning.nearest_approach_m = way.planning.nearest_approach_m;
     solution_.planning.obstruction = way.planning.obstruction;

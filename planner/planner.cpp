@@ -236,6 +236,15 @@ bool Planner::can_keep(const Plan& left, double& cost) const {
                        [](const WorldFlight& each) { return each.rejection == Rejection::none; });
 }
 
+/// A map of the places where the vehicle may stop: the one that is there, if nothing has changed over or under them.
+std::shared_ptr<const AeroMap> Planner::map_around(const Start& start) const {
+    const Bounds reach = planning::Braking::reach(problem_, start);
+    if (map_ && !map_->is_touched(unmapped_, rotor_extent(problem_.robot.rotors, reach))) {
+        return map_;
+    }
+    return model_->make_map(reach, options_.threads);
+}
+
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
     Call call{options, {}, {}};
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
@@ -256,9 +265,8 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
 
     const bool has_effects = problem_.aero.enabled;
-    const auto stop_map =
-        has_effects ? model_->make_map(planning::Braking::reach(problem_, start), options_.threads) : nullptr;
-    const planning::Braking braking(problem_, model_, stop_map, worlds(), options_.threads);
+    const planning::Braking braking(problem_, model_, has_effects ? map_around(start) : nullptr, worlds(),
+                                    options_.threads);
     Answer first;
     first.plan = left;
     if (auto stop = braking.best_stop(start)) {

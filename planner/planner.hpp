@@ -95,6 +95,8 @@ class DOWNWASH_EXPORT Planner {
     /// The problem as it is now: with all changes, from the last start to the goals that are left.
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
+    /// The same, to keep: a change of the scene makes another one.
+    [[nodiscard]] std::shared_ptr<const FlightModel> shared_model() const noexcept { return model_; }
     /// Of the scene as it was when a map was last needed; nullptr before.
     [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
     /// The last plan to the goal; empty before there is one.
@@ -106,6 +108,7 @@ class DOWNWASH_EXPORT Planner {
     void take_up(const SceneChange& change);
     void drop_visited_goals(std::int64_t tick);
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
+    [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Start& start) const;
     [[nodiscard]] bool can_keep(const Plan& left, double& cost) const;
     void search(Call& call, const Plan& left);
     void publish(Call& call, Answer answer);

@@ -27,12 +27,13 @@ StopCondition end_of_last_flight(const std::stop_token& stop) {
 /// One search, by lines or flights. @param whole the problem that the part is of   @return as PartSearch
 std::optional<std::size_t> search_part(const Problem& part, const Problem& whole, const FlightModel& model,
                                        const AeroMap* map, const planning::Course& before,
-                                       planning::ProblemWorlds* worlds, const SolveOptions& options, Solution& into) {
+                                       const planning::PlanChecks& checks, const SolveOptions& options,
+                                       Solution& into) {
     if (whole.planner.variant == Variant::mp_arm) {
         planning::search_lines(part, model, options, into);
         return std::nullopt;
     }
-    return planning::search_flights(part, whole, model, map, before, worlds, options, into);
+    return planning::search_flights(part, whole, model, map, before, checks, options, into);
 }
 
 /// One goal, or several in their order.
@@ -46,9 +47,16 @@ void plan_goals(const Problem& problem, const std::shared_ptr<const FlightModel>
         worlds.emplace(problem, model, map, options);
         solution.planning.map_wall_s += clock.seconds();
     }
+    std::optional<planning::StopFinder> stops;
+    if (options.finds_stops && problem.planner.variant == Variant::mp_arm_ada) {
+        stops.emplace(problem, model, map,
+                      problem.uncertainty ? planning::search_worlds(problem) : std::vector<FlownWorld>(),
+                      options.threads);
+    }
+    const planning::PlanChecks checks{worlds ? &*worlds : nullptr, stops ? &*stops : nullptr};
     const auto search = [&](const Problem& part, const SolveOptions& how, const planning::Course& before,
                             Solution& into) {
-        return search_part(part, problem, *model, map.get(), before, worlds ? &*worlds : nullptr, how, into);
+        return search_part(part, problem, *model, map.get(), before, checks, how, into);
     };
     if (!problem.stops.empty()) {
         planning::solve_in_turn(problem, *model, map.get(), options, search, least_round, attempts, solution);
@@ -58,6 +66,9 @@ void plan_goals(const Problem& problem, const std::shared_ptr<const FlightModel>
     start.attempts = attempts;
     static_cast<void>(search(problem, options, start, solution));
     attempts = solution.certificate ? solution.certificate->attempts : attempts;
+    if (stops && solution.status == Status::solved && !solution.stops) {  // found when the time was up
+        solution.stops = stops->along(*solution.plan, end_of_last_flight(options.stop));
+    }
 }
 
 /// @param since_call counts from the caller's call on, checks included
@@ -90,7 +101,7 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
         planning::solve_in_any_order(
             problem, *model, map.get(), options,
             [&](const Problem& leg, const SolveOptions& how, const planning::Course& before, Solution& into) {
-                static_cast<void>(search_part(leg, leg, *model, map.get(), before, nullptr, how, into));
+                static_cast<void>(search_part(leg, leg, *model, map.get(), before, {}, how, into));
             },
             [&](const Problem& in_order, const SolveOptions& how, double least_round, std::uint64_t& attempts,
                 Solution& into) { plan_goals(in_order, model, map, how, least_round, attempts, into); },
@@ -101,11 +112,6 @@ void plan_and_fly(const PlannableProblem& plannable, const SolveOptions& options
         solution.execution = planning::execute_directly(
             *model, start_state(*model, problem.start), *solution.plan, goals_of(flown), flown.energy_budget_j,
             solution.planning.flight_wall_s, end_of_last_flight(options.stop));
-    }
-    if (options.finds_stops && solution.status == Status::solved && problem.planner.variant == Variant::mp_arm_ada) {
-        solution.stops = planning::stops_along(
-            flown, model, map, plans_in_worlds ? planning::search_worlds(problem) : std::vector<FlownWorld>(),
-            *solution.plan, options.threads, end_of_last_flight(options.stop));
     }
     if (problem.uncertainty && !plans_in_worlds && solution.status == Status::solved) {
         // The others know nothing of worlds: what becomes of their plan is for comparison.

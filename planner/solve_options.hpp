@@ -52,8 +52,10 @@ struct SolveOptions {
     std::optional<Plan> known_plan;
     std::vector<Configuration> known_places;
     bool stop_at_first_solution = false;
-    bool finds_stops = false;  ///< also says where a plan of mp-arm-ada can be left for a hover; takes a moment more
-    bool keep_tree = false;    ///< also gives the search tree
+    /// Also says where a plan of mp-arm-ada can be left for a hover, and prefers plans that can be left for more of
+    /// their time to cheaper ones; takes a moment for each plan that counts.
+    bool finds_stops = false;
+    bool keep_tree = false;  ///< also gives the search tree
     std::shared_ptr<const AeroMap>
         map;  ///< reuses a map of the same problem, else std::invalid_argument; built when empty
     std::filesystem::path map_cache;  ///< folder in which maps are kept between runs; empty: nowhere

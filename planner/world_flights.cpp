@@ -13,12 +13,6 @@
 namespace downwash {
 namespace {
 
-ReferenceSegment segment_of(const Plan& plan, std::size_t to) {
-    const ReferenceKnot& a = plan.reference[to - 1];
-    const ReferenceKnot& b = plan.reference[to];
-    return {a.point, b.point, b.tick - a.tick, plan.tick_s};
-}
-
 /// The goal to which a flight was on the way when it failed.
 /// @param hovers knots at which those at the goals before the last end; a leg ends at each knot but the first
 std::size_t failed_goal(const FlightJob& job, const std::vector<std::size_t>& hovers) {
@@ -43,6 +37,12 @@ class AskingScope {
 };
 
 }  // namespace
+
+ReferenceSegment segment_to(const Plan& plan, std::size_t knot) {
+    const ReferenceKnot& a = plan.reference[knot - 1];
+    const ReferenceKnot& b = plan.reference[knot];
+    return {a.point, b.point, b.tick - a.tick, plan.tick_s};
+}
 
 Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model) {
     plan.reference.push_back(plan.reference.back());
@@ -112,7 +112,7 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     const std::int64_t judged_ticks = goal ? std::llround(goal_settling_s / model_->tick().tick_s) : 0;
     std::vector<FlightLeg> legs;
     for (std::size_t i = first + 1; i <= last; ++i) {
-        legs.push_back({segment_of(plan, i)});
+        legs.push_back({segment_to(plan, i)});
     }
     std::vector<FlightJob> flying;
     std::vector<FlightJob*> owners;

@@ -71,6 +71,9 @@ class DOWNWASH_EXPORT WorldFlights {
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 
+/// The segment of a plan that ends at a knot other than the first.
+[[nodiscard]] DOWNWASH_EXPORT ReferenceSegment segment_to(const Plan& plan, std::size_t knot);
+
 /// A plan with the hover at its last goal as its last two knots.
 [[nodiscard]] DOWNWASH_EXPORT Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model);
 

@@ -154,6 +154,15 @@ PlacedProblem parse_problem(const std::string& text, const std::filesystem::path
     return placed_problem(reader);
 }
 
+Problem parse_values(const std::string& text, const std::filesystem::path& file) {
+    ProblemTreeReader reader(problem_parameters());
+    reader.read_text(text, file);
+    if (auto errors = reader.errors(); !errors.empty()) {
+        throw ProblemFileError(std::move(errors));
+    }
+    return reader.model();
+}
+
 PlacedProblem changed_problem(const PlacedProblem& before, std::span<const KeyChange> changes) {
     Problem problem = before.plannable.problem;
     std::vector<KeyError> errors;

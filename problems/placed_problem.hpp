@@ -31,6 +31,11 @@ struct PlacedProblem {
 [[nodiscard]] DOWNWASH_EXPORT PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file,
                                                           bool leaves_out_inapplicable = false);
 
+/// Reads the values in the text of a problem file without checking the problem as a whole, for programs that take parts
+/// of it, such as obstacles and a goal, over into another problem.
+/// @param file as for parse_problem()   @throws ProblemFileError with every value that is wrong by itself
+[[nodiscard]] DOWNWASH_EXPORT Problem parse_values(const std::string& text, const std::filesystem::path& file);
+
 /// A new value of a key.
 struct KeyChange {
     std::string key;   ///< with the indices of lists: "planner.seed" or "environment.obstacles[0].box.size_m"

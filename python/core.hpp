@@ -30,6 +30,7 @@ void bind_errors(py::module_& module);
 void bind_problem(py::module_& module);
 void bind_solution(py::module_& module);
 void bind_solve(py::module_& module);
+void bind_planner(py::module_& module);
 void bind_aeromap(py::module_& module);
 void bind_hold(py::module_& module);
 void bind_validate(py::module_& module);

@@ -81,6 +81,7 @@ void bind_solution(py::module_& module) {
         .def_property_readonly("status", [](const CoreSolution& of) { return name_of(of.solution.status); })
         .def_property_readonly("interrupted", [](const CoreSolution& of) { return of.solution.interrupted; })
         .def_property_readonly("cost", [](const CoreSolution& of) { return of.solution.cost; })
+        .def("problem", [](const CoreSolution& of) { return std::make_shared<CoreProblem>(*of.of); })
         .def("json", json_of)
         .def("plan", plan_columns)
         .def("flight", flight_columns)

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve_options.hpp"
 #include "downwash/python/core.hpp"
+#include "downwash/python/interruptible.hpp"
 
 namespace downwash::python {
 
@@ -12,6 +15,9 @@ struct CoreSolution {
     std::shared_ptr<const CoreProblem> of;
     Solution solution;
 };
+
+/// A callback of a user with what a search tells; it may be None. Both outlive the search.
+[[nodiscard]] std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress);
 
 /// A problem with its goals in the order in which a plan visits them.
 /// @throws InputError if the plan is of other targets

@@ -9,13 +9,9 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/python/core_aeromap.hpp"
 #include "downwash/python/core_solution.hpp"
-#include "downwash/python/interruptible.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash::python {
-namespace {
-
-/// A callback of a user with what a search tells; it may be None.
 std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress) {
     if (on_progress.is_none()) {
         return {};
@@ -26,6 +22,8 @@ std::function<void(const Progress&)> telling(Attendance& attendance, const py::o
         });
     };
 }
+
+namespace {
 
 CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int threads, bool stop_at_first,
                            const std::string& cache, const std::shared_ptr<CoreMap>& map, const py::object& on_progress,

@@ -6,7 +6,18 @@ namespace downwash::python {
 
 void Attendance::tell(std::function<void()> callback) {
     const std::scoped_lock lock(mutex_);
-    callback_ = std::move(callback);
+    if (is_last_told_) {
+        callbacks_.pop_back();
+    }
+    callbacks_.push_back(std::move(callback));
+    is_last_told_ = true;
+    changed_.notify_one();
+}
+
+void Attendance::tell_each(std::function<void()> callback) {
+    const std::scoped_lock lock(mutex_);
+    callbacks_.push_back(std::move(callback));
+    is_last_told_ = false;
     changed_.notify_one();
 }
 
@@ -18,28 +29,30 @@ void Attendance::close() {
 
 void Attendance::wait() {
     for (;;) {
-        std::function<void()> callback;
+        std::vector<std::function<void()>> callbacks;
         bool is_closed = false;
         {
             const py::gil_scoped_release released;
             std::unique_lock lock(mutex_);
-            changed_.wait_for(lock, std::chrono::milliseconds(20), [this] { return is_closed_ || callback_; });
-            callback.swap(callback_);
+            changed_.wait_for(lock, std::chrono::milliseconds(20),
+                              [this] { return is_closed_ || !callbacks_.empty(); });
+            callbacks.swap(callbacks_);
+            is_last_told_ = false;
             is_closed = is_closed_;
         }
-        attend(callback);
+        attend(callbacks);
         if (is_closed) {
             return;
         }
     }
 }
 
-void Attendance::attend(const std::function<void()>& callback) {
+void Attendance::attend(const std::vector<std::function<void()>>& callbacks) {
     try {
         if (raised_) {
             return;
         }
-        if (callback) {
+        for (const std::function<void()>& callback : callbacks) {
             callback();
         }
         if (PyErr_CheckSignals() != 0) {

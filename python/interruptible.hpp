@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace downwash::python {
 
@@ -27,6 +28,8 @@ class Attendance {
     /// From the working thread: has the calling thread run a callback with the interpreter lock. Where it is busy, a
     /// newer callback takes the place of one that waits.
     void tell(std::function<void()> callback);
+    /// The same for a callback of which none may be missed: it runs after those that wait.
+    void tell_each(std::function<void()> callback);
     /// From the working thread: there is nothing more to wait for.
     void close();
 
@@ -36,13 +39,14 @@ class Attendance {
     void rethrow() const;
 
  private:
-    void attend(const std::function<void()>& callback);
+    void attend(const std::vector<std::function<void()>>& callbacks);
 
     py::object stop_;
     std::stop_source interrupt_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::function<void()> callback_;
+    std::vector<std::function<void()>> callbacks_;  ///< that wait
+    bool is_last_told_ = false;                     ///< of those: by tell()
     bool is_closed_ = false;
     std::optional<py::error_already_set> raised_;
 };

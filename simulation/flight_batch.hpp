@@ -27,6 +27,7 @@ struct FlightJob {
     /// In which it is flown; nullptr: the nominal one. Must outlive the flight.
     const FlownWorld* world = nullptr;
     std::int64_t first_tick = 0;  ///< see FlightWorld
+    const Goal* goal = nullptr;   ///< instead of the pool's; must outlive the flight
 
     /// The leg on which the flight ended early; nullptr when it did not.
     [[nodiscard]] DOWNWASH_EXPORT const FlightLeg* rejected_leg() const noexcept;
@@ -58,7 +59,7 @@ enum class Instructions : std::uint8_t {
 class DOWNWASH_EXPORT FlightPool {
  public:
     /// @param map,rules as for fly(); all threads call rules.is_over
-    /// @param goal of jobs with judged_ticks; may be nullptr when there are none
+    /// @param goal of jobs with judged_ticks and no goal of their own; may be nullptr when there are none
     /// @param threads at least 1, the calling one included; the others wait between batches
     /// @pre model, map and goal outlive the pool, and the processor has the `instructions`
     FlightPool(const FlightModel& model, const AeroMap* map, FlightRules rules, const Goal* goal, int threads = 1,

@@ -163,11 +163,12 @@ class FlightLane {
     /// that it surely still meets the goal.
     Rejection goal_rejection() {
         const FlightState now = state();
-        if (!meets_goal(*setting_->goal, plant(), now)) {
+        const Goal& goal = job_->goal != nullptr ? *job_->goal : *setting_->goal;
+        if (!meets_goal(goal, plant(), now)) {
             return Rejection::goal_missed;
         }
         const double motion_m =
-            motion_within_goal_m(*setting_->goal, plant(), pose_of(now), setting_->model.collisions().body_reach_m());
+            motion_within_goal_m(goal, plant(), pose_of(now), setting_->model.collisions().body_reach_m());
         limit_free_motion(motion_m);
         lanes_->max_speed_m_s[number_] = goal_max_speed_m_s;
         lanes_->look_tick[number_] = HUGE_VAL;

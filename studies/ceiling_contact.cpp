@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <thread>
 
 #include "downwash/base/parallel.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/studies/ceiling_flight.hpp"
+#include "downwash/studies/ceiling_inspection.hpp"
 #include "downwash/studies/lyapunov_decay.hpp"
 
 namespace downwash::studies {
@@ -44,8 +46,15 @@ struct Case {
     CeilingExperiment experiment;
 };
 
-std::vector<CeilingFlight> flown(const std::vector<Case>& cases) {
-    std::vector<CeilingFlight> flights(cases.size());
+/// A mission to be flown, and its name.
+struct InspectionCase {
+    std::string name;
+    CeilingInspection experiment;
+};
+
+template <class OneCase>
+auto flown(const std::vector<OneCase>& cases) {
+    std::vector<decltype(fly(cases.front().experiment))> flights(cases.size());
     const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     run_parallel(cases.size(), threads, [&](std::size_t i) { flights[i] = fly(cases[i].experiment); });
     return flights;
@@ -135,9 +144,9 @@ Table table_of_height_errors(const CeilingVehicle& vehicle) {
     return table;
 }
 
-Curve curve_of(std::string name, const std::vector<double>& x, const std::vector<double>& y) {
+Curve curve_of(std::string name, const std::vector<double>& x, const std::vector<double>& y, std::size_t step = 4) {
     Curve curve{std::move(name), {}};
-    for (std::size_t i = 0; i < x.size(); i += 4) {
+    for (std::size_t i = 0; i < x.size(); i += step) {
         curve.points.push_back({x[i], y[i]});
     }
     return curve;
@@ -150,6 +159,79 @@ CurveFigure diagram(std::string title, std::string y_label, std::vector<Curve> c
     figure.y_label = std::move(y_label);
     figure.curves = std::move(curves);
     return figure;
+}
+
+/// The mission as it is; without K_c; both as a total station sees them; and with other gains of roll and pitch.
+std::vector<InspectionCase> cases_of_inspection() {
+    std::vector<InspectionCase> cases;
+    const auto add = [&](std::string name) -> CeilingInspection& {
+        return cases.emplace_back(InspectionCase{std::move(name), {}}).experiment;
+    };
+    add("Lyapunov");
+    add("Lyapunov, K_c = 1").knows_ceiling = false;
+    for (const bool knows_ceiling : {true, false}) {
+        CeilingInspection& seen = add(cases[knows_ceiling ? 0 : 1].name + ", 20 Hz, 1 cm noise");
+        seen.knows_ceiling = knows_ceiling;
+        seen.sample_s = 0.05;
+        seen.position_noise_m = 0.01;
+    }
+    for (const double gain_1_s : {8.0, 12.0, 16.0, 25.0}) {
+        add(fmt::format("Lyapunov, gains of roll and pitch {} 1/s", gain_1_s)).attitude_gain_1_s = gain_1_s;
+    }
+    return cases;
+}
+
+std::string contacts_text(const CeilingInspection& mission, const CeilingInspectionFlight& flight) {
+    return fmt::format("{} of {}", flight.contacts_held, mission.points_m.size());
+}
+
+Table table_of(const std::vector<InspectionCase>& cases, const std::vector<CeilingInspectionFlight>& flights) {
+    Table table{"inspection",
+                "A mission of several contacts",
+                {"flight", "contacts held", "longest delay on leaving [s]", "fall below the height of travel [m]",
+                 "farthest aside at rest [m]", "greatest tilt [deg]"},
+                {}};
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const CeilingInspectionFlight& flight = flights[i];
+        table.rows.push_back({cases[i].name, contacts_text(cases[i].experiment, flight),
+                              flight.always_leaves ? fmt::format("{:.2f}", flight.delay_s) : "never",
+                              fmt::format("{:.3f}", flight.below_travel_m), fmt::format("{:.3f}", flight.max_aside_m),
+                              fmt::format("{:.1f}", flight.max_tilt_deg)});
+    }
+    return table;
+}
+
+Finding finding_of(const CeilingInspection& mission, const CeilingInspectionFlight& flight,
+                   const CeilingInspectionFlight& unaware) {
+    const bool all_held = flight.contacts_held == static_cast<int>(mission.points_m.size());
+    return {"C8: contacts one after the other, without a critical loss of height", "in safety (figures 4.16 and 4.17)",
+            fmt::format("{} contacts held; leaves within {:.2f} s and falls {:.3f} m below the height of travel",
+                        contacts_text(mission, flight), flight.delay_s, flight.below_travel_m),
+            all_held && flight.always_leaves && flight.below_travel_m < 0.1,
+            unaware.always_leaves ? "without K_c it leaves every point, too"
+                                  : "without K_c it does not come down before the next leg begins"};
+}
+
+std::vector<Figure> figures_of(const CeilingInspectionFlight& flight) {
+    const auto line = [&](std::string name, const std::vector<double>& values) {
+        return curve_of(std::move(name), flight.time_s, values, 12);
+    };
+    Figure position{"figure_4_16",
+                    "Thesis figure 4.16: position in a mission of four contacts under the Lyapunov laws.",
+                    {diagram("An inspection by contact: position", "height [m]",
+                             {line("frame", flight.height_m), line("reference", flight.reference_height_m)}),
+                     diagram("", "x [m]", {line("vehicle", flight.x_m), line("reference", flight.reference_x_m)}),
+                     diagram("", "y [m]", {line("vehicle", flight.y_m), line("reference", flight.reference_y_m)}),
+                     diagram("", "K_c", {line("at the rotors", flight.ceiling_factor)})}};
+    position.diagrams[0].level = 0;
+    Figure attitude{
+        "figure_4_17",
+        "Thesis figure 4.17: attitude in the same mission.",
+        {diagram("An inspection by contact: attitude", "roll [deg]",
+                 {line("vehicle", flight.roll_deg), line("reference", flight.demanded_roll_deg)}),
+         diagram("", "pitch [deg]", {line("vehicle", flight.pitch_deg), line("reference", flight.demanded_pitch_deg)}),
+         diagram("", "yaw [deg]", {line("vehicle", flight.yaw_deg)})}};
+    return {std::move(position), std::move(attitude)};
 }
 
 std::vector<Figure> figures_of(const CeilingFlight& lyapunov, const CeilingFlight& pid) {
@@ -200,7 +282,9 @@ Study ceiling_contact() {
         "at 0.3 m/s. Every rotor has (2.18) of its own "
         "height. The contact is compliant and has friction. Both laws see the height exactly, at 100 Hz; the table of "
         "sensors tells what 20 Hz and 1 cm change. "
-        "Roll and pitch are the Lyapunov laws' in both.",
+        "Roll and pitch are the Lyapunov laws' in both. Figures 4.16 and 4.17 are a mission: four contacts of 6 s, "
+        "under the laws of "
+        "altitude, position and attitude together.",
         "The thesis gives neither mass nor gains. The PID (height 2 1/s, climb rate 4 1/s, integral 1 1/s2) and the "
         "Lyapunov law (k = k' = 2 1/s) are about as "
         "quick in free air. The table of gains flies both from half to twice of that."};
@@ -236,12 +320,16 @@ Study ceiling_contact() {
     study.findings.push_back({"C6: the command has to fall this far to leave contact", "up to 40 %",
                               fmt::format("{:.0f} %", 100 * (1 - 1 / in_contact)), 1 - 1 / in_contact > 0.35,
                               "40 % would take K = 1.67"});
+    const std::vector<InspectionCase> inspections = cases_of_inspection();
+    const std::vector<CeilingInspectionFlight> missions = flown(inspections);
+    study.findings.push_back(finding_of(inspections[0].experiment, missions[0], missions[1]));
     study.figures = figures_of(lyapunov, pid);
+    std::ranges::move(figures_of(missions[0]), std::back_inserter(study.figures));
     study.tables = {
         table_of("gains", "Leaving the ceiling, over gains of the height loop", gains, flights),
         table_of("sensors", "The same with the thesis' total station: heights at 20 Hz with 1 cm noise, and K_c off",
                  sensors, flown(sensors)),
-        table_of_height_errors(vehicle)};
+        table_of_height_errors(vehicle), table_of(inspections, missions)};
     return study;
 }
 

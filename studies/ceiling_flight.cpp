@@ -21,18 +21,6 @@ const EffectCurve& curve_of_ceiling() {
     return curve;
 }
 
-/// It touches over the rotors.
-dynamics::CeilingContact frame_of(const CeilingVehicle& vehicle) {
-    dynamics::CeilingContact contact;
-    const double half = vehicle.arm_m * std::numbers::sqrt2 / 2;
-    for (const double x : {half, -half}) {
-        for (const double y : {half, -half}) {
-            contact.point_m[contact.point_count++] = {x, y, vehicle.rotor_height_m + vehicle.guard_m};
-        }
-    }
-    return contact;
-}
-
 /// Height and climb rate of the reference.
 struct Reference {
     double height_m, climb_m_s;
@@ -58,6 +46,17 @@ SpacePlant plant_of(const CeilingVehicle& vehicle) {
     quadrotor.rotor_height_m = vehicle.rotor_height_m;
     quadrotor.drag_torque_m = 0.016;
     return make_quadrotor(quadrotor);
+}
+
+dynamics::CeilingContact frame_of(const CeilingVehicle& vehicle) {
+    dynamics::CeilingContact contact;
+    const double half = vehicle.arm_m * std::numbers::sqrt2 / 2;
+    for (const double x : {half, -half}) {
+        for (const double y : {half, -half}) {
+            contact.point_m[contact.point_count++] = {x, y, vehicle.rotor_height_m + vehicle.guard_m};
+        }
+    }
+    return contact;
 }
 
 double ceiling_factor_at(const CeilingVehicle& vehicle, double distance_m) {

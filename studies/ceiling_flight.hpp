@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/dynamics/ceiling_contact.hpp"
 #include "downwash/dynamics/space_plant.hpp"
 
 // A quadrotor in space under a wide ceiling that it may touch: the flights of thesis 4.7.
@@ -71,6 +72,9 @@ struct CeilingFlight {
 
 /// The vehicle as a plant in space.
 [[nodiscard]] DOWNWASH_EXPORT SpacePlant plant_of(const CeilingVehicle& vehicle);
+
+/// Its frame: four points over the rotors touch.
+[[nodiscard]] DOWNWASH_EXPORT dynamics::CeilingContact frame_of(const CeilingVehicle& vehicle);
 
 /// K of (2.18) with the rotors `distance_m` below the ceiling.
 [[nodiscard]] DOWNWASH_EXPORT double ceiling_factor_at(const CeilingVehicle& vehicle, double distance_m);

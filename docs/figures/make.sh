@@ -86,7 +86,7 @@ for study in partial-ground-effect disturbance-test-bench ceiling-envelope ceili
     awk '/^\| \| thesis/ { inside = 1 } /^$/ { inside = 0 } inside' "$work/$study/study.md" | replace "$study" control.md
 done
 cp "$work"/partial-ground-effect/figure_3_1[56].svg "$work"/disturbance-test-bench/figure_3_18_to_3_20.svg \
-    "$work"/ceiling-envelope/figure_4_9.svg "$work"/ceiling-contact/figure_4_15.svg .
+    "$work"/ceiling-envelope/figure_4_9.svg "$work"/ceiling-contact/figure_4_1[567].svg .
 
 "$downwash" aeromap compare "$data" "$tilted" --rotor-spacing 2.5 --markdown | replace comparison aeromap.md
 { echo "\`\`\`"; "$downwash" aeromap fit "$tilted" --tilt-loss; echo "\`\`\`"; } | replace tilt aeromap.md

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs a build of Downwash into a temporary prefix and uses it from outside: compiles every installed header alone,
 # builds and runs this example plainly and with -march=native, runs OMPL's planners and benchmark on our flights
-# (examples/ompl), and calls the installed program and its completion.
+# (examples/ompl), flies the missions (examples/mission), and calls the installed program and its completion.
 # Usage: examples/embed/run_consumer_test.sh [build folder, default: build]
 set -euo pipefail
 
@@ -64,6 +64,11 @@ echo "OMPL's planners on our flights, and ours, by OMPL's benchmark"
     exit 1
 }
 (cd "$work" && ompl/flights_with_ompl "$problem" 1 2)
+
+if [[ -f $prefix/include/downwash/judge/simulated_vehicle.hpp ]]; then
+    echo "a mission planner and the vehicle that it commands (examples/mission)"
+    "$root/examples/mission/run_mission_test.sh" "$prefix" "$work"
+fi
 
 if [[ ! -x $prefix/bin/downwash ]]; then
     echo "this build has no program"

@@ -13,11 +13,13 @@ from .aeromap import AeroMap, factor, is_flyable
 from .analysis import Validation, draw_worlds, hold, validate
 from .campaign import Campaign
 from .errors import FolderError, InputError, LocatedError, OtherRunError, ProblemError, Stopped
+from .planner import Answer, Planner, ReferencePoint, Start
 from .problem import Problem, explain, read_problem
 from .solution import Columns, Flight, Progress, Solution, execute, read_solution, solve
 
 __all__ = [
     "AeroMap",
+    "Answer",
     "Campaign",
     "Columns",
     "Flight",
@@ -25,10 +27,13 @@ __all__ = [
     "InputError",
     "LocatedError",
     "OtherRunError",
+    "Planner",
     "Problem",
     "ProblemError",
     "Progress",
+    "ReferencePoint",
     "Solution",
+    "Start",
     "Stopped",
     "Validation",
     "__version__",

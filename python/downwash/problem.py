@@ -60,11 +60,16 @@ def _parsed(document: Mapping[str, Any], folder: Path, leaves_out_inapplicable: 
     try:
         return _core.Problem.parse(_yaml(document), os.path.join(folder, "<dict>"), leaves_out_inapplicable)
     except ProblemError as error:
-        rows = [
-            LocatedError(None, None, None, each.message) if (each.file or "").endswith("<dict>") else each
-            for each in error.errors
-        ]
-        raise ProblemError("\n".join(map(str, rows)), rows) from None
+        raise _without_lines(error) from None
+
+
+def _without_lines(error: ProblemError) -> ProblemError:
+    """The error of a document, which has lines for nobody."""
+    rows = [
+        LocatedError(None, None, None, each.message) if (each.file or "").endswith("<dict>") else each
+        for each in error.errors
+    ]
+    return ProblemError("\n".join(map(str, rows)), rows)
 
 
 class Problem:

@@ -64,6 +64,7 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
 
 TEST_CASE("A map that follows a change of its scene is that of the new scene to the last bit") {
     test::Random random(17);
+    int untouched = 0;
     for (int scene = 0; scene < 24; ++scene) {
         const double radius = random.uniform(0.06, 0.25);
         const std::vector<Obstacle> all = random_obstacles(random, 7);
@@ -89,8 +90,27 @@ TEST_CASE("A map that follows a change of its scene is that of the new scene to 
             changed.push_back(Scene({touched}).bounds(0));
         }
         CAPTURE(scene, radius);
-        CHECK(old.rebuilt(layers, changed, 2).to_bytes() == AeroMap(layers, plane, extent).to_bytes());
+        const AeroMap anew(layers, plane, extent);
+        CHECK(old.rebuilt(layers, changed, 2).to_bytes() == anew.to_bytes());
+        // Where it says that nothing is touched, nothing is another.
+        for (double x_m = -2; x_m < 2; x_m += 0.25) {
+            const Bounds part{x_m, x_m + 0.25, -1.5, 1.5};
+            if (old.is_touched(changed, part)) {
+                continue;
+            }
+            ++untouched;
+            for (int i = 0; i < 100; ++i) {
+                const double x = random.uniform(part.x_low_m, part.x_high_m);
+                const double z = random.uniform(part.z_low_m, part.z_high_m);
+                CHECK(old.factor(1, x, z) == anew.factor(1, x, z));
+                CHECK(old.is_flyable(1, x, z) == anew.is_flyable(1, x, z));
+            }
+        }
+        CHECK_FALSE(old.is_touched({}, extent));
+        CHECK(old.is_touched({}, {-2.1, 0, 0, 1}));
+        CHECK(old.is_touched(changed, extent));
     }
+    CHECK(untouched > 24);
 }
 
 TEST_CASE("Up to the edge of the flyable area no value of the other side is seen") {

@@ -66,6 +66,19 @@ TEST_CASE("The end of the wall time writes the best plan so far, and is no signa
     CHECK_THAT(at_once.err, Catch::Contains("--wall-limit expects more"));
 }
 
+TEST_CASE("A search that grows beyond its memory writes the best plan so far, and is no signal") {
+    const Workspace work;
+    const Result result =
+        work.run(words("solve", problem_file("open_air"), "--time-limit 600 --max-memory 128MiB --out x"));
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Catch::StartsWith("Interrupted. Solved. "));
+    CHECK(work.files("x").size() == files_of_a_run);
+    const Result at_once = work.run(words("solve", problem_file("open_air"), "--max-memory 1MiB --out y"));
+    CHECK(at_once.code == 1);
+    CHECK_THAT(at_once.err, Catch::Contains("--max-memory expects more"));
+    CHECK(work.run(words("solve", problem_file("open_air"), "--max-memory much --out y")).code == 2);
+}
+
 namespace {
 
 /// While it lives, no file may grow beyond so many bytes, those of programs started meanwhile included (ulimit -f).

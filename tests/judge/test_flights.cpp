@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 
 #include "../support/test_problem.hpp"
 #include "downwash/judge/plan_judge.hpp"
+#include "downwash/judge/reference.hpp"
+#include "downwash/judge/simulated_vehicle.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -103,6 +106,40 @@ TEST_CASE("The judge flies on from the middle of a flight as the planner does, w
             compare(mine, *theirs);
         }
     }
+}
+
+TEST_CASE("A vehicle that is told the plan tick by tick flies as the judge flies the plan") {
+    const Problem problem = shipped("bridge_inspection");
+    const Plan plan = plan_of(problem, 100);
+    const judge::FlightConditions in{true, draw_world(*problem.uncertainty, problem.robot, 7, 3)};
+    const judge::JudgedFlight whole = judge::PlanJudge(problem).fly(plan, in);
+    judge::SimulatedVehicle vehicle(problem, in);
+    const auto end = static_cast<std::int64_t>(whole.rows.size()) - 1;
+    judge::Reference reference(plan);
+    ReferencePoint now = reference.at(0);
+    double noise_m = 0;
+    for (std::int64_t tick = 0; tick < end; ++tick) {
+        noise_m = std::max(noise_m, std::abs(vehicle.readings().pose.x_m - vehicle.flight().rows.back().pose.x_m));
+        const ReferencePoint next = reference.at(tick + 1);
+        vehicle.follow(now, next);
+        now = next;
+    }
+    REQUIRE(vehicle.flight().rows.size() == whole.rows.size());
+    const PlanarPose& there = vehicle.flight().rows.back().pose;
+    CHECK(std::memcmp(&there, &whole.rows.back().pose, sizeof(there)) == 0);
+    CHECK(vehicle.flight().energy_j == whole.energy_j);
+    CHECK(vehicle.flight().min_clearance_m == whole.min_clearance_m);
+    CHECK(noise_m > 0.005);  // it tells what its sensors see
+    CHECK(noise_m < 0.1);
+    CHECK(vehicle.readings().rotor_thrust_n.size() == 4);
+    // It flies no farther than to where its flight ends: here it is told to leave for the deck.
+    while (vehicle.flight().rows.size() < whole.rows.size() + 2000 && vehicle.follow(now, now)) {
+        now.position[1] += 0.01;
+    }
+    CHECK(vehicle.flight().outcome != judge::Outcome::ok);
+    const std::size_t rows = vehicle.flight().rows.size();
+    CHECK_FALSE(vehicle.follow(now, now));
+    CHECK(vehicle.flight().rows.size() == rows);
 }
 
 TEST_CASE("The judge's flight of a plan is the planner's on every shipped problem") {

@@ -226,7 +226,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
             // The way to the first goal is good as believed, and it stays so.
             planning::ProblemWorlds* survived = before.goals.empty() ? nullptr : &worlds;
             const auto weak =
-                planning::search_flights(part, problem, *model, map.get(), before, survived, of_part, found);
+                planning::search_flights(part, problem, *model, map.get(), before, {survived}, of_part, found);
             if (survived != nullptr) {
                 named.push_back(weak);
             }

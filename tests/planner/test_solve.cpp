@@ -49,8 +49,8 @@ Solution solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles)
     const auto model = make_flight_model(problem);
     const auto map = map_as_if(problem, std::move(obstacles));
     Solution solution;
-    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model),
-                             nullptr, {}, solution);
+    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model), {}, {},
+                             solution);
     if (solution.execution) {
         solution.execution_cost = cost_of(*solution.execution, problem.planner.objective);
     }

@@ -5,6 +5,7 @@
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/studies/bench_flight.hpp"
 #include "downwash/studies/ceiling_flight.hpp"
+#include "downwash/studies/ceiling_inspection.hpp"
 #include "downwash/studies/lyapunov_decay.hpp"
 #include "downwash/studies/planar_flight.hpp"
 
@@ -99,6 +100,25 @@ TEST_CASE(
     CeilingExperiment unaware = experiment;
     unaware.law = AltitudeLaw::lyapunov_unaware;
     CHECK(fly(unaware).command_in_contact() == Approx(pressing).epsilon(0.01));
+}
+
+TEST_CASE("A mission of four contacts holds each of them, and without K_c the vehicle does not come down in time") {
+    const CeilingInspection mission;
+    const CeilingInspectionFlight flight = fly(mission);
+    CHECK(flight.contacts_held == 4);
+    CHECK(flight.always_leaves);
+    CHECK(flight.delay_s < 0.3);
+    CHECK(flight.below_travel_m < 0.1);
+    // Between two points the vehicle tilts as far as a step of the reference's speed asks for: k' = 1/s times 0.3 m/s.
+    CHECK(flight.max_tilt_deg > 1);
+    CHECK(flight.max_tilt_deg < 10);
+    // 12 s of climbs, holds and descents and two rests at each of four points, and three legs of 1 m between them.
+    CHECK(flight.time_s.size() == Approx(100 * (4 * (6 + 2 * 3 + 2 * 0.42 / 0.3) + 3 / 0.3)).margin(20));
+    CHECK(flight.x_m.back() == Approx(2).margin(0.01));
+    CHECK(flight.y_m.back() == Approx(1).margin(0.01));
+    CeilingInspection unaware = mission;
+    unaware.knows_ceiling = false;
+    CHECK_FALSE(fly(unaware).always_leaves);
 }
 
 TEST_CASE("The altitude law keeps its promise to rounding, and nearly so with a command held for 10 ms") {

@@ -1,0 +1,271 @@
+"""Planning again while the vehicle flies."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .errors import InputError, ProblemError
+from .problem import Path, Problem, _without_lines, _yaml
+from .solution import Columns, Progress, Solution, StopSignal, _teller
+
+__all__ = ["Answer", "Planner", "ReferencePoint", "Start"]
+
+_STATE = ("x_m", "z_m", "arm_rad", "pitch_rad", "vx_m_s", "vz_m_s", "pitch_rate_rad_s", "arm_rate_rad_s")
+
+_CoreStart = Tuple[Sequence[float], Optional[Sequence[float]], Sequence[float], Sequence[float]]
+
+
+class ReferencePoint(NamedTuple):
+    """Where vehicle and arm should be at a control tick, with the names of the knots in solution.json."""
+
+    x_m: float
+    z_m: float
+    arm_rad: float
+    vx_m_s: float = 0
+    vz_m_s: float = 0
+    arm_rate_rad_s: float = 0
+    ax_m_s2: float = 0
+    az_m_s2: float = 0
+    arm_acceleration_rad_s2: float = 0
+
+
+_KNOT = ("t_s", *ReferencePoint._fields)
+
+
+@dataclass(frozen=True)
+class Start:
+    """The whole vehicle at a moment, from which a new plan begins. `dataclasses.replace` makes another one."""
+
+    x_m: float
+    z_m: float
+    arm_rad: float
+    pitch_rad: float = 0
+    vx_m_s: float = 0
+    vz_m_s: float = 0
+    pitch_rate_rad_s: float = 0
+    arm_rate_rad_s: float = 0
+    reference: ReferencePoint | None = None
+    """That the vehicle follows at this moment. None: it is to stay where it is."""
+    rotor_thrust_n: tuple[float, ...] = ()
+    """Free-air thrust that each rotor's lag has reached [N]. Empty: the rotors carry the weight."""
+    controller_memory: tuple[float, ...] = ()
+    """Of the control law. Empty: that of a vehicle that has hovered for long."""
+
+    @classmethod
+    def from_row(cls, row: Mapping[str, Any], reference: ReferencePoint | None = None) -> Start:
+        """A vehicle from a row of telemetry with the names of trajectory.csv: pose, speeds, and `rotor_1_lag_n`, ... .
+
+        `x_m`, `z_m` and `arm_rad` are needed, other names are 0 or left out. `reference` is what the vehicle follows:
+        `planner.reference_of(plan, tick)`.
+        """
+        missing = [name for name in _STATE[:3] if name not in row]
+        if missing:
+            raise InputError(f"the row has no {', '.join(missing)}: expected the names of trajectory.csv")
+        rotors: list[float] = []
+        while f"rotor_{len(rotors) + 1}_lag_n" in row:
+            rotors.append(float(row[f"rotor_{len(rotors) + 1}_lag_n"]))
+        return cls._of_core(([float(row.get(name, 0)) for name in _STATE], reference, rotors, ()))
+
+    def _to_core(self) -> _CoreStart:
+        state = [float(getattr(self, name)) for name in _STATE]
+        return (state, self.reference, self.rotor_thrust_n, self.controller_memory)
+
+    @classmethod
+    def _of_core(cls, core: _CoreStart) -> Start:
+        state, reference, rotors, memory = core
+        return cls(
+            **dict(zip(_STATE, state)),
+            reference=None if reference is None else ReferencePoint(*reference),
+            rotor_thrust_n=tuple(rotors),
+            controller_memory=tuple(memory),
+        )
+
+
+class Answer:
+    """An answer to where to fly from a moment on."""
+
+    def __init__(self, core: _core.Answer) -> None:
+        self._core = core
+
+    @property
+    def advice(self) -> str:
+        """What to do.
+
+        keep: follow what is left of the last plan, which is safe in the scene as it is now
+        follow: follow a new plan to the goal
+        stop: brake and hover, which is safe
+        none: nothing is known to be safe; brake in the way that fails in the fewest worlds
+        """
+        return self._core.advice
+
+    @property
+    def plan(self) -> Columns:
+        """The knots of what to follow, from the start on; of `none` and `stop` the way to brake."""
+        return self._core.plan()
+
+    @property
+    def cost(self) -> float | None:
+        """Of the flight with direct aerodynamics, by the problem's objective; None unless `keep` or `follow`."""
+        return self._core.cost if self.advice in ("keep", "follow") else None
+
+    @property
+    def after_wall_s(self) -> float:
+        """Since `replan` was called."""
+        return self._core.after_wall_s
+
+    @property
+    def solution(self) -> Solution | None:
+        """Of the search; None unless `follow`."""
+        core = self._core.solution()
+        return None if core is None else _solution_of(core)
+
+    def __repr__(self) -> str:
+        return f"<downwash.Answer {self.advice} after {self.after_wall_s:.3f} s>"
+
+
+def _solution_of(core: _core.Solution) -> Solution:
+    return Solution(core, Problem(core.problem()))
+
+
+def _knots(plan: Mapping[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
+    """The rows of a plan's knots."""
+    missing = [name for name in _KNOT if name not in plan]
+    if missing:
+        raise InputError(f"the plan has no {', '.join(missing)}: expected the columns of solution.plan")
+    columns = [np.atleast_1d(np.asarray(plan[name], dtype=np.float64)) for name in _KNOT]
+    if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
+        raise InputError("the columns of the plan are not equally long")
+    return np.column_stack(columns)
+
+
+class Planner:
+    """A planner that stays with a vehicle in the air, and keeps scene, aero map, plan and what its last search found.
+
+    One call runs at a time: a call from another thread, or from a callback, raises RuntimeError. `latest` may be called
+    from any thread at any time.
+
+    problem: what is planned first; its planner settings hold for `solve`, but for its limits also for `replan`
+    threads: number of threads, on which results do not depend; default: one per processor
+    stop_at_first: end searches with the first plan that is accepted
+    cache: folder in which aero maps are kept; default: none
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        *,
+        threads: int | None = None,
+        stop_at_first: bool = False,
+        cache: Path | None = None,
+    ) -> None:
+        self._core = _core.Planner(
+            problem._core, threads or 0, stop_at_first, os.fspath(cache) if cache is not None else ""
+        )
+        # What a change is read with: values beside obstacles and goal that are right.
+        whole = problem.to_dict("")
+        self._frame = {key: whole[key] for key in ("schema", "name", "robot", "start", "goal")}
+        self._bounds = whole["environment"]["bounds"]
+
+    def solve(
+        self, *, on_progress: Callable[[Progress], object] | None = None, stop: StopSignal | None = None
+    ) -> Solution:
+        """Plans from the problem's start, and keeps the plan.
+
+        Threads, Ctrl-C, `on_progress` and `stop` are as for `downwash.solve`.
+        """
+        return _solution_of(self._core.solve(None if on_progress is None else _teller(on_progress), stop))
+
+    def replan(
+        self,
+        start: Start,
+        tick: int,
+        *,
+        put: Sequence[Mapping[str, Any]] = (),
+        removed: Sequence[str] = (),
+        goal: Mapping[str, Any] | None = None,
+        time_limit_s: float | None = None,
+        max_iterations: int | None = None,
+        on_answer: Callable[[Answer], object] | None = None,
+        stop: StopSignal | None = None,
+    ) -> Answer:
+        """Takes up changes and says what to do from a start on: a safe stop first, then better answers. Returns the best.
+
+        The plan of the last answer, if it leads to the goal, is kept as the last plan. With `max_iterations` alone the
+        result is repeatable bit for bit. Without any limit a search takes 10 s. Other Python threads run meanwhile.
+        Ctrl-C ends the search and raises KeyboardInterrupt.
+        Raises InputError, and changes nothing, when the problem with the changes has errors apart from its start.
+
+        start: the whole vehicle at the moment from which the answer counts
+        tick: of the last plan at that moment
+        put: obstacles as a problem file has them, new ones or in place of those of their names
+        removed: names of obstacles that are gone
+        goal: as a problem file has it, in place of all goals that were not visited yet
+        time_limit_s: wall time of all
+        max_iterations: of the search
+        on_answer: called with every Answer that is better than the one before, by the thread that called `replan`
+        stop: a threading.Event, which ends the search early
+        """
+        text = ""
+        if put or goal is not None:
+            document = {**self._frame, "environment": {"bounds": self._bounds, "obstacles": list(put)}}
+            text = _yaml({**document, "goal": goal} if goal is not None else document)
+        tell = None if on_answer is None else _answer_teller(on_answer)
+        changes = (text, goal is not None, list(removed))
+        try:
+            core = self._core.replan(start._to_core(), tick, *changes, time_limit_s, max_iterations, tell, stop)
+        except ProblemError as error:
+            raise _without_lines(error) from None
+        return Answer(core)
+
+    def latest(self) -> Answer | None:
+        """The best answer so far to the last call of `replan`; None before the first."""
+        core = self._core.latest()
+        return None if core is None else Answer(core)
+
+    def predicted(self, start: Start, plan: Mapping[str, npt.ArrayLike], ticks: int) -> Start:
+        """The vehicle as it will be some ticks later, by the planner's own model without noise.
+
+        plan: columns of knots that it follows from its start on
+        """
+        return Start._of_core(self._core.predicted(start._to_core(), _knots(plan), ticks))
+
+    def reference_of(self, plan: Mapping[str, npt.ArrayLike], tick: int) -> ReferencePoint:
+        """The reference of a plan at a tick; after its last knot that one."""
+        return ReferencePoint(*self._core.reference_of(_knots(plan), tick))
+
+    def adopt(self, plan: Mapping[str, npt.ArrayLike]) -> None:
+        """Takes a plan for the last one, from the problem's start to its goals, as one that was made before."""
+        self._core.adopt(_knots(plan))
+
+    @property
+    def plan(self) -> Columns | None:
+        """The knots of the last plan to the goal; None before there is one."""
+        return self._core.plan()
+
+    @property
+    def start(self) -> Start:
+        """The start of the last call."""
+        return Start._of_core(self._core.start())
+
+    @property
+    def problem(self) -> Problem:
+        """The problem as it is now: with all changes, from the last start to the goals that are left."""
+        return Problem(self._core.problem())
+
+    @property
+    def tick_s(self) -> float:
+        """Length of a control tick [s]."""
+        return self._core.tick_s
+
+    def __repr__(self) -> str:
+        return "<downwash.Planner>"
+
+
+def _answer_teller(on_answer: Callable[[Answer], object]) -> Callable[[_core.Answer], object]:
+    return lambda core: on_answer(Answer(core))

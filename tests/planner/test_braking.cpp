@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "../support/test_problem.hpp"
+#include "downwash/planner/braking.hpp"
+#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
+
+using namespace downwash;
+
+namespace {
+
+/// A flight of 7 m between ground and ceiling to a place in the middle of the air.
+Problem long_flight() {
+    Problem problem = test::with_place(4, 2.5);
+    problem.start.z_m = 2.5;
+    problem.planner.max_iterations = 600;
+    return problem;
+}
+
+/// A finder of stops for whom something hangs in the middle of the way that no plan knows of.
+struct StricterStops {
+    explicit StricterStops(Problem known) : problem(std::move(known)) {
+        problem.obstacles.push_back(test::box("hanging", {1.6, 6, 1.2}, {0, 0, 2.9}));
+        model = make_flight_model(problem);
+        finder.emplace(problem, model, model->make_map(problem.bounds), std::vector<FlownWorld>());
+    }
+    Problem problem;
+    std::shared_ptr<const FlightModel> model;
+    std::optional<planning::StopFinder> finder;
+};
+
+Solution searched(const Problem& problem, planning::StopFinder* stops, const SolveOptions& options) {
+    const auto model = make_flight_model(problem);
+    const auto map = model->make_map(problem.bounds);
+    Solution solution;
+    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model),
+                             {nullptr, stops}, options, solution);
+    return solution;
+}
+
+}  // namespace
+
+TEST_CASE("a plan has a stop at each knot and every half second, and no stop where something is in the way") {
+    const Problem problem = long_flight();
+    const Solution solution = solve(problem);
+    REQUIRE(solution.plan);
+    planning::StopFinder finder(problem, make_flight_model(problem), solution.map, {});
+    const SafeStops stops = finder.along(*solution.plan);
+    CHECK(stops.share_without == 0);
+    for (const ReferenceKnot& knot : solution.plan->reference) {
+        CHECK(std::any_of(stops.moments.begin(), stops.moments.end(),
+                          [&](const SafeStops::Moment& moment) { return moment.tick == knot.tick && moment.rest; }));
+    }
+    for (std::size_t i = 1; i < stops.moments.size(); ++i) {
+        const std::int64_t ticks = stops.moments[i].tick - stops.moments[i - 1].tick;
+        CHECK(ticks > 0);
+        CHECK(static_cast<double>(ticks) * solution.plan->tick_s <= 0.5 + 1e-9);
+    }
+    StricterStops stricter(problem);
+    const SafeStops fewer = stricter.finder->along(*solution.plan);
+    CHECK(fewer.share_without > 0.05);
+    CHECK(fewer.share_without < 1);
+    CHECK(planning::stops_less(fewer, stops));
+    CHECK_FALSE(planning::stops_less(stops, fewer));
+    CHECK_FALSE(planning::stops_less(stops, stops));
+}
+
+TEST_CASE("a cheaper plan that can be left for a hover for less of its time does not replace one that can for more") {
+    const Problem problem = long_flight();
+    StricterStops stricter(problem);
+    const Solution free = searched(problem, nullptr, {});
+    REQUIRE(free.status == Status::solved);
+    CHECK_FALSE(free.stops);
+    std::vector<double> shares;
+    SolveOptions options;
+    options.on_plan = [&](const FoundPlan& found) {
+        shares.push_back(stricter.finder->along(found.plan).share_without);
+    };
+    const Solution preferring = searched(problem, &*stricter.finder, options);
+    REQUIRE(preferring.status == Status::solved);
+    REQUIRE(preferring.stops);
+    CHECK(preferring.stops->share_without == shares.back());
+    for (std::size_t i = 1; i < shares.size(); ++i) {
+        CHECK(shares[i] <= shares[i - 1] + 0.01);
+    }
+    CHECK(stricter.finder->along(*free.plan).share_without > preferring.stops->share_without + 0.01);
+    CHECK(preferring.cost > free.cost);
+}
+
+TEST_CASE("of two ways through several goals the one that can be left for more of its time is taken") {
+    Problem problem = long_flight();
+    problem.stops = {test::configuration_goal(0, 2.5)};
+    problem.stops[0].hold_s = 1;
+    problem.planner.max_iterations = 400;
+    const auto model = make_flight_model(problem);
+    const auto map = model->make_map(problem.bounds);
+    const bool is_first_better = GENERATE(true, false);
+    CAPTURE(is_first_better);
+    double first_cost = 0;
+    int ways = 0;
+    Solution solution;
+    std::uint64_t attempts = 0;
+    planning::solve_in_turn(
+        problem, *model, map.get(), {},
+        [&](const Problem& part, const SolveOptions& how, const planning::Course& before, Solution& found) {
+            const auto weak = planning::search_flights(part, problem, *model, map.get(), before, {}, how, found);
+            if (before.goals.size() == 1 && found.status == Status::solved) {
+                found.stops.emplace();
+                found.stops->share_without = (ways++ == 0) == is_first_better ? 0.2 : 0.4;
+                if (ways == 1) {
+                    first_cost = before.cost + found.cost;
+                }
+            }
+            return weak;
+        },
+        0, attempts, solution);
+    REQUIRE(solution.status == Status::solved);
+    REQUIRE(ways > 1);
+    REQUIRE(solution.stops);
+    CHECK(solution.stops->share_without == 0.2);
+    CHECK((solution.cost == first_cost) == is_first_better);
+}
