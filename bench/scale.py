@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Measures campaigns in shards and large results, and writes bench/results/scale.md. Some ten minutes on two cores.
 
-Usage: bench/scale.py [--runs N] [--folder DIR]
+Usage: bench/scale.py [--runs N] [--folder DIR] [--program DOWNWASH]
 """
 
 import argparse
+import json
 import os
 import pathlib
 import resource
@@ -17,13 +18,13 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/viewer"))
 from browser import Browser  # noqa: E402
-PROGRAM = ROOT / "build/downwash"
+program = ROOT / "build/downwash"
 CAMPAIGN = """schema: downwash/campaign/v1
 name: efficiency
 problems: [{problems}/bridge_inspection.yaml, {problems}/pipe_rack.yaml]
 variants: [mp-arm-ada, mp-arm]
 as_believed: true
-seeds: {{first: 1, count: 100}}
+seeds: {{first: 1, count: 50}}
 max_iterations: 150
 """
 
@@ -64,7 +65,7 @@ def bound(text: str, found: str, is_kept: bool) -> str:
 def measure_shards(folder: pathlib.Path) -> tuple[list[str], list[str]]:
     campaign = folder / "efficiency.yaml"
     campaign.write_text(CAMPAIGN.format(problems=ROOT / "problems"))
-    run = [PROGRAM, "bench", "run", campaign, "--quiet"]
+    run = [program, "bench", "run", campaign, "--quiet"]
     Measured([[*run, "--jobs", 2, "--out", folder / "maps"]])  # the maps are in the cache from here on
     rounds = []
     for i in range(3):  # in turns: other programs of the machine disturb both
@@ -102,12 +103,12 @@ def browser_s(page: pathlib.Path) -> float:
 def measure_growth(folder: pathlib.Path, runs: int) -> tuple[list[str], list[str]]:
     shards, merged = folder / "invented", folder / "merged"
     Measured([[ROOT / "build/bench/bench_scale", "--runs", runs, "--shards", 1000, shards]])
-    merge = Measured([[PROGRAM, "bench", "merge", merged, "--force", *sorted(shards.iterdir())]])
+    merge = Measured([[program, "bench", "merge", merged, "--force", *sorted(shards.iterdir())]])
     rows = ["| | processor time | wall time | peak memory |", "|---|---:|---:|---:|",
             f"| merge of 1000 shards, with its page | {merge.processor_s:.1f} s | {merge.wall_s:.1f} s | {merge.peak_mb:.0f} MB |"]
     reports = {}
     for name, options in (("Markdown", []), ("page", ["--html"]), ("CSV", ["--csv"]), ("JSON of every seed", ["--json"])):
-        reports[name] = Measured([[PROGRAM, "bench", "report", merged, *options, "--out", folder / "report"]], codes=(0, 1))
+        reports[name] = Measured([[program, "bench", "report", merged, *options, "--out", folder / "report"]], codes=(0, 1))
         rows.append(f"| report: {name} | {reports[name].processor_s:.1f} s | {reports[name].wall_s:.1f} s | "
                     f"{reports[name].peak_mb:.0f} MB |")
     page = merged / "report.html"
@@ -129,12 +130,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--runs", type=int, default=1000000, help="rows of the invented campaign")
     parser.add_argument("--folder", type=pathlib.Path, help="where invented shards are kept between runs")
+    parser.add_argument("--program", type=pathlib.Path, help="measured as it is; default: that of build/, built before")
     given = parser.parse_args()
-    subprocess.run(["./dev", "build", "--target", "downwash", "bench_scale"], cwd=ROOT, check=True)
-    commit = subprocess.run([ROOT / "bench/source_commit.sh"], check=True, capture_output=True, text=True).stdout.strip()
+    if given.program:
+        global program
+        program = given.program.resolve()
+    else:
+        subprocess.run(["./dev", "build", "--target", "downwash", "bench_scale"], cwd=ROOT, check=True)
     with tempfile.TemporaryDirectory(prefix="downwash-scale-") as scratch:
         folder = given.folder or pathlib.Path(scratch)
         shard_rows, shard_bounds = measure_shards(pathlib.Path(scratch))
+        report = subprocess.run([program, "bench", "report", f"{scratch}/maps", "--json"], check=True, capture_output=True).stdout
+        commit = json.loads(report)["settings"]["commit"]
         growth_rows, growth_bounds = measure_growth(folder, given.runs)
         shutil.rmtree(folder / "merged")
     loads = os.getloadavg()
@@ -143,7 +150,7 @@ def main() -> int:
         f"Commit `{commit}`, Release, {os.cpu_count()} processors; load at the end {loads[0]:.1f}. `bench/scale.py` writes this page.",
         "Targets are about processor time, since other programs on the machine lengthen wall times.", "",
         "## Shards beside one process", "",
-        "400 searches of 150 iterations in `bridge_inspection` and `pipe_rack`, as believed, by MP-ARM-ADA and MP-ARM; the",
+        "200 searches of 150 iterations in `bridge_inspection` and `pipe_rack`, as believed, by MP-ARM-ADA and MP-ARM; the",
         "median of three rounds in turns. Shards start a process each and read the maps from the cache.", "", *shard_rows, "",
         "## A million runs", "",
         f"{given.runs} invented runs of eight problems and five planners, with as many rows each as a search of a second has",

@@ -9,6 +9,7 @@ Usage: bench/shares.py FOLDER [--program DOWNWASH] [--shards N]
 import argparse
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -25,6 +26,7 @@ def main() -> int:
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/downwash")
     parser.add_argument("--shards", type=int, default=60)
     given = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # the cluster is taken away, too
     os.nice(19)  # its daemons and tasks, too
     folder, program = given.folder.resolve(), given.program.resolve()
     subprocess.run([program, "bench", "slurm", ROOT / "bench/campaigns/shares.yaml", "--shards", str(given.shards), "--out", folder],

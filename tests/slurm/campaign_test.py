@@ -249,6 +249,7 @@ def main() -> int:
     if missing := missing_programs():
         print(f"not there: {', '.join(missing)}; `./dev setup --all` installs Slurm")
         return 77  # CTest: skipped
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # the cluster is taken away, too
     # A socket's path is short, and every user of the machine reaches it.
     with tempfile.TemporaryDirectory(prefix="downwash-slurm-") as name:
         folder = pathlib.Path(name).resolve()

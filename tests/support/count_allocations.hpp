@@ -12,7 +12,7 @@ inline thread_local long allocations = 0;
 
 }  // namespace downwash::test
 
-// Where it is inlined, GCC takes what delete frees for memory of another allocator.
+// Where they are inlined, GCC takes what delete frees for memory of another allocator.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
     ++downwash::test::allocations;
     return std::malloc(size);
@@ -23,12 +23,12 @@ inline thread_local long allocations = 0;
     }
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t /*unused*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*unused*/) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept {
     std::free(memory);
 }
