@@ -69,8 +69,8 @@ TEST_CASE("The end of the wall time writes the best plan so far, and is no signa
 TEST_CASE("What grows beyond its memory ends and writes what there is, and is no signal") {
     const Workspace work;
     const auto solved_within = [&](int mib) {
-        const std::string limit = "--time-limit 60 --force --out x --max-memory " + std::to_string(mib) + "MiB";
-        return work.run(words("solve", problem_file("open_air"), limit));
+        return work.run(words("solve", problem_file("open_air"), "--time-limit 60 --force --out x --max-memory",
+                              std::to_string(mib) + "MiB"));
     };
     int mib = 1;
     Result result = solved_within(mib);
