@@ -106,10 +106,7 @@ class Campaign:
         return "".join(file.read_text(errors="replace") for file in sorted((self.folder / "logs").glob(pattern)))
 
     def wait_for_merge(self, job: str, limit_s: float):
-        def is_over():
-            state = self.cluster.ask("squeue", "-h", "-j", job, "-o", "%T")
-            return not state or state in ("COMPLETED", "FAILED")
-        self.cluster.wait_until(is_over, f"job {job} ends\n{self.cluster.ask('squeue')}", limit_s)
+        self.cluster.wait_until(lambda: self.cluster.has_ended(job), f"job {job} ends\n{self.cluster.ask('squeue')}", limit_s)
 
     def check_equal(self, alone: pathlib.Path):
         expected, found = rows_of(alone), rows_of(self.folder / "merged")
