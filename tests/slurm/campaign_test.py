@@ -3,7 +3,7 @@
 
 Usage: campaign_test.py DOWNWASH PROBLEMS [--long]
 
-The short form has one node, 40 runs in 4 shards and one kill. The long form has two nodes, 2000 runs in 16 shards, tasks
+The short form has one node, 40 runs in 4 shards and one kill; GNU parallel runs them, too. The long form has two nodes, 2000 runs in 16 shards, tasks
 whose time is over, kill -9 of programs, of batch scripts, of a slurmd and of the controller, a node whose disk is full,
 and a clock that jumps by days.
 """
@@ -13,6 +13,7 @@ import contextlib
 import os
 import pathlib
 import random
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -106,13 +107,10 @@ class Campaign:
         return "".join(file.read_text(errors="replace") for file in sorted((self.folder / "logs").glob(pattern)))
 
     def wait_for_merge(self, job: str, limit_s: float):
-        def is_over():
-            state = self.cluster.ask("squeue", "-h", "-j", job, "-o", "%T")
-            return not state or state in ("COMPLETED", "FAILED")
-        self.cluster.wait_until(is_over, f"job {job} ends\n{self.cluster.ask('squeue')}", limit_s)
+        self.cluster.wait_until(lambda: self.cluster.has_ended(job), f"job {job} ends\n{self.cluster.ask('squeue')}", limit_s)
 
-    def check_equal(self, alone: pathlib.Path):
-        expected, found = rows_of(alone), rows_of(self.folder / "merged")
+    def check_equal(self, alone: pathlib.Path, folder: pathlib.Path | None = None):
+        expected, found = rows_of(alone), rows_of((folder or self.folder) / "merged")
         different = [key for key in expected.keys() | found.keys() if expected.get(key) != found.get(key)]
         assert not different, f"{len(different)} of {len(expected)} runs differ: {different[0]}:\n" \
                               f"{expected.get(different[0])}\n{found.get(different[0])}"
@@ -193,9 +191,26 @@ def short_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Pa
             campaign.wait_for_merge(job, 60)
             assert "is put into the queue again" in campaign.log("shards-*"), "the killed task was not started again"
             campaign.check_equal(folder / "alone")
+            check_parallel(campaign, folder)
         except BaseException:
             campaign.report_failure()
             raise
+
+
+def check_parallel(campaign: Campaign, folder: pathlib.Path):
+    """The same campaign with GNU parallel, twice: what is complete is not run again."""
+    if shutil.which("parallel") is None:
+        print("GNU parallel is not there: its scripts are not run", flush=True)
+        return
+    campaign.run("parallel", campaign.file, "--shards", 2, "--out", folder / "parallel")
+    times = []
+    for _ in range(2):
+        result = subprocess.run(["bash", folder / "parallel" / "run.sh"], capture_output=True, text=True, check=False)
+        assert result.returncode == 0, result.stdout + result.stderr
+        with contextlib.closing(sqlite3.connect(folder / "parallel" / "merged" / "campaign.db")) as database:
+            times.append(database.execute("SELECT sum(time) FROM runs").fetchone())
+    assert times[0] == times[1], "runs were made twice"
+    campaign.check_equal(folder / "alone", folder / "parallel")
 
 
 def long_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Path):

@@ -45,7 +45,7 @@ class Cluster:
             f"SlurmctldPidFile={folder}/slurmctld.pid", f"SlurmdPidFile={folder}/%n.pid",
             "ProctrackType=proctrack/linuxproc", "TaskPlugin=task/none", "MpiDefault=none", "ReturnToService=2",
             "SlurmdParameters=config_overrides", "SelectType=select/cons_tres", "SelectTypeParameters=CR_CPU",
-            "SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,bf_interval=1", "SchedulerTimeSlice=5",
+            "SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf_interval=1", "SchedulerTimeSlice=5",
             "KillWait=2", "MessageTimeout=10", "SlurmdTimeout=30", "MailProg=/bin/true", "JobRequeue=1",
             f"MaxArraySize={max_array_size}"]
         for node, port in zip(self.nodes, ports[1:]):
@@ -74,12 +74,22 @@ class Cluster:
         return self
 
     def __exit__(self, *_):
-        with contextlib.suppress(subprocess.SubprocessError):
+        with contextlib.suppress(subprocess.SubprocessError, TimeoutError):
             self.run("scancel", "--full", f"--user={os.getuid()}", limit_s=5)
             self.wait_until(lambda: not self.ask("squeue", "-h", "-o", "%i"), "all jobs have ended", limit_s=10)
         for process in reversed(list(self.processes.values())):
             process.kill()
             process.wait()
+        self.kill_tasks()
+
+    def kill_tasks(self):
+        """What the cluster has started and did not end: a busy machine may have kept it from that."""
+        mark = f"SLURM_CONF={self.folder}/slurm.conf".encode()
+        for entry in pathlib.Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                variables = (entry / "environ").read_bytes().split(b"\0")
+                if mark in variables and any(variable.startswith(b"SLURM_JOB_ID=") for variable in variables):
+                    os.kill(int(entry.name), signal.SIGKILL)
 
     def start(self, name: str, *command: str):
         with open(self.folder / f"{name}.log", "ab") as log:
@@ -111,8 +121,16 @@ class Cluster:
 
     def ask(self, *command: str) -> str:
         """What a command prints; empty if it fails."""
-        result = self.run(*command)
+        try:
+            result = self.run(*command)
+        except subprocess.TimeoutExpired:
+            return ""
         return result.stdout.strip() if result.returncode == 0 else ""
+
+    def has_ended(self, job: str) -> bool:
+        """Whether a job has ended. False also while the controller does not answer."""
+        state = self.ask("scontrol", "-o", "show", "job", job).partition("JobState=")[2].split(" ")[0]
+        return state in ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY")
 
     def wait_until(self, holds, what: str, limit_s: float = 30):
         end = time.monotonic() + limit_s
