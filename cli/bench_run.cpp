@@ -57,7 +57,7 @@ std::filesystem::path out_of(const BenchRunArguments& given, const std::string& 
 
 ExitCode run(const BenchRunArguments& given) {
     const std::optional<bench::ShardRequest> shard = shard_of(given);
-    Interruption interruption(CommandLimits{given.wall_limit_s, {}});
+    Interruption interruption({given.wall_limit_s, {}});
     interruption.expect_results();
     ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated,
                                       given.is_quiet ? nullptr : print_warning);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "downwash/base/lane_math.hpp"
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/controllers/quintic.hpp"
+#include "downwash/dynamics/plant_model.hpp"
 
 namespace downwash {
 namespace {
@@ -18,11 +21,18 @@ double translation(const double axis[3]) {
 /// Beyond a limit by no more than rounding.
 constexpr double kept = 1 + 1e-9;
 
+/// a + g over g; infinite if it does not point upwards.
+double thrust_ratio(const ReferencePoint& p) {
+    const double force[2] = {p.acceleration[0] / standard_gravity_m_s2, 1 + p.acceleration[1] / standard_gravity_m_s2};
+    return force[1] > 0 ? translation(force) : std::numeric_limits<double>::infinity();
+}
+
 double ratio_at(const ReferencePoint& p, const MotionLimits& limits) {
-    return std::max({translation(p.velocity) / limits.max_speed_m_s,
-                     translation(p.acceleration) / limits.max_acceleration_m_s2,
-                     std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
-                     std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
+    const double ratio = std::max({translation(p.velocity) / limits.max_speed_m_s,
+                                   translation(p.acceleration) / limits.max_acceleration_m_s2,
+                                   std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
+                                   std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
+    return limits.max_thrust_ratio ? std::max(ratio, thrust_ratio(p) / *limits.max_thrust_ratio) : ratio;
 }
 
 std::int64_t samples_of(const ReferenceSegment& segment) {
@@ -32,12 +42,24 @@ std::int64_t samples_of(const ReferenceSegment& segment) {
 
 /// The largest ratio of a speed or an acceleration to its limit at a sample. Sample 0 is the segment's beginning.
 double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const MotionLimits& limits) {
-    return ratio_at(segment.at_tick(segment.ticks() * sample / samples_of(segment)), limits);
+    const std::int64_t tick = segment.ticks() * sample / samples_of(segment);
+    const double ratio = ratio_at(segment.at_tick(tick), limits);
+    return limits.max_pitch_rate_rad_s
+               ? std::max(ratio, std::abs(segment.pitch_rate_rad_s(tick)) / *limits.max_pitch_rate_rad_s)
+               : ratio;
+}
+
+/// The same at the ends, where the acceleration is continuous and the rate of its direction need not be.
+double pitch_rate_ratio_at_ends(const ReferenceSegment& segment, const MotionLimits& limits) {
+    return limits.max_pitch_rate_rad_s
+               ? std::max(std::abs(segment.pitch_rate_rad_s(0)), std::abs(segment.pitch_rate_rad_s(segment.ticks()))) /
+                     *limits.max_pitch_rate_rad_s
+               : 0;
 }
 
 /// The largest ratio at samples between the ends, and that of the jerk.
 double worst_ratio(const ReferenceSegment& segment, const MotionLimits& limits) {
-    double worst = segment.peak_jerk_m_s3() / limits.max_jerk_m_s3;
+    double worst = std::max(segment.peak_jerk_m_s3() / limits.max_jerk_m_s3, pitch_rate_ratio_at_ends(segment, limits));
     for (std::int64_t i = 1; i < samples_of(segment); ++i) {
         worst = std::max(worst, ratio_at_sample(segment, i, limits));
     }
@@ -47,7 +69,7 @@ double worst_ratio(const ReferenceSegment& segment, const MotionLimits& limits) 
 /// Whether the jerk, and all samples between the ends, keep the limits.
 /// @param suspect the sample that is asked first, as it did not keep them last; becomes the one that does not
 bool keeps_limits_between(const ReferenceSegment& segment, const MotionLimits& limits, std::int64_t& suspect) {
-    if (segment.peak_jerk_m_s3() > kept * limits.max_jerk_m_s3) {
+    if (segment.peak_jerk_m_s3() > kept * limits.max_jerk_m_s3 || pitch_rate_ratio_at_ends(segment, limits) > kept) {
         return false;
     }
     const std::int64_t samples = samples_of(segment);
@@ -127,6 +149,53 @@ double ReferenceSegment::peak_jerk_m_s3() const noexcept {
     return std::sqrt(largest) * inverse_duration_1_s_ * inverse_duration_1_s_ * inverse_duration_1_s_;
 }
 
+double ReferenceSegment::pitch_rate_rad_s(std::int64_t tick) const noexcept {
+    const ReferencePoint point = at_tick(tick);
+    const double s = static_cast<double>(std::clamp<std::int64_t>(tick, 0, ticks_)) * tick_s_ * inverse_duration_1_s_;
+    const double per_duration3 = inverse_duration_1_s_ * inverse_duration_1_s_ * inverse_duration_1_s_;
+    double jerk[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        const double* c = coefficient_[axis];
+        jerk[axis] = (6 * c[3] + s * (24 * c[4] + s * (60 * c[5]))) * per_duration3;
+    }
+    const double up = point.acceleration[1] + standard_gravity_m_s2;
+    const double square = point.acceleration[0] * point.acceleration[0] + up * up;
+    return square > 0 ? (up * jerk[0] - point.acceleration[0] * jerk[1]) / square
+                      : std::numeric_limits<double>::infinity();
+}
+
+double pitch_along(const ReferencePoint& point) noexcept {
+    return lane::atan2(point.acceleration[0], point.acceleration[1] + standard_gravity_m_s2);
+}
+
+MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) noexcept {
+    const double distance_m = std::sqrt(dx_m * dx_m + dz_m * dz_m);
+    if (!limits.max_thrust_ratio || !(distance_m > 0)) {
+        return limits;
+    }
+    // |a e + g|^2 = a^2 + 2 a g e_z + g^2 is largest where a points as far up as it can; where it points down,
+    // something has to be left of g.
+    constexpr double largest_fall = 0.99;
+    const double up = std::abs(dz_m) / distance_m;
+    const double spare = *limits.max_thrust_ratio * *limits.max_thrust_ratio - 1;
+    MotionLimits along = limits;
+    along.max_acceleration_m_s2 =
+        std::min({limits.max_acceleration_m_s2, standard_gravity_m_s2 * (std::sqrt(up * up + spare) - up),
+                  up > 0 ? standard_gravity_m_s2 * largest_fall / up : std::numeric_limits<double>::infinity()});
+    return along;
+}
+
+MotionLimits limits_in_every_direction(const MotionLimits& limits) noexcept {
+    MotionLimits all = limits_along(limits, 0, 1);
+    if (limits.max_pitch_rate_rad_s) {
+        // The direction of a force turns by its change over its size at most.
+        all.max_acceleration_m_s2 = std::min(all.max_acceleration_m_s2, 0.9 * standard_gravity_m_s2);
+        const double min_force_m_s2 = standard_gravity_m_s2 - all.max_acceleration_m_s2;
+        all.max_jerk_m_s3 = std::min(all.max_jerk_m_s3, *limits.max_pitch_rate_rad_s * min_force_m_s2);
+    }
+    return all;
+}
+
 double rest_to_rest_duration_s(double distance_m, double arm_rad, const MotionLimits& limits) {
     constexpr double peak_speed = 15.0 / 8.0;
     constexpr double peak_acceleration = 5.7735026918962576;  // 10 / sqrt(3)
@@ -148,17 +217,21 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     const auto ticks_of = [tick_s](double duration_s) {
         return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(duration_s / tick_s - 1e-9)));
     };
-    std::int64_t ticks = ticks_of(rest_to_rest_duration_s(distance_m, arm_rad, limits));
-    if (is_at_rest(from) && is_at_rest(to)) {
+    const bool is_from_rest_to_rest = is_at_rest(from) && is_at_rest(to);
+    std::int64_t ticks = ticks_of(
+        rest_to_rest_duration_s(distance_m, arm_rad, is_from_rest_to_rest ? limits_along(limits, dx, dz) : limits));
+    if (is_from_rest_to_rest && !limits.max_pitch_rate_rad_s) {
         return ticks;
     }
-    // With a moving end the shortest time has no closed form: begin with less than any motion within the limits
-    // needs, stretch until they are kept, then close in on the last step.
+    // With a moving end, or a limit of the pitch rate, the shortest time has no closed form: begin with less than any
+    // motion within the limits needs, stretch until they are kept, then close in on the last step.
     const double change[3] = {to.velocity[0] - from.velocity[0], to.velocity[1] - from.velocity[1],
                               to.velocity[2] - from.velocity[2]};
     const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,
                                       std::abs(change[2]) / limits.max_arm_acceleration_rad_s2);
-    ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
+    if (!is_from_rest_to_rest) {
+        ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));
+    }
     const auto segment_in = [&](std::int64_t count) { return ReferenceSegment(from, to, count, tick_s); };
     std::int64_t suspect = 1;
     const auto is_enough = [&](std::int64_t count) { return keeps_limits_between(segment_in(count), limits, suspect); };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/reference_point.hpp"
@@ -15,7 +16,23 @@ struct MotionLimits {
     double max_arm_acceleration_rad_s2 = 1.5707963267948966;  ///< 90 degrees per second squared
     /// A multirotor turns to accelerate: its rotors swing as the jerk changes. 4 m/s^3 is PX4's MPC_JERK_AUTO.
     double max_jerk_m_s3 = 4;
+    /// For agile flight: of the force that a point mass needs to follow the reference, |a + g|, as a multiple of its
+    /// weight, > 1. The force must point upwards. Empty: any.
+    std::optional<double> max_thrust_ratio;
+    /// How fast that force, along which a multirotor points its rotors, may turn [rad/s], > 0. Empty: at any rate.
+    std::optional<double> max_pitch_rate_rad_s;
 };
+
+/// The pitch at which a multirotor that is nothing but a point mass follows a reference [rad]: the direction of a + g.
+[[nodiscard]] DOWNWASH_EXPORT double pitch_along(const ReferencePoint& point) noexcept;
+
+/// Limits of a motion from rest to rest along a straight line, in whose quintic the acceleration points both ways: the
+/// limit of acceleration is what a limit of the thrust leaves of it there.
+/// @param dx_m,dz_m its direction
+[[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) noexcept;
+
+/// Limits of acceleration and jerk that keep those of thrust and pitch rate whichever way a reference leads.
+[[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_in_every_direction(const MotionLimits& limits) noexcept;
 
 /// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
 /// Between two points at rest it is the straight line of (x, z, arm), synchronised, s(t) = 10 t^3 - 15 t^4 + 6 t^5.
@@ -35,6 +52,10 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// The largest jerk in (x, z) at its ends and at samples between them (less than the largest of all by 1 % at
     /// most) [m/s^3].
     [[nodiscard]] double peak_jerk_m_s3() const noexcept;
+
+    /// How fast the direction of a + g turns at the beginning of a tick, 0 <= tick <= ticks() [rad/s]; infinite where
+    /// there is none.
+    [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick) const noexcept;
 
     /// Of the powers of the time over the duration, (x, z, arm); see quintic_at().
     [[nodiscard]] const double (&coefficients() const noexcept)[3][6] { return coefficient_; }

@@ -47,9 +47,10 @@ class List {
     std::vector<Disagreement> found;
 };
 
-/// The greatest speeds, accelerations and jerks at the ticks of a piece of the reference.
+/// The greatest speeds, accelerations and jerks at the ticks of a piece of the reference, and of a point mass that
+/// follows it the greatest force over its weight and turn of that force.
 struct Peaks {
-    double speed = 0, acceleration = 0, jerk = 0, arm_rate = 0, arm_acceleration = 0;
+    double speed = 0, acceleration = 0, jerk = 0, arm_rate = 0, arm_acceleration = 0, thrust_ratio = 0, pitch_rate = 0;
 
     /// @param before one tick ago
     void see(const ReferencePoint& before, const ReferencePoint& p, double tick_s) {
@@ -60,6 +61,14 @@ struct Peaks {
         acceleration = std::max(acceleration, std::hypot(p.acceleration[0], p.acceleration[1]));
         arm_rate = std::max(arm_rate, std::abs(p.velocity[2]));
         arm_acceleration = std::max(arm_acceleration, std::abs(p.acceleration[2]));
+        thrust_ratio = std::max(thrust_ratio, std::hypot(p.acceleration[0], p.acceleration[1] + standard_gravity_m_s2) /
+                                                  standard_gravity_m_s2);
+        pitch_rate = std::max(pitch_rate, std::abs(pitch_of(p) - pitch_of(before)) / tick_s);
+    }
+
+ private:
+    static double pitch_of(const ReferencePoint& p) {
+        return std::atan2(p.acceleration[0], p.acceleration[1] + standard_gravity_m_s2);
     }
 };
 
@@ -80,6 +89,12 @@ void check_limits(const Plan& plan, const MotionLimits& limits, List& list) {
         list.limit(piece + "jerk_m_s3", peaks.jerk, limits.max_jerk_m_s3);
         list.limit(piece + "arm_rate_rad_s", peaks.arm_rate, limits.max_arm_rate_rad_s);
         list.limit(piece + "arm_acceleration_rad_s2", peaks.arm_acceleration, limits.max_arm_acceleration_rad_s2);
+        if (limits.max_thrust_ratio) {
+            list.limit(piece + "thrust_ratio", peaks.thrust_ratio, *limits.max_thrust_ratio);
+        }
+        if (limits.max_pitch_rate_rad_s) {
+            list.limit(piece + "pitch_rate_rad_s", peaks.pitch_rate, *limits.max_pitch_rate_rad_s);
+        }
     }
 }
 

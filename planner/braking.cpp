@@ -36,7 +36,8 @@ MotionLimits harder_limits(MotionLimits limits, double times) {
 /// Where a reference comes to rest.
 Configuration rest_of(const ReferencePoint& from, const MotionLimits& limits, const Way& way) {
     const double speed_m_s = std::hypot(from.velocity[0], from.velocity[1]);
-    const double time_s = way.farther * speed_m_s / limits.max_acceleration_m_s2;
+    const MotionLimits straight = limits_along(limits, from.velocity[0], from.velocity[1]);
+    const double time_s = way.farther * speed_m_s / straight.max_acceleration_m_s2;
     const double arm_time_s = way.farther * std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2;
     return {from.position[0] + 0.5 * time_s * from.velocity[0],
             from.position[1] + 0.5 * time_s * from.velocity[1] + way.aside_m,

@@ -72,6 +72,12 @@ void slow_down(Problem& problem) {
     motion.max_acceleration_m_s2 /= 4;
     motion.max_jerk_m_s3 /= 8;
     motion.max_arm_acceleration_rad_s2 /= 4;
+    if (motion.max_thrust_ratio) {
+        *motion.max_thrust_ratio = 1 + (*motion.max_thrust_ratio - 1) / 4;
+    }
+    if (motion.max_pitch_rate_rad_s) {
+        *motion.max_pitch_rate_rad_s /= 2;
+    }
 }
 
 /// Time of the position loop is scaled by one over this.

@@ -39,6 +39,9 @@ constexpr std::array flight_rrt_star{
                        "share of the samples near a knot of the best plan (Akgun and Stilman 2011)"},
     AlgorithmParameter{"local_radius_m", 2.0, 0.001, 1000,
                        "largest distance of a sample of local_bias from its knot [m]"},
+    AlgorithmParameter{"passage_share", 0, 0, 1,
+                       "share of the samples in narrow passages, which are flown through at speed (bridge test, Hsu et "
+                       "al. 2003)"},
     AlgorithmParameter{"range_share", 0.2, 0.001, 1, "longest edge, as a share of the space's extent"},
     AlgorithmParameter{"optimism", 0.9, 0.01, 1,
                        "an edge is simulated if it wins with this multiple of its cost in free air"},

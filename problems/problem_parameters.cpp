@@ -183,6 +183,22 @@ void add_start(Rows& rows) {
     add_start_reference(rows);
 }
 
+/// What only agile references need.
+void add_agile_motion(Rows& rows) {
+    rows.push_back(number(
+                       "motion.max_thrust_ratio",
+                       "force that a point mass needs to follow the reference, over its weight; collisions of the "
+                       "reference are then those of the tilted vehicle; null: any force, and a level vehicle",
+                       [](auto& p) -> auto& { return p.motion.max_thrust_ratio; })
+                       .at_least(1.001)
+                       .at_most(100));
+    rows.push_back(number(
+                       "motion.max_pitch_rate_deg_s", "how fast the direction of that force turns; null: at any rate",
+                       [](auto& p) -> auto& { return p.motion.max_pitch_rate_rad_s; })
+                       .at_least(0.1)
+                       .at_most(36000));
+}
+
 void add_motion(Rows& rows) {
     rows.push_back(group("motion", "limits of the reference"));
     rows.push_back(motion_limit(
@@ -199,6 +215,7 @@ void add_motion(Rows& rows) {
     rows.push_back(motion_limit(
         "motion.max_arm_acceleration_deg_s2", "acceleration of the arm's joint", 36000,
         [](auto& p) -> auto& { return p.motion.max_arm_acceleration_rad_s2; }));
+    add_agile_motion(rows);
 }
 
 std::vector<std::string_view> algorithm_names() {
@@ -282,6 +299,12 @@ void add_planner(Rows& rows) {
                        [](auto& p) -> auto& { return p.planner.safety_margin_m; })
                        .at_least(0)
                        .at_most(100));
+    rows.push_back(number(
+                       "planner.max_saturation",
+                       "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
+                       [](auto& p) -> auto& { return p.planner.max_saturation; })
+                       .at_least(1)
+                       .at_most(1000));
     const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
     constexpr std::string_view with_uncertainty = "with an uncertainty";
     rows.push_back(parameters::integer<Problem>(

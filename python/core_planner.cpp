@@ -123,8 +123,8 @@ SceneChange change_of(const CoreChange& given) {
 /// A Planner with the problem that it began with. One call at a time, apart from latest().
 class CorePlanner {
  public:
-    CorePlanner(const CoreProblem& problem, int threads, bool stop_at_first, const std::string& cache)
-        : began_with_(problem), planner_(problem.problem(), options(threads, stop_at_first, cache)) {}
+    CorePlanner(const CoreProblem& problem, int threads, bool stop_at_first, bool finds_stops, const std::string& cache)
+        : began_with_(problem), planner_(problem.problem(), options(threads, stop_at_first, finds_stops, cache)) {}
 
     CoreSolution solve(const py::object& on_progress, const py::object& stop) {
         const Call call(*this);
@@ -224,10 +224,11 @@ class CorePlanner {
         CorePlanner& planner_;
     };
 
-    SolveOptions options(int threads, bool stop_at_first, const std::string& cache) {
+    SolveOptions options(int threads, bool stop_at_first, bool finds_stops, const std::string& cache) {
         SolveOptions options;
         options.threads = thread_count(threads);
         options.stop_at_first_solution = stop_at_first;
+        options.finds_stops = finds_stops;
         options.map_cache = cache;
         options.on_progress = [this](const Progress& now) {
             if (tell_) {
@@ -264,7 +265,7 @@ void bind_planner(py::module_& module) {
         .def("plan", [](const CoreAnswer& of) { return columns_of(knot_table(of.answer.plan)); })
         .def("solution", &CoreAnswer::solution);
     py::class_<CorePlanner>(module, "Planner")
-        .def(py::init<const CoreProblem&, int, bool, const std::string&>())
+        .def(py::init<const CoreProblem&, int, bool, bool, const std::string&>())
         .def("solve", &CorePlanner::solve)
         .def("replan",
              [](CorePlanner& planner, const CoreStart& start, std::int64_t tick, const std::string& text, bool has_goal,

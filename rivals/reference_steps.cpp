@@ -35,11 +35,11 @@ double braking_way(double speed, double gain, double step_s) {
 }  // namespace
 
 ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
-    : limits_(limits),
+    : limits_(limits_in_every_direction(limits)),
       ticks_(std::max<std::int64_t>(1, std::llround(wanted_step_s / tick_s))),
       duration_s_(static_cast<double>(ticks_) * tick_s),
-      speed_gain_m_s_(std::min(limits.max_acceleration_m_s2 * duration_s_ / peak_acceleration,
-                               limits.max_jerk_m_s3 * duration_s_ * duration_s_ / peak_jerk)),
+      speed_gain_m_s_(std::min(limits_.max_acceleration_m_s2 * duration_s_ / peak_acceleration,
+                               limits_.max_jerk_m_s3 * duration_s_ * duration_s_ / peak_jerk)),
       arm_gain_rad_s_(limits.max_arm_acceleration_rad_s2 * duration_s_ / peak_acceleration) {}
 
 ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double velocity[3]) const noexcept {

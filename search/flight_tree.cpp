@@ -70,9 +70,14 @@ ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferenceP
 }
 
 std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) {
-    const ReferenceSegment segment = flights_.fastest_segment(edge.from->reference, at_rest(edge.to));
+    const ReferenceSegment segment = flights_.fastest_segment(edge.from->reference, edge.to);
     if (segment.ticks() > max_plan_ticks - edge.from->ticks_from_start) {
         flights_.count_rejection("too_long");
+        return std::nullopt;
+    }
+    // A passage may be out of reach at its speed.
+    const bool begins_in_passage = edge.from->parent != nullptr && !is_at_rest(edge.from->reference);
+    if ((begins_in_passage || !is_at_rest(edge.to)) && !keeps_limits(segment, flights_.limits())) {
         return std::nullopt;
     }
     return flights_.is_worth_flying(segment) ? std::optional(segment) : std::nullopt;
@@ -83,7 +88,7 @@ std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const
         return std::nullopt;
     }
     const ReferenceSegment& segment = job.legs().back().segment;
-    return Flown{configuration_of(segment.to()), segment.ticks(), job.end(),
+    return Flown{segment.to(), segment.ticks(), job.end(),
                  flights_.cost_after(from.cost, from.fleet, job, job.legs().size() - 1)};
 }
 
@@ -106,8 +111,8 @@ std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const 
 
 FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
     FlightNode& node = nodes_.emplace_back();
-    node.configuration = flight.to;
-    node.reference = at_rest(flight.to);
+    node.configuration = configuration_of(flight.to);
+    node.reference = flight.to;
     node.fleet = flight.fleet;
     node.cost = flight.cost;
     node.parent = &parent;
@@ -157,7 +162,7 @@ std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
         // Otherwise the arm would arrive a whole turn away.
         if (std::abs(space_.seen_from(r.parent->configuration, to).arm_rad - to.arm_rad) <= 1e-9) {
             open.push_back(r);
-            edges.push_back({r.parent, to});
+            edges.push_back({r.parent, r.node->reference});
         }
     }
     const std::vector<double> cost_before = [&] {

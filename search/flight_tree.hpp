@@ -17,8 +17,8 @@ namespace downwash::planning {
 
 /// A vehicle that arrived somewhere, and how.
 struct FlightNode {
-    Configuration configuration;  ///< the reference point at which the edge to this node ends, at rest
-    ReferencePoint reference;     ///< the same with its derivatives; only the root may move
+    Configuration configuration;  ///< the reference point at which the edge to this node ends
+    ReferencePoint reference;     ///< the same with its derivatives; only the root and passages may move
     Fleet fleet;                  ///< the whole vehicle there in every world, integrators included
     double cost = 0;              ///< of the flight from the start, in the objective's unit
     FlightNode* parent = nullptr;
@@ -54,14 +54,14 @@ class FlightTree {
     /// No chain of edges from a configuration to the goal, and hold there, costs less, far from all surfaces.
     [[nodiscard]] double min_cost_to_goal(const Configuration& from) const;
 
-    /// An edge that may be worth flying: from a node to rest at a configuration (arm angle unwrapped as seen from it).
+    /// An edge that may be worth flying: from a node to a reference point (arm angle unwrapped as seen from it).
     struct Edge {
         const FlightNode* from;
-        Configuration to;
+        ReferencePoint to;
     };
     /// A flight that was accepted but belongs to no tree yet.
     struct Flown {
-        Configuration to;
+        ReferencePoint to;
         std::int64_t ticks;
         Fleet fleet;
         double cost;  ///< from the start, mean over all worlds

@@ -25,6 +25,7 @@ std::span<const FlightTreeParameters::Member> FlightTreeParameters::members() no
         Member{"goal_bias", &P::goal_bias},
         Member{"local_bias", &P::local_bias},
         Member{"local_radius_m", &P::local_radius_m},
+        Member{"passage_share", &P::passage_share},
         Member{"range_share", &P::range_share},
         Member{"optimism", &P::optimism},
         Member{"max_detour", &P::max_detour},

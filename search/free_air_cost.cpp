@@ -31,7 +31,8 @@ FreeAirCost::FreeAirCost(const SearchTask& task)
 
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
-    const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits_);
+    const MotionLimits limits = limits_along(limits_, to.x_m - from.x_m, to.z_m - from.z_m);
+    const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits);
     const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
 }

@@ -16,8 +16,9 @@ constexpr double moves_corner = 0.15;
 constexpr double moves_and_changes_speed = 0.35;
 
 constexpr double largest_shift_m = 1.0;
-constexpr double largest_speed_change = 0.5;  ///< as a share of the limits of motion
-constexpr double shortest_split_s = 1.0;      ///< a shorter segment gets no corner in between
+constexpr double largest_speed_change = 0.5;     ///< as a share of the limits of motion
+constexpr double shortest_split_s = 1.0;         ///< a shorter segment gets no corner in between, ...
+constexpr double shortest_agile_split_s = 0.15;  ///< ... under a limit of thrust, with which ways are flown in far less
 
 }  // namespace
 
@@ -40,7 +41,9 @@ void PlanChanges::shift(ReferencePoint& point, double step) {
     const double size_m = step * largest_shift_m;
     point.position[0] += noise(size_m);
     point.position[1] += noise(size_m);
-    point.position[2] += noise(size_m / space_.arm_weight_m());
+    if (!space_.arm_is_fixed()) {
+        point.position[2] += noise(size_m / space_.arm_weight_m());
+    }
 }
 
 void PlanChanges::change_speed(ReferencePoint& point, double step) {
@@ -49,8 +52,10 @@ void PlanChanges::change_speed(ReferencePoint& point, double step) {
         point.velocity[axis] += noise(share * motion_.max_speed_m_s);
         point.acceleration[axis] += noise(share * motion_.max_acceleration_m_s2);
     }
-    point.velocity[2] += noise(share * motion_.max_arm_rate_rad_s);
-    point.acceleration[2] += noise(share * motion_.max_arm_acceleration_rad_s2);
+    if (!space_.arm_is_fixed()) {
+        point.velocity[2] += noise(share * motion_.max_arm_rate_rad_s);
+        point.acceleration[2] += noise(share * motion_.max_arm_acceleration_rad_s2);
+    }
 }
 
 std::optional<ChangedPoints> PlanChanges::draw(const Points& points, const std::vector<std::int64_t>& ticks,
@@ -79,7 +84,8 @@ std::optional<ChangedPoints> PlanChanges::with_goal_moved(Points points, double 
 std::optional<ChangedPoints> PlanChanges::with_corner_added(Points points, const std::vector<std::int64_t>& ticks,
                                                             double step) {
     const std::size_t i = index_below(ticks.size());
-    if (static_cast<double>(ticks[i]) * tick_s_ < shortest_split_s) {
+    const double shortest_s = motion_.max_thrust_ratio ? shortest_agile_split_s : shortest_split_s;
+    if (static_cast<double>(ticks[i]) * tick_s_ < shortest_s) {
         return std::nullopt;
     }
     const auto at = static_cast<std::int64_t>(random_.uniform(0.2, 0.8) * static_cast<double>(ticks[i]));

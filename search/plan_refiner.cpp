@@ -264,6 +264,24 @@ std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint
     return total <= max_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
 }
 
+double PlanRefiner::saved_before_rounding(const FlownPlan& base, const Change& change) const {
+    const SearchTask& task = flights_.task();
+    if (task.problem.planner.objective.single() != Objective::time || !flights_.limits().max_thrust_ratio) {
+        return 0;
+    }
+    const auto needed_s = [&](const std::vector<ReferencePoint>& points, std::size_t first, std::size_t last) {
+        constexpr double parts = 64;
+        const double part_s = task.model.tick().tick_s / parts;
+        std::int64_t all = 0;
+        for (std::size_t i = first; i <= last; ++i) {
+            all += shortest_ticks(points[i], points[i + 1], flights_.limits(), part_s);
+        }
+        return static_cast<double>(all) * part_s;
+    };
+    const std::size_t last_before = change.last + base.ticks.size() - change.ticks.size();
+    return needed_s(base.points, change.first, last_before) - needed_s(change.points, change.first, change.last);
+}
+
 /// Flies changes as believed: their own segments first and, where one gets to the old plan's next corner for less, the
 /// rest of the plan, hold included. The promising ones are flown in the other worlds, the cheapest first, until one is
 /// accepted and cheaper there, too.
@@ -277,10 +295,20 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
     const auto is_whole = [&](std::size_t i) {
         return changes[i].first + jobs[i].legs().size() == changes[i].ticks.size() + 1;
     };
+    std::vector<double> saved;
+    saved.reserve(changes.size());
+    for (const Change& change : changes) {
+        saved.push_back(saved_before_rounding(base, change));
+    }
+    // Costs that are nothing but ticks differ by rounding where they are the same.
+    constexpr double same_cost = 1e-9;
+    const auto is_better = [&](std::size_t i, double cost, double old_cost) {
+        return cost < (saved[i] > same_cost ? old_cost + same_cost : old_cost);
+    };
     const auto costs_less = [&](std::size_t i) {
         const std::size_t old_corner = changes[i].last + 1 + base.ticks.size() - changes[i].ticks.size();
         const double old_cost = is_whole(i) ? base.nominal_cost : base.nominal_costs[old_corner];
-        return jobs[i].is_accepted() && nominal_cost_after(base, changes[i], jobs[i]) < old_cost;
+        return jobs[i].is_accepted() && is_better(i, nominal_cost_after(base, changes[i], jobs[i]), old_cost);
     };
     std::vector<std::size_t> unfinished;
     std::vector<FleetJob> rests;
@@ -301,7 +329,8 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
         }
     }
     std::stable_sort(promising.begin(), promising.end(), [&](std::size_t a, std::size_t b) {
-        return nominal_cost_after(base, changes[a], jobs[a]) < nominal_cost_after(base, changes[b], jobs[b]);
+        return nominal_cost_after(base, changes[a], jobs[a]) - saved[a] <
+               nominal_cost_after(base, changes[b], jobs[b]) - saved[b];
     });
     for (const std::size_t i : promising) {
         const Change& change = changes[i];
@@ -310,7 +339,7 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
         flights_.fly_in_other_worlds(whole);
         if (whole.front().is_accepted()) {
             FlownPlan plan = flown(base, change, whole.front());
-            if (plan.cost < base.cost) {
+            if (is_better(i, plan.cost, base.cost)) {
                 return plan;
             }
         }

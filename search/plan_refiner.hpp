@@ -94,6 +94,9 @@ class PlanRefiner {
     [[nodiscard]] double nominal_cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
     /// Plans flown from the start to the end; nothing for those that are rejected.
     [[nodiscard]] std::vector<std::optional<FlownPlan>> flown_whole(const std::vector<Change>& plans);
+    /// What a change saves of the time that its segments need before it is rounded up to ticks [s]. 0 unless ticks are
+    /// all that a plan costs: then it tells apart changes of the same cost.
+    [[nodiscard]] double saved_before_rounding(const FlownPlan& base, const Change& change) const;
     [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;
 

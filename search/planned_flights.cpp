@@ -17,6 +17,7 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
     FlightRules rules;
     rules.margin_m = problem.planner.safety_margin_m;
     rules.bounds = problem.bounds;
+    rules.max_saturation = problem.planner.max_saturation;
     if (!in_nominal_world) {
         rules = rules_of_execution();
     }
@@ -137,12 +138,15 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     // Ends that move may lead beyond the line between them.
     const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
     const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
-    const auto at = [&](std::int64_t i) { return configuration_of(segment.at_tick(segment.ticks() * i / samples)); };
+    const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
+    const auto rejection_at = [&](const ReferencePoint& point) {
+        return task_.space.rejection_at(configuration_of(point), limits_.max_thrust_ratio ? pitch_along(point) : 0);
+    };
     Rejection rejection = Rejection::none;
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;
          --i) {  // the new end first: likelier to collide
         ++statistics_.states_checked;
-        rejection = task_.space.rejection_at(at(i));
+        rejection = rejection_at(at(i));
     }
     if (rejection == Rejection::none) {
         return true;
@@ -153,10 +157,10 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     }
     // Of a way to the goal the place matters where a flight would have been stopped.
     std::int64_t first = 1;
-    while (task_.space.rejection_at(at(first)) == Rejection::none) {
+    while (rejection_at(at(first)) == Rejection::none) {
         ++first;
     }
-    reject(segment, task_.space.rejection_at(at(first)), at(first));
+    reject(segment, rejection_at(at(first)), configuration_of(at(first)));
     return false;
 }
 

@@ -36,8 +36,9 @@ class PlannedFlights {
     /// From its next batch on flies with so many of its threads. May be called from any thread.
     void use_threads(int threads);
 
-    /// Whether a reference is worth flying: no level vehicle on it collides or leaves the bounds, and a flight follows
-    /// its reference to a few centimetres. Counts the rejection if it is not.
+    /// Whether a reference is worth flying: no vehicle on it, level or, under a limit of thrust, tilted as the
+    /// reference asks, collides or leaves the bounds, and a flight follows its reference to a few centimetres. Counts
+    /// the rejection if it is not.
     [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment);
 
     /// Flies jobs, and counts ticks and rejections.

@@ -206,11 +206,12 @@ Rejection SearchSpace::limit_left_at(const Configuration& c) const noexcept {
     return keeps_arm_limits ? Rejection::none : Rejection::arm_limits;
 }
 
-Rejection SearchSpace::rejection_at(const Configuration& c) const {
+Rejection SearchSpace::rejection_at(const Configuration& c, double pitch_rad) const {
     if (const Rejection left = limit_left_at(c); left != Rejection::none) {
         return left;
     }
-    return model_.collisions().is_nearer_than(level_at(c), margin_m_) ? Rejection::collision : Rejection::none;
+    const PlanarPose pose{c.x_m, c.z_m, pitch_rad, c.arm_rad};
+    return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
 }
 
 double SearchSpace::extent_m() const noexcept {

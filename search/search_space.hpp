@@ -27,6 +27,10 @@ class SearchSpace {
     [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
     [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
     [[nodiscard]] bool arm_is_limited() const noexcept { return arm_.is_limited; }
+    /// Whether its limits leave the arm but one angle.
+    [[nodiscard]] bool arm_is_fixed() const noexcept {
+        return arm_.is_limited && arm_.lower_limit_rad == arm_.upper_limit_rad;
+    }
     [[nodiscard]] double arm_low_rad() const noexcept;
     [[nodiscard]] double arm_high_rad() const noexcept;
 
@@ -82,8 +86,9 @@ class SearchSpace {
     /// Distance and angle to the goal as one length [m], 0 inside the goal region; of alternatives to the nearest.
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
 
-    /// What forbids the level vehicle there: `bounds`, `arm_limits`, `collision` with the safety margin, or `none`.
-    [[nodiscard]] Rejection rejection_at(const Configuration& configuration) const;
+    /// What forbids the vehicle there, level if no pitch is given: `bounds`, `arm_limits`, `collision` with the safety
+    /// margin, or `none`.
+    [[nodiscard]] Rejection rejection_at(const Configuration& configuration, double pitch_rad = 0) const;
     [[nodiscard]] bool is_valid(const Configuration& configuration) const {
         return rejection_at(configuration) == Rejection::none;
     }

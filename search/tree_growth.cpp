@@ -49,6 +49,7 @@ TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const
       parameters_(parameters),
       flights_(flights),
       random_(random),
+      passages_(flights.task()),
       tree_(start, flights),
       nearest_to_goal_(&tree_.root()),
       nearest_distance_m_(space.goal_distance_m(tree_.root().configuration)) {
@@ -62,6 +63,49 @@ TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const
 void TreeGrowth::try_first(std::vector<Configuration> places) {
     first_places_ = std::move(places);
     std::reverse(first_places_.begin(), first_places_.end());
+}
+
+/// The next point on the way through a passage that is due, or the first of a new way; nothing where it is the turn of
+/// other samples.
+std::optional<ReferencePoint> TreeGrowth::point_of_passage() {
+    if (!due_.empty() && due_.front().batch <= batch_) {
+        const ReferencePoint point = due_.front().point;
+        due_.pop_front();
+        return point;
+    }
+    if (!random_.chance(parameters_.passage_share)) {
+        return std::nullopt;
+    }
+    const std::optional<Passage> passage = passages_.sample(random_);
+    if (!passage) {
+        return std::nullopt;
+    }
+    due_.push_back({batch_ + 1, passage->through});
+    due_.push_back({batch_ + 2, passage->run_out});
+    return passage->run_up;
+}
+
+/// Where the next sample leads; nothing where none is found.
+std::optional<ReferencePoint> TreeGrowth::aim() {
+    if (parameters_.passage_share > 0 && first_places_.empty()) {
+        if (const std::optional<ReferencePoint> point = point_of_passage()) {
+            return point;
+        }
+    }
+    const std::optional<Configuration> target_place = target();
+    if (!target_place) {
+        return std::nullopt;
+    }
+    // Goals are aimed at from any distance: what stands in between is found before anything is flown.
+    const Configuration& nearest = tree_.nearest(*target_place, 1).front()->configuration;
+    const Configuration to = space_.is_near_goal(*target_place)
+                                 ? *target_place
+                                 : space_.steered(nearest, *target_place, parameters_.range_share * space_.extent_m());
+    if (const Rejection rejection = space_.rejection_at(to); rejection != Rejection::none) {
+        flights_.count_rejection(rejection);
+        return std::nullopt;
+    }
+    return at_rest(to);
 }
 
 std::optional<Configuration> TreeGrowth::target() {
@@ -98,6 +142,7 @@ std::uint64_t TreeGrowth::grow(std::optional<std::uint64_t> max_samples) {
     const auto wanted = static_cast<std::uint64_t>(has_plan() ? parameters_.batch_size : parameters_.first_batch_size);
     const std::uint64_t samples = std::min(wanted, max_samples.value_or(wanted));
     std::vector<Growth> batch;
+    ++batch_;
     for (std::uint64_t i = 0; i < samples; ++i) {
         if (auto growth = sampled()) {
             batch.push_back(std::move(*growth));
@@ -113,25 +158,19 @@ std::uint64_t TreeGrowth::grow(std::optional<std::uint64_t> max_samples) {
 }
 
 std::optional<TreeGrowth::Growth> TreeGrowth::sampled() {
-    const std::optional<Configuration> aim = target();
-    if (!aim) {
+    const std::optional<ReferencePoint> to = aim();
+    if (!to) {
         return std::nullopt;
     }
-    const Configuration& nearest = tree_.nearest(*aim, 1).front()->configuration;
     Growth growth;
-    // Goals are aimed at from any distance: what stands in between is found before anything is flown.
-    growth.to =
-        space_.is_near_goal(*aim) ? *aim : space_.steered(nearest, *aim, parameters_.range_share * space_.extent_m());
-    if (const Rejection rejection = space_.rejection_at(growth.to); rejection != Rejection::none) {
-        flights_.count_rejection(rejection);
-        return std::nullopt;
-    }
-    growth.neighbours = tree_.nearest(growth.to, neighbour_count());
-    const double min_cost_to_goal = parameters_.optimism * tree_.min_cost_to_goal(growth.to);
+    growth.to = *to;
+    const Configuration place = configuration_of(*to);
+    growth.neighbours = tree_.nearest(place, neighbour_count());
+    const double min_cost_to_goal = parameters_.optimism * tree_.min_cost_to_goal(place);
     for (FlightNode* node : with_ancestors(growth.neighbours)) {
-        const double estimate = node->cost + parameters_.optimism * tree_.estimated_cost(*node, growth.to);
+        const double estimate = node->cost + parameters_.optimism * tree_.estimated_cost(*node, place);
         if (estimate + min_cost_to_goal < parameters_.max_detour * best_hold_cost_ &&
-            space_.distance_m(node->configuration, growth.to) > 1e-6) {
+            space_.distance_m(node->configuration, place) > 1e-6) {
             growth.parents.push_back({node, estimate});
         }
     }
@@ -154,7 +193,9 @@ void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
                 growth.next_parent = growth.parents.size();
                 continue;
             }
-            edges.push_back({parent.node, space_.seen_from(parent.node->configuration, growth.to)});
+            ReferencePoint to = growth.to;
+            to.position[2] = space_.seen_from(parent.node->configuration, configuration_of(to)).arm_rad;
+            edges.push_back({parent.node, to});
             growths.push_back(&growth);
         }
         if (edges.empty()) {
@@ -177,8 +218,9 @@ std::vector<FlightNode*> TreeGrowth::add(const std::vector<Growth>& batch) {
     std::vector<FlightNode*> added;
     for (const Growth& growth : batch) {
         const bool is_worthwhile =
-            growth.best && growth.best->cost + parameters_.optimism * tree_.min_cost_to_goal(growth.to) <
-                               parameters_.max_detour * best_hold_cost_;
+            growth.best &&
+            growth.best->cost + parameters_.optimism * tree_.min_cost_to_goal(configuration_of(growth.to)) <
+                parameters_.max_detour * best_hold_cost_;
         added.push_back(is_worthwhile ? &tree_.add(*growth.best_parent, *growth.best) : nullptr);
     }
     return added;
@@ -187,7 +229,7 @@ std::vector<FlightNode*> TreeGrowth::add(const std::vector<Growth>& batch) {
 void TreeGrowth::add_holds(const std::vector<FlightNode*>& added) {
     std::vector<FlightNode*> arrived;
     for (FlightNode* node : added) {
-        if (node == nullptr) {
+        if (node == nullptr || !is_at_rest(node->reference)) {
             continue;
         }
         const double distance_m = space_.goal_distance_m(node->configuration);

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "downwash/search/flight_tree.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
+#include "downwash/search/passage_sampler.hpp"
 #include "downwash/search/random.hpp"
 
 namespace downwash::planning {
@@ -46,7 +48,7 @@ class TreeGrowth {
  private:
     /// A sample on its way to become a node.
     struct Growth {
-        Configuration to;
+        ReferencePoint to;
         std::vector<FlightNode*> neighbours;
         struct Parent {
             FlightNode* node;
@@ -58,6 +60,8 @@ class TreeGrowth {
         FlightNode* best_parent = nullptr;
     };
 
+    [[nodiscard]] std::optional<ReferencePoint> aim();
+    [[nodiscard]] std::optional<ReferencePoint> point_of_passage();
     [[nodiscard]] std::optional<Configuration> target();
     [[nodiscard]] std::optional<Configuration> target_beside_plan();
     [[nodiscard]] std::size_t neighbour_count() const;
@@ -72,6 +76,14 @@ class TreeGrowth {
     const FlightTreeParameters& parameters_;
     PlannedFlights& flights_;
     Random random_;
+    PassageSampler passages_;
+    /// Points on the way through a passage, each to be tried in a later batch than the one before.
+    struct Due {
+        std::uint64_t batch;
+        ReferencePoint point;
+    };
+    std::deque<Due> due_;
+    std::uint64_t batch_ = 0;  ///< number of the batch under way
     FlightTree tree_;
     std::vector<Configuration> first_places_;  ///< yet to be tried, the next one last
     std::optional<std::vector<FlightPoint>> known_plan_;

@@ -128,10 +128,10 @@ std::vector<KeyError> outlying_center_of_mass(const Robot& robot) {
 }
 
 std::vector<KeyError> crossed_arm_limits(const Robot& robot) {
-    if (!robot.arm.is_limited || robot.arm.lower_limit_rad < robot.arm.upper_limit_rad) {
+    if (!robot.arm.is_limited || robot.arm.lower_limit_rad <= robot.arm.upper_limit_rad) {
         return {};
     }
-    return {{"arm.limits_deg", "is [lower, upper]: expected the lower limit below the upper one"}};
+    return {{"arm.limits_deg", "is [lower, upper]: expected the lower limit below the upper one, or both the same"}};
 }
 
 std::vector<KeyError> weak_joint(const Robot& robot) {

@@ -120,7 +120,10 @@ void add_rotors(Rows& rows) {
 
 Parameter<Robot> arm_limits() {
     auto limits = parameters::numbers<Robot>(
-        "arm.limits_deg", "least and greatest angle relative to the multirotor; null turns through 360 degrees",
+        "arm.limits_deg",
+        "least and greatest angle relative to the multirotor, the same for an arm that does not move; null turns "
+        "through "
+        "360 degrees",
         {"lower", "upper"},
         [](const Robot& r, std::size_t) {
             return r.arm.is_limited ? Value(std::vector{r.arm.lower_limit_rad, r.arm.upper_limit_rad}) : Value();

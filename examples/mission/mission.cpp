@@ -22,10 +22,10 @@ namespace {
 constexpr double lead_in_flight_s = 1;      ///< from the telemetry that a plan is made from to its first tick
 constexpr double lead_in_hover_s = 3;       ///< the same where there is time
 constexpr double planning_share = 0.8;      ///< of the lead, for planning
-constexpr std::uint64_t iterations = 1000;  ///< of a search in lock step, where time does not count
+constexpr std::uint64_t iterations = 3000;  ///< of a search in lock step, where time does not count
 constexpr std::size_t readings = 50;        ///< of the range finder for a mean: exact to some millimetres
 constexpr double max_drift_m = 0.15;
-constexpr int max_attempts = 8;  ///< plans for one target
+constexpr int max_attempts = 6;  ///< plans for one target
 
 struct MissionFailed : std::runtime_error {
     using runtime_error::runtime_error;
@@ -48,6 +48,8 @@ double rounded(double length_m) {
 Problem first_leg(Problem bridge, bool is_lock_step) {
     bridge.goal = goals_of(bridge).front();
     bridge.stops.clear();
+    bridge.planner.max_iterations.reset();
+    bridge.planner.time_limit_s.reset();
     if (is_lock_step) {
         bridge.planner.max_iterations = iterations;
     } else {
@@ -118,7 +120,7 @@ class Mission {
 
     /// Plans from the problem's start, where the vehicle hovers.
     void plan_first() {
-        const Start& start = planner_.problem().start;
+        const Start start = planner_.problem().start;
         following_ = {now(), start, Plan{{{0, at_rest(start.configuration())}}, link_.tick_s()}, Advice::stop};
         const Solution& solution = planner_.solve();
         if (solution.status != Status::solved) {
@@ -149,7 +151,8 @@ class Mission {
         if (++attempts_ > max_attempts) {
             throw MissionFailed("too many plans for one target");
         }
-        const double lead_s = now() >= following_.end_tick() ? lead_in_hover_s : lead_in_flight_s;
+        // In a hover there is time, and more with each attempt.
+        const double lead_s = now() >= following_.end_tick() ? attempts_ * lead_in_hover_s : lead_in_flight_s;
         const std::int64_t from_tick = now() + ticks(lead_s);
         const Start start = predicted(from_tick);
         if (following_.leads_to_target()) {
@@ -159,7 +162,7 @@ class Mission {
         }
         ReplanOptions options;
         if (link_.is_lock_step()) {
-            options.max_iterations = iterations;
+            options.max_iterations = static_cast<std::uint64_t>(attempts_) * iterations;
         } else {
             options.time_limit_s = planning_share * lead_s;
         }

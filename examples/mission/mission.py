@@ -24,10 +24,10 @@ import numpy as np
 LEAD_IN_FLIGHT_S = 1  # from the telemetry that a plan is made from to its first tick
 LEAD_IN_HOVER_S = 3  # the same where there is time
 PLANNING_SHARE = 0.8  # of the lead, for planning
-ITERATIONS = 1000  # of a search in lock step, where time does not count
+ITERATIONS = 3000  # of a search in lock step, where time does not count
 READINGS = 50  # of the range finder for a mean: exact to some millimetres
 MAX_DRIFT_M = 0.15
-MAX_ATTEMPTS = 8  # plans for one target
+MAX_ATTEMPTS = 6  # plans for one target
 TIMEOUT_S = 2
 
 
@@ -182,9 +182,10 @@ class Mission:
         self._bridge = Bridge(problem)
         self._arm_m: float = problem["robot.arm.length_m"]
         self._delay_s: float = problem["robot.controller.delay_s"]
-        limits: dict[str, object] = {"planner.time_limit_s": PLANNING_SHARE * LEAD_IN_HOVER_S}
-        if link.is_lock_step:
-            limits = {"planner.max_iterations": ITERATIONS, "planner.time_limit_s": None}
+        limits = {
+            "planner.max_iterations": ITERATIONS if link.is_lock_step else None,
+            "planner.time_limit_s": None if link.is_lock_step else PLANNING_SHARE * LEAD_IN_HOVER_S,
+        }
         first_leg = problem.replace({"goal": self._bridge.targets[0], **limits})
         self._planner = downwash.Planner(first_leg, threads=2, stop_at_first=True)
         self._rows: list[dict[str, Any]] = []
@@ -276,7 +277,9 @@ class Mission:
         self._attempts += 1
         if self._attempts > MAX_ATTEMPTS:
             raise MissionFailed("too many plans for one target")
-        lead_s = LEAD_IN_HOVER_S if self._now >= self._following.end_tick else LEAD_IN_FLIGHT_S
+        # In a hover there is time, and more with each attempt.
+        is_hovering = self._now >= self._following.end_tick
+        lead_s = self._attempts * LEAD_IN_HOVER_S if is_hovering else LEAD_IN_FLIGHT_S
         from_tick = self._now + self._ticks(lead_s)
         start = self._predicted(from_tick)
         if self._following.leads_to_target:
@@ -288,7 +291,7 @@ class Mission:
             from_tick - self._following.from_tick,
             put=put or [],
             goal=goal,
-            max_iterations=ITERATIONS if self._link.is_lock_step else None,
+            max_iterations=self._attempts * ITERATIONS if self._link.is_lock_step else None,
             time_limit_s=None if self._link.is_lock_step else PLANNING_SHARE * lead_s,
             on_answer=lambda now: self._link.send(Command(from_tick, start, now.plan, now.advice, self._link.tick_s)),
         )

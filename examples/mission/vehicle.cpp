@@ -46,7 +46,8 @@ struct Options {
 /// References, each from a control tick on. They follow each other without jumps.
 class Commands {
  public:
-    explicit Commands(const Configuration& start) { plans_[0] = Plan{{{0, at_rest(start)}}, 0.01}; }
+    /// Begins with a hover.
+    Commands(const Configuration& start, double tick_s) { plans_[0] = Plan{{{0, at_rest(start)}}, tick_s}; }
 
     [[nodiscard]] ReferencePoint at(std::int64_t tick) const {
         const auto& [from, plan] = *std::prev(plans_.upper_bound(tick));
@@ -117,23 +118,23 @@ judge::FlightConditions conditions_of(const Problem& problem, const Options& opt
 
 class Vehicle {
  public:
-    Vehicle(const Options& options, LineSocket& link)
+    explicit Vehicle(const Options& options)
         : options_(options),
-          link_(link),
           problem_(true_problem(options)),
           scene_(problem_.obstacles),
           vehicle_(problem_, conditions_of(problem_, options)),
-          commands_(problem_.start.configuration()),
           tick_s_(1 / problem_.robot.controller.rate_hz),
+          commands_(problem_.start.configuration(), tick_s_),
           held_(goals_of(problem_).size(), false) {}
 
     /// Flies until the mission planner ends the mission, or the flight ends by itself.
-    void fly() {
-        link_.send(json{{"type", "hello"}, {"tick_s", tick_s_}, {"lock_step", options_.is_lock_step}}.dump());
+    void fly(LineSocket& link) {
+        link_ = &link;
+        link_->send(json{{"type", "hello"}, {"tick_s", tick_s_}, {"lock_step", options_.is_lock_step}}.dump());
         auto due = std::chrono::steady_clock::now();
         for (bool goes_on = true; goes_on; ++tick_) {
             fail();
-            link_.send(telemetry().dump());
+            link_->send(telemetry().dump());
             if (is_ended_by_mission()) {
                 break;
             }
@@ -144,8 +145,8 @@ class Vehicle {
                 std::this_thread::sleep_until(due);
             }
         }
-        link_.send(json{{"type", "ended"}, {"outcome", judge::name_of(vehicle_.flight().outcome)}}.dump());
-        link_.drain(5);
+        link_->send(json{{"type", "ended"}, {"outcome", judge::name_of(vehicle_.flight().outcome)}}.dump());
+        link_->drain(5);
     }
 
     /// Writes the true flight, with the names of trajectory.csv.
@@ -221,7 +222,7 @@ class Vehicle {
     /// Reads what the mission planner has sent; in lock step until it says go.
     bool is_ended_by_mission() {
         for (;;) {
-            const auto line = link_.receive(options_.is_lock_step ? options_.mission_timeout_s : 0);
+            const auto line = link_->receive(options_.is_lock_step ? options_.mission_timeout_s : 0);
             if (!line) {
                 if (options_.is_lock_step) {
                     throw ConnectionLost("no word from the mission planner");
@@ -236,8 +237,8 @@ class Vehicle {
             }
             const std::string why = type == "reference" ? taken(message) : "it is no message";
             const json id = message.is_object() && message.contains("id") ? message["id"] : json(nullptr);
-            link_.send(why.empty() ? json{{"type", "accepted"}, {"id", id}}.dump()
-                                   : json{{"type", "rejected"}, {"id", id}, {"reason", why}}.dump());
+            link_->send(why.empty() ? json{{"type", "accepted"}, {"id", id}}.dump()
+                                    : json{{"type", "rejected"}, {"id", id}, {"reason", why}}.dump());
         }
     }
 
@@ -271,19 +272,19 @@ class Vehicle {
         if (options_.failure == "die") {
             std::_Exit(1);
         } else if (options_.failure == "garbage") {
-            link_.send(R"({"type": "telemetry", "tick": )");
+            link_->send(R"({"type": "telemetry", "tick": )");
         } else {
             std::this_thread::sleep_for(std::chrono::seconds(5));
         }
     }
 
     const Options& options_;
-    LineSocket& link_;
+    LineSocket* link_ = nullptr;  ///< of the flight
     Problem problem_;
     Scene scene_;
     judge::SimulatedVehicle vehicle_;
-    Commands commands_;
     double tick_s_;
+    Commands commands_;
     std::int64_t tick_ = 0;
     std::mt19937 random_{1};
     std::normal_distribution<double> normal_;
@@ -328,11 +329,11 @@ bool read_options(int count, char** words, Options& options) {
 
 /// Flies, and says how it went. @return the exit code
 int run(const Options& options) {
+    Vehicle vehicle(options);
     LineSocket link = LineSocket::accept_at(options.socket, 30);
-    Vehicle vehicle(options, link);
     bool is_connected = true;
     try {
-        vehicle.fly();
+        vehicle.fly(link);
     } catch (const ConnectionLost& error) {
         std::fprintf(stderr, "vehicle: %s\n", error.what());
         is_connected = false;

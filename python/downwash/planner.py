@@ -153,6 +153,7 @@ class Planner:
     problem: what is planned first; its planner settings hold for `solve`, but for its limits also for `replan`
     threads: number of threads, on which results do not depend; default: one per processor
     stop_at_first: end searches with the first plan that is accepted
+    finds_stops: prefer plans that can be left for a hover at more of their time, as `downwash.solve` does; takes a moment
     cache: folder in which aero maps are kept; default: none
     """
 
@@ -162,10 +163,11 @@ class Planner:
         *,
         threads: int | None = None,
         stop_at_first: bool = False,
+        finds_stops: bool = False,
         cache: Path | None = None,
     ) -> None:
         self._core = _core.Planner(
-            problem._core, threads or 0, stop_at_first, os.fspath(cache) if cache is not None else ""
+            problem._core, threads or 0, stop_at_first, finds_stops, os.fspath(cache) if cache is not None else ""
         )
         # What a change is read with: values beside obstacles and goal that are right.
         whole = problem.to_dict("")

@@ -128,7 +128,7 @@ TEST_CASE("A signal ends a campaign at once, with what is finished") {
     CHECK(result.out == "0 of 200 runs are in out; --resume continues with the others\n");
 }
 
-TEST_CASE("Shards are run one by one and merged; the merge names runs that are missing and the command for them") {
+TEST_CASE("Shards are run one by one and merged, and the merge names runs that are missing and the command for them") {
     const Workspace work;
     write_campaign(work, "seeds: {count: 3}\nmax_iterations: 5");
     for (const std::string shard : {"1/3", "3/3"}) {

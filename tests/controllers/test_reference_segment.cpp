@@ -13,7 +13,7 @@ using test::Random;
 namespace {
 
 constexpr double tick_s = 0.01;
-constexpr MotionLimits limits{1.0, 0.5, 0.785, 1.57};
+constexpr MotionLimits limits{1.0, 0.5, 0.785, 1.57, 4, {}, {}};
 
 ReferencePoint rest_at(double x_m, double z_m, double arm_rad) {
     return at_rest({x_m, z_m, arm_rad});
@@ -247,4 +247,95 @@ TEST_CASE("A start that no duration can mend is not flown at a crawl") {
     for (const std::int64_t other : {ticks / 2, ticks * 3 / 4, ticks * 5 / 4, ticks * 2, ticks * 4}) {
         CHECK(use <= use_of_limits(ReferenceSegment(from, rest_at(3, 0, 0), other, tick_s)));
     }
+}
+
+namespace {
+
+/// Those of a planar rotor that can give 1.3 times its weight.
+MotionLimits agile_limits() {
+    MotionLimits agile{3.9, 14, 10, 100, 500, {}, {}};
+    agile.max_thrust_ratio = 1.3;
+    agile.max_pitch_rate_rad_s = 5;
+    return agile;
+}
+
+constexpr double g_m_s2 = 9.80665;
+
+/// The greatest force of a point mass over its weight, and the greatest turn of that force in a tick over the limit.
+std::pair<double, double> use_of_agile_limits(const ReferenceSegment& segment, const MotionLimits& agile) {
+    double ratio = 0;
+    double turn = 0;
+    double before_rad = 0;
+    for (std::int64_t tick = 0; tick <= segment.ticks(); ++tick) {
+        const ReferencePoint point = segment.at_tick(tick);
+        const double up = point.acceleration[1] + g_m_s2;
+        ratio = std::max(ratio, std::hypot(point.acceleration[0], up) / g_m_s2);
+        const double pitch_rad = std::atan2(point.acceleration[0], up);
+        CHECK(pitch_along(point) == Approx(pitch_rad).margin(1e-9));
+        if (tick > 0) {
+            turn = std::max(turn, std::abs(pitch_rad - before_rad) / tick_s / *agile.max_pitch_rate_rad_s);
+        }
+        before_rad = pitch_rad;
+    }
+    return {ratio / *agile.max_thrust_ratio, turn};
+}
+
+}  // namespace
+
+TEST_CASE("agile segments keep thrust and pitch rate at every tick, and hardly less time breaks a limit") {
+    Random random(11);
+    const MotionLimits agile = agile_limits();
+    int moving = 0;
+    for (int i = 0; i < 200; ++i) {
+        const ReferencePoint from = random_rest(random);
+        ReferencePoint to = random_rest(random);
+        to.position[2] = from.position[2];
+        if (i % 2 == 1) {
+            to.velocity[0] = random.uniform(-2, 2);
+            to.acceleration[1] = random.uniform(-4, 2);
+        }
+        const std::int64_t ticks = shortest_ticks(from, to, agile, tick_s);
+        const ReferenceSegment segment(from, to, ticks, tick_s);
+        if (!keeps_limits(segment, agile)) {
+            REQUIRE(i % 2 == 1);  // out of reach at that speed
+            continue;
+        }
+        moving += i % 2;
+        const auto [ratio, turn] = use_of_agile_limits(segment, agile);
+        CHECK(ratio <= 1.003);
+        CHECK(turn <= 1.01);
+        // The limits are checked at samples.
+        CHECK_FALSE(keeps_limits(ReferenceSegment(from, to, ticks - 1 - ticks / 100, tick_s), agile));
+    }
+    CHECK(moving > 50);
+}
+
+TEST_CASE("straight up a thrust ratio of 1.3 leaves 0.3 g, sideways the tilt of 39.7 degrees") {
+    MotionLimits agile{100, 100, 10, 100, 10000, {}, {}};
+    agile.max_thrust_ratio = 1.3;
+    CHECK(limits_along(agile, 0, 2).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
+    CHECK(limits_along(agile, 0, -1).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
+    CHECK(limits_along(agile, -3, 0).max_acceleration_m_s2 == Approx(std::sqrt(0.69) * g_m_s2));
+    CHECK(limits_along(limits, 1, 2).max_acceleration_m_s2 == limits.max_acceleration_m_s2);
+    // Without a limit of the pitch rate the fastest motion from rest to rest is known: peak 10 / sqrt(3) d / t^2.
+    const double duration_s = std::sqrt(10 / std::sqrt(3.0) / (0.3 * g_m_s2));
+    CHECK(shortest_ticks(rest_at(0, 0, 0), rest_at(0, 1, 0), agile, tick_s) ==
+          std::llround(std::ceil(duration_s / tick_s)));
+    // A fast fall needs some force, too.
+    agile.max_thrust_ratio = 3;
+    CHECK(limits_along(agile, 0, 1).max_acceleration_m_s2 < g_m_s2);
+}
+
+TEST_CASE("limits in every direction keep those of thrust and pitch rate whichever way a reference leads") {
+    const MotionLimits agile = agile_limits();
+    const MotionLimits all = limits_in_every_direction(agile);
+    for (int i = 0; i < 36; ++i) {
+        const double angle = i * 0.1745;
+        const double x = all.max_acceleration_m_s2 * std::cos(angle);
+        const double up = g_m_s2 + all.max_acceleration_m_s2 * std::sin(angle);
+        CHECK(std::hypot(x, up) <= 1.3 * g_m_s2 * (1 + 1e-9));
+        CHECK(all.max_jerk_m_s3 / std::hypot(x, up) <= *agile.max_pitch_rate_rad_s * (1 + 1e-9));
+    }
+    CHECK(limits_in_every_direction(limits).max_acceleration_m_s2 == limits.max_acceleration_m_s2);
+    CHECK(limits_in_every_direction(limits).max_jerk_m_s3 == limits.max_jerk_m_s3);
 }

@@ -171,7 +171,7 @@ TEST_CASE("Goals in turn are certified as a whole, from start to end") {
 }
 
 TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct flights do") {
-    const std::size_t weak = GENERATE(0, 1);  // the part that comes too near to the ceiling
+    const std::size_t weak = GENERATE(std::size_t{0}, std::size_t{1});  // the part that comes too near to the ceiling
     Problem problem = ceiling_problem();
     problem.stops = {tip_goal(-1, weak == 0 ? 4.8 : 4.65)};
     problem.stops[0].hold_s = 1;

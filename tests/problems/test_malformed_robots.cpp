@@ -55,7 +55,7 @@ const Edit edits[] = {
     {"max_torque_nm: 12", "max_torque_nm: 3",
      "13:112: arm.max_torque_nm is 3, too little to hold the arm level: expected at least 3.089 Nm"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, -90]",
-     "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one"},
+     "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one, or both the same"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: 90",
      "13:128: arm.limits_deg is '90': expected [lower, upper] in deg from -3600 to 3600, or null"},
     {"    - box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "    []",

@@ -21,7 +21,7 @@ def problem(bridge):
 
 @pytest.fixture()
 def planner(problem):
-    planner = downwash.Planner(problem, threads=2)
+    planner = downwash.Planner(problem, threads=2, finds_stops=True)
     assert planner.solve().status == "solved"
     return planner
 

@@ -9,7 +9,7 @@ using planning::ReferenceSteps;
 
 namespace {
 
-constexpr MotionLimits limits{1.0, 0.5, 0.75, 1.5};
+constexpr MotionLimits limits{1.0, 0.5, 0.75, 1.5, 4, {}, {}};
 constexpr double still[3] = {0, 0, 0};
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Fixture : test::FlightFixture {
     using FlightFixture::FlightFixture;
 
     std::optional<planning::FlightTree::Flown> flown(const FlightNode& from, const Configuration& to) {
-        const planning::FlightTree::Edge edge{&from, task.space.seen_from(from.configuration, to)};
+        const planning::FlightTree::Edge edge{&from, at_rest(task.space.seen_from(from.configuration, to))};
         return tree.flown({&edge, 1}).front();
     }
     FlightNode* fly(FlightNode& from, const Configuration& to) {

@@ -12,22 +12,23 @@ inline thread_local long allocations = 0;
 
 }  // namespace downwash::test
 
-void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
+// Where they are inlined, GCC takes what delete frees for memory of another allocator.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
     ++downwash::test::allocations;
     return std::malloc(size);
 }
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
     if (void* memory = operator new(size, std::nothrow)) {
         return memory;
     }
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t /*unused*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*unused*/) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept {
     std::free(memory);
 }
