@@ -26,7 +26,8 @@ std::size_t index_below(std::size_t count, Random& random) {
     return static_cast<std::size_t>(random.uniform(0, static_cast<double>(count)));
 }
 
-/// The same way flown backwards: with the same accelerations, so within the same limits.
+}  // namespace
+
 Passage reversed(const Passage& passage) {
     Passage back{passage.run_out, passage.through, passage.run_up};
     for (double& speed : back.through.velocity) {
@@ -34,8 +35,6 @@ Passage reversed(const Passage& passage) {
     }
     return back;
 }
-
-}  // namespace
 
 PassageSampler::PassageSampler(const SearchTask& task)
     : space_(task.space),
@@ -177,17 +176,17 @@ std::optional<Passage> PassageSampler::way_over_bridge(Random& random) {
     return std::nullopt;
 }
 
-std::optional<Passage> PassageSampler::sample(Random& random) {
+std::optional<Passage> PassageSampler::sample(Random& random, const std::function<bool(const Passage&)>& is_wanted) {
     for (int i = 0; i < tries; ++i) {
         const bool is_beside_known = !known_.empty() && random.chance(known_share);
         const std::optional<Passage> passage = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
-        if (!passage) {
+        if (!passage || !is_wanted(*passage)) {
             continue;
         }
         if (!is_beside_known && known_.size() < max_known) {
             known_.push_back(passage->through);
         }
-        return random.chance(0.5) ? passage : reversed(*passage);
+        return passage;
     }
     return std::nullopt;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct Passage {
     ReferencePoint run_out;  ///< at rest
 };
 
+/// The same way flown backwards: with the same accelerations, so within the same limits.
+[[nodiscard]] Passage reversed(const Passage& passage);
+
 /// Draws ways through narrow passages, which nothing that stops and nothing level comes through. Passages are found by
 /// the bridge test (Hsu, Jiang, Reif and Sun 2003): the vehicle, as tilted as its acceleration there takes, collides on
 /// both sides of a point, and not at it. Ways beside those that were found are drawn, too.
@@ -25,7 +29,8 @@ class PassageSampler {
 
     /// A way whose reference is within bounds and limits of motion and free of collision, between places that no
     /// motion from rest to rest connects; nothing after some tries.
-    [[nodiscard]] std::optional<Passage> sample(Random& random);
+    /// @param is_wanted whether a way is worth knowing
+    [[nodiscard]] std::optional<Passage> sample(Random& random, const std::function<bool(const Passage&)>& is_wanted);
 
  private:
     /// A place between two sides that a vehicle with this pitch collides with.

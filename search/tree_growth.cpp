@@ -76,9 +76,19 @@ std::optional<ReferencePoint> TreeGrowth::point_of_passage() {
     if (!random_.chance(parameters_.passage_share)) {
         return std::nullopt;
     }
-    const std::optional<Passage> passage = passages_.sample(random_);
+    const auto distance_m = [this](const ReferencePoint& point) {
+        const Configuration place = configuration_of(point);
+        return space_.distance_m(tree_.nearest(place, 1).front()->configuration, place);
+    };
+    // A way between places that the tree has reached already is none worth knowing.
+    std::optional<Passage> passage = passages_.sample(random_, [&](const Passage& way) {
+        return std::max(distance_m(way.run_up), distance_m(way.run_out)) > parameters_.alternative_distance_m;
+    });
     if (!passage) {
         return std::nullopt;
+    }
+    if (distance_m(passage->run_out) < distance_m(passage->run_up)) {
+        passage = reversed(*passage);
     }
     due_.push_back({batch_ + 1, passage->through});
     due_.push_back({batch_ + 2, passage->run_out});
