@@ -8,13 +8,17 @@
 #include "downwash/controllers/aided_law.hpp"
 #include "downwash/controllers/cascaded_pid.hpp"
 #include "downwash/controllers/model_inversion.hpp"
+#include "downwash/controllers/planar_lyapunov.hpp"
 
 // The control laws that a robot can be flown by. docs/extending/controller.md says what a law consists of.
 
 namespace downwash {
 
-/// One of the laws, with its gains. The first is that of a robot file without `controller.type`.
-using ControlLaw = std::variant<ModelInversion, CascadedPid>;
+/// A law that flights are compiled for, with its gains.
+using FlownLaw = std::variant<ModelInversion, CascadedPid>;
+
+/// One of the laws that a robot file can choose. The first is that of a file without `controller.type`.
+using ControlLaw = std::variant<ModelInversion, CascadedPid, PlanarLyapunov>;
 
 /// The controller of a robot.
 struct Controller {
@@ -25,9 +29,22 @@ struct Controller {
 
 namespace controllers {
 
+/// What flies the robot: the law itself, or for one that is another's gains in other terms that other law.
+[[nodiscard]] inline FlownLaw flown_law(const ControlLaw& law) {
+    return std::visit(
+        []<class Law>(const Law& own) -> FlownLaw {
+            if constexpr (requires { own.inverted(); }) {
+                return own.inverted();
+            } else {
+                return own;
+            }
+        },
+        law);
+}
+
 /// Calls `fly` with the law as what flies: the law itself, or Aided with what it has beside its loops.
 template <class Fly>
-decltype(auto) visit_flown(const ControlLaw& law, const Fly& fly) {
+decltype(auto) visit_flown(const FlownLaw& law, const Fly& fly) {
     return std::visit(
         [&]<class Law>(const Law& own) {
             if constexpr (can_be_aided<Law>) {
@@ -41,7 +58,9 @@ decltype(auto) visit_flown(const ControlLaw& law, const Fly& fly) {
 }
 
 /// What the law has beside its loops.
-[[nodiscard]] inline Aids aids_of(const ControlLaw& law) {
+/// @tparam Any FlownLaw or ControlLaw
+template <class Any>
+[[nodiscard]] Aids aids_of(const Any& law) {
     return std::visit(
         []<class Law>(const Law& own) {
             if constexpr (can_be_aided<Law>) {
@@ -72,11 +91,11 @@ constexpr int max_memory(const std::variant<Laws...>* /*laws*/) {
 /// What the law of a flight remembers, whichever it is: the numbers of its memory, then zeros.
 template <class T>
 struct LawMemory {
-    T number[max_memory(static_cast<const ControlLaw*>(nullptr))];
+    T number[max_memory(static_cast<const FlownLaw*>(nullptr))];
 };
 
 /// How many numbers a law remembers, with its aids.
-[[nodiscard]] inline int memory_size(const ControlLaw& law) {
+[[nodiscard]] inline int memory_size(const FlownLaw& law) {
     return visit_flown(law, []<class Flown>(const Flown& /*law*/) {
         return number_count<double, typename Flown::template Memory<double>>;
     });

@@ -1,21 +1,14 @@
 #pragma once
 
 #include "downwash/controllers/euler_angles.hpp"
+#include "downwash/controllers/lyapunov_coordinate.hpp"
 #include "downwash/dynamics/space_allocation.hpp"
 #include "downwash/dynamics/space_step.hpp"
 
 // The Lyapunov laws of thesis 4.6 for a multirotor in space without an arm, mended (docs/model.md 5.8). One template
 // over the lane type; pure functions without memory.
-//
-// With e = x - x_d and e' = dx/dt - dx_d/dt + k e, each law makes V = (e^2 + e'^2) / 2 fall at -k e^2 - k' e'^2.
 
 namespace downwash::controllers {
-
-/// Gains of one coordinate, both > 0 [1/s].
-struct LyapunovGains {
-    double k = 1;       ///< of the error
-    double k_rate = 1;  ///< k', of the speed's
-};
 
 /// Gains of all laws. The defaults suit a quadrotor of some kilograms.
 struct LyapunovLaw {
@@ -24,38 +17,6 @@ struct LyapunovLaw {
     double max_tilt_rad = 0.35;     ///< of roll and pitch that the position law asks for, in (0, pi/2)
     double min_thrust_ratio = 0.1;  ///< least acting thrust that all laws together ask for, of the weight; > 0
 };
-
-/// What one coordinate shall do: value, speed and acceleration.
-template <class T>
-struct LyapunovTarget {
-    T value, rate, acceleration;
-};
-
-/// The two errors of one coordinate.
-template <class T>
-struct LyapunovErrors {
-    T e, e_rate;
-};
-
-/// The errors of a coordinate (thesis (4.17), (4.18)). @param error x - x_d, turned into (-pi, pi] for an angle
-template <class T>
-LyapunovErrors<T> lyapunov_errors(const LyapunovGains& gains, const T& error, const T& rate,
-                                  const LyapunovTarget<T>& target) {
-    return {error, rate - target.rate + T(gains.k) * error};
-}
-
-/// V.
-template <class T>
-T lyapunov_function(const LyapunovErrors<T>& errors) {
-    return T(0.5) * (errors.e * errors.e + errors.e_rate * errors.e_rate);
-}
-
-/// The acceleration that makes V fall: x_d'' + (k^2 - 1) e - (k + k') e'. The thesis leaves x_d'' out and writes one
-/// gain for two.
-template <class T>
-T lyapunov_acceleration(const LyapunovGains& gains, const LyapunovErrors<T>& errors, const LyapunovTarget<T>& target) {
-    return target.acceleration + T(gains.k * gains.k - 1) * errors.e - T(gains.k + gains.k_rate) * errors.e_rate;
-}
 
 /// Roll, pitch and yaw and what they shall do.
 template <class T>

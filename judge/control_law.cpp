@@ -69,6 +69,25 @@ struct ControlLaw::Inversion {
         const Planar k = mb * (ac + Planar{0, standard_gravity_m_s2});
         bias << mb * ac.x, mb * ac.z + v.mass_kg() * standard_gravity_m_s2, dot(both, k), dot(ea, k);
     }
+
+    /// Row 3, with du1 and du3 from rows 1 and 2 under this thrust.
+    [[nodiscard]] double pitch_torque_nm(double thrust_n, double v5, double v7) const {
+        const Eigen::Vector2d pull(thrust_n * sine, thrust_n * cosine);
+        const Eigen::Vector2d translation = mass.topLeftCorner<2, 2>().diagonal().cwiseInverse().cwiseProduct(
+            pull - bias.head<2>() - mass.topRightCorner<2, 2>() * Eigen::Vector2d(v5, v7));
+        return mass.row(2) * Vector4(translation(0), translation(1), v5, v7) + bias(2);
+    }
+};
+
+/// Accelerations of x, z and the arm.
+struct ControlLaw::Wanted {
+    double v1, v3, v7;
+};
+
+/// Where a law wants the thrust to point, and what acts along b3 of it.
+struct ControlLaw::Tilt {
+    double reference_rad, rate_rad_s, thrust_n;  ///< the rate is filtered
+    bool is_clipped;
 };
 
 /// Of the joint a law demands an acceleration, or a torque.
@@ -188,6 +207,45 @@ ControlLaw::Demand ControlLaw::cascaded(const CascadedPid& gain, const Motion& s
     return {force.x * up.x + force.z * up.z, torque, std::nullopt, joint};
 }
 
+template <class Gain>
+ControlLaw::Tilt ControlLaw::tilt(const Gain& gain, const Inversion& inversion, const Wanted& wanted,
+                                  const ControlMemory& kept) const {
+    // Rows 1 and 2 with (v1, v3, 0, v7).
+    const Vector4 force = inversion.mass * Vector4(wanted.v1, wanted.v3, 0, wanted.v7) + inversion.bias;
+    const double min_force_z = gain.min_vertical_force_ratio * believed_.mass_kg() * standard_gravity_m_s2;
+    const double whole = std::atan2(force(0), std::max(force(1), min_force_z));
+    const double reference = std::clamp(whole, -gain.max_tilt_rad, gain.max_tilt_rad);
+    const double raw_rate = (reference - kept.pitch_reference_rad) / tick_s_;
+    const double share = tick_s_ / (gain.pitch_rate_filter_s + tick_s_);
+    return {reference, kept.pitch_reference_rate + share * (raw_rate - kept.pitch_reference_rate),
+            force(0) * inversion.sine + force(1) * inversion.cosine,
+            std::abs(whole) > gain.max_tilt_rad || force(1) < min_force_z};
+}
+
+/// docs/model.md 5.8: nothing is integrated.
+ControlLaw::Demand ControlLaw::falling(const PlanarLyapunov& gain, const Inversion& inversion, const Motion& seen,
+                                       const ReferencePoint& reference, ControlMemory& kept,
+                                       ControlMemory& integrated) const {
+    const auto fall = [](double k, double k_rate, double e, double de, double acceleration) {
+        const double e_rate = de + k * e;
+        return acceleration + (k * k - 1) * e - (k + k_rate) * e_rate;
+    };
+    const auto& r = reference;
+    const double v1 = fall(gain.horizontal_k, gain.horizontal_k_rate, seen.position_m.x - r.position[0],
+                           seen.velocity_m_s.x - r.velocity[0], r.acceleration[0]);
+    const double v3 = fall(gain.vertical_k, gain.vertical_k_rate, seen.position_m.z - r.position[1],
+                           seen.velocity_m_s.z - r.velocity[1], r.acceleration[1]);
+    const double v7 = fall(gain.joint_k, gain.joint_k_rate, seen.arm_rad - r.position[2],
+                           seen.arm_rate_rad_s - r.velocity[2], r.acceleration[2]);
+    const Tilt tilted = tilt(gain, inversion, {v1, v3, v7}, kept);
+    const double v5 = fall(gain.pitch_k, gain.pitch_k_rate, seen.pitch_rad - tilted.reference_rad,
+                           seen.pitch_rate_rad_s - tilted.rate_rad_s, 0);
+    kept.pitch_reference_rad = tilted.reference_rad;
+    kept.pitch_reference_rate = tilted.rate_rad_s;
+    integrated = kept;
+    return {tilted.thrust_n, inversion.pitch_torque_nm(tilted.thrust_n, v5, v7), v7, std::nullopt};
+}
+
 ControlLaw::Demand ControlLaw::inverted(const ModelInversion& gain, const Inversion& inversion, const Motion& seen,
                                         const ReferencePoint& reference, ControlMemory& kept,
                                         ControlMemory& integrated) const {
@@ -207,37 +265,21 @@ ControlLaw::Demand ControlLaw::inverted(const ModelInversion& gain, const Invers
     const double v7 = reference.acceleration[2] + gain.arm_kd * (reference.velocity[2] - seen.arm_rate_rad_s) +
                       gain.arm_kp * arm_error + action(gain.arm_ki, gain.arm_integral_limit_rad_s2, kept.arm_integral);
 
-    // Rows 1 and 2 with (v1, v3, 0, v7).
-    const Vector4 force = inversion.mass * Vector4(v1, v3, 0, v7) + inversion.bias;
-    const double min_force_z = gain.min_vertical_force_ratio * believed_.mass_kg() * standard_gravity_m_s2;
-    const double tilt = std::atan2(force(0), std::max(force(1), min_force_z));
-    const double pitch_reference = std::clamp(tilt, -gain.max_tilt_rad, gain.max_tilt_rad);
-    const bool is_clipped = std::abs(tilt) > gain.max_tilt_rad || force(1) < min_force_z;
-    const double thrust = force(0) * inversion.sine + force(1) * inversion.cosine;
+    const Tilt tilted = tilt(gain, inversion, {v1, v3, v7}, kept);
 
     // K5^-1 and D5^-1.
-    const double raw_rate = (pitch_reference - kept.pitch_reference_rad) / dt;
-    const double rate =
-        kept.pitch_reference_rate + dt / (gain.pitch_rate_filter_s + dt) * (raw_rate - kept.pitch_reference_rate);
-    const double rate_reference = rate + gain.attitude_kp * (pitch_reference - seen.pitch_rad);
+    const double rate_reference = tilted.rate_rad_s + gain.attitude_kp * (tilted.reference_rad - seen.pitch_rad);
     const double rate_error = rate_reference - seen.pitch_rate_rad_s;
     double v5 = gain.attitude_rate_kp * rate_error +
                 action(gain.attitude_rate_ki, gain.attitude_integral_limit_rad_s2, kept.pitch_rate_integral);
     if (gain.rate_feed_forward) {
         v5 += (rate_reference - kept.rate_reference) / dt;
     }
-    // Row 3, with du1 and du3 from rows 1 and 2 under this thrust.
-    const Eigen::Vector2d pull(thrust * inversion.sine, thrust * inversion.cosine);
-    const Eigen::Vector2d translation = inversion.mass.topLeftCorner<2, 2>().diagonal().cwiseInverse().cwiseProduct(
-        pull - inversion.bias.head<2>() - inversion.mass.topRightCorner<2, 2>() * Eigen::Vector2d(v5, v7));
-    const Vector4 acceleration(translation(0), translation(1), v5, v7);
-    const double torque = inversion.mass.row(2) * acceleration + inversion.bias(2);
-
-    kept.pitch_reference_rad = pitch_reference;
-    kept.pitch_reference_rate = rate;
+    kept.pitch_reference_rad = tilted.reference_rad;
+    kept.pitch_reference_rate = tilted.rate_rad_s;
     kept.rate_reference = rate_reference;
     integrated = kept;
-    if (!is_clipped) {
+    if (!tilted.is_clipped) {
         const double most = gain.position_integral_limit_m_s2;
         integrated.position_integral = {integrated_by(ki[0], most, kept.position_integral.x, error.x, dt),
                                         integrated_by(ki[1], most, kept.position_integral.z, error.z, dt)};
@@ -246,7 +288,18 @@ ControlLaw::Demand ControlLaw::inverted(const ModelInversion& gain, const Invers
                                                    kept.pitch_rate_integral, rate_error, dt);
     integrated.arm_integral =
         integrated_by(gain.arm_ki, gain.arm_integral_limit_rad_s2, kept.arm_integral, arm_error, dt);
-    return {thrust, torque, v7, std::nullopt};
+    return {tilted.thrust_n, inversion.pitch_torque_nm(tilted.thrust_n, v5, v7), v7, std::nullopt};
+}
+
+ControlLaw::Demand ControlLaw::demand(const Motion& seen, const ReferencePoint& reference, const Inversion& inversion,
+                                      ControlMemory& kept, ControlMemory& integrated) const {
+    if (const auto* cascade = std::get_if<CascadedPid>(&robot_.controller.law)) {
+        return cascaded(*cascade, seen, reference, kept, integrated);
+    }
+    if (const auto* lyapunov = std::get_if<PlanarLyapunov>(&robot_.controller.law)) {
+        return falling(*lyapunov, inversion, seen, reference, kept, integrated);
+    }
+    return inverted(std::get<ModelInversion>(robot_.controller.law), inversion, seen, reference, kept, integrated);
 }
 
 /// docs/model.md 5.7: in free air, and without a feed-forward, K = 1.
@@ -351,10 +404,7 @@ Command ControlLaw::command(const Motion& seen, const std::array<double, max_rot
         inversion.bias -= Vector4(other[0], other[1], other[2], other[3]);
     }
     ControlMemory integrated;
-    const auto* cascade = std::get_if<CascadedPid>(&robot_.controller.law);
-    const Demand demand = cascade != nullptr ? cascaded(*cascade, seen, reference, kept, integrated)
-                                             : inverted(std::get<ModelInversion>(robot_.controller.law), inversion,
-                                                        seen, reference, kept, integrated);
+    const Demand demand = this->demand(seen, reference, inversion, kept, integrated);
     Command command;
     const Rotors rotors = limit(demand, read(seen, believed), rotor_n, command);
     double joint_nm = 0;

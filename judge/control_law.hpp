@@ -61,14 +61,22 @@ class ControlLaw {
 
  private:
     struct Inversion;
+    struct Wanted;
+    struct Tilt;
     struct Demand;
     struct Read;
     struct Rotors;
 
     Demand inverted(const ModelInversion& gain, const Inversion& inversion, const Motion& seen,
                     const ReferencePoint& reference, ControlMemory& kept, ControlMemory& integrated) const;
+    Demand falling(const PlanarLyapunov& gain, const Inversion& inversion, const Motion& seen,
+                   const ReferencePoint& reference, ControlMemory& kept, ControlMemory& integrated) const;
     Demand cascaded(const CascadedPid& gain, const Motion& seen, const ReferencePoint& reference, ControlMemory& kept,
                     ControlMemory& integrated) const;
+    Demand demand(const Motion& seen, const ReferencePoint& reference, const Inversion& inversion, ControlMemory& kept,
+                  ControlMemory& integrated) const;
+    template <class Gain>
+    Tilt tilt(const Gain& gain, const Inversion& inversion, const Wanted& wanted, const ControlMemory& kept) const;
     Read read(const Motion& seen, const Surroundings& believed) const;
     Rotors limit(const Demand& demand, const Read& read, const std::array<double, max_rotors>& rotor_n,
                  Command& command) const;

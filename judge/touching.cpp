@@ -27,6 +27,10 @@ double answer_1_s2(const ControlLaw& law, bool is_height) {
     if (const auto* inversion = std::get_if<ModelInversion>(&law)) {
         return is_height ? inversion->height_kp.value_or(inversion->position_kp) : inversion->position_kp;
     }
+    if (const auto* lyapunov = std::get_if<PlanarLyapunov>(&law)) {
+        return 1 + (is_height ? lyapunov->vertical_k * lyapunov->vertical_k_rate
+                              : lyapunov->horizontal_k * lyapunov->horizontal_k_rate);
+    }
     const auto& cascade = std::get<CascadedPid>(law);
     return is_height ? cascade.vertical_position_kp * cascade.vertical_velocity_kp
                      : cascade.horizontal_position_kp * cascade.horizontal_velocity_kp;

@@ -106,6 +106,12 @@ void stiffen(CascadedPid& law) {
     law.vertical_velocity_ki *= faster * faster;
 }
 
+void stiffen(PlanarLyapunov& law) {
+    for (double* per_time : {&law.horizontal_k, &law.horizontal_k_rate, &law.vertical_k, &law.vertical_k_rate}) {
+        *per_time *= faster;
+    }
+}
+
 /// Of another law there is nothing to say.
 template <class Law>
 void stiffen(Law& /*law*/) {}

@@ -356,7 +356,7 @@ std::vector<KeyError> start_errors(const Start& start, const Robot& robot) {
     };
     check("start.rotor_thrust_n", start.rotor_thrust_n, robot.rotors.positions_m.size(), "one for each rotor");
     check("start.controller_memory", start.controller_memory,
-          static_cast<std::size_t>(controllers::memory_size(robot.controller.law)),
+          static_cast<std::size_t>(controllers::memory_size(controllers::flown_law(robot.controller.law))),
           "as many as robot.controller remembers");
     return errors;
 }

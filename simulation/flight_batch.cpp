@@ -34,7 +34,7 @@ struct Kernels {
 
 constexpr int few_lanes = lane_count / 2;
 
-Kernels kernels_for(Instructions instructions, const ControlLaw& flown) {
+Kernels kernels_for(Instructions instructions, const FlownLaw& flown) {
     const std::size_t law = flown.index();
     const bool is_aided = controllers::aids_of(flown).are_any();
 #ifdef DOWNWASH_HAS_AVX_KERNELS

@@ -233,9 +233,9 @@ FlightKernel kernel_among(std::size_t law, bool is_aided, const std::variant<Law
     return is_aided ? of_aided_law[law] : of_law[law];
 }
 
-/// The kernel of a law, by its number in ControlLaw.
+/// The kernel of a law, by its number in FlownLaw.
 inline FlightKernel kernel_of(std::size_t law, bool is_aided) {
-    return kernel_among(law, is_aided, static_cast<const ControlLaw*>(nullptr));
+    return kernel_among(law, is_aided, static_cast<const FlownLaw*>(nullptr));
 }
 
 }  // namespace

@@ -72,16 +72,15 @@ void make_real(Robot& robot) {
 }  // namespace
 
 TEST_CASE("The judge flies on from the middle of a flight as the planner does, with every law") {
-    for (const bool is_cascade : {false, true}) {
+    const ControlLaw shipped_law = shipped("along_the_deck").robot.controller.law;
+    for (const ControlLaw& law : {shipped_law, ControlLaw(CascadedPid{}), ControlLaw(PlanarLyapunov{})}) {
         for (const double observer_1_s : {0.0, 3.0}) {
-            CAPTURE(is_cascade, observer_1_s);
+            CAPTURE(law.index(), observer_1_s);
             Problem problem = shipped("along_the_deck");
             problem.uncertainty.reset();
-            if (is_cascade) {
-                problem.robot.controller.law = CascadedPid{};
-            }
+            problem.robot.controller.law = law;
             if (observer_1_s > 0) {
-                std::visit([&](auto& law) { law.aids.observer = controllers::DisturbanceObserver{observer_1_s}; },
+                std::visit([&](auto& own) { own.aids.observer = controllers::DisturbanceObserver{observer_1_s}; },
                            problem.robot.controller.law);
             }
             const auto model = make_flight_model(problem);
@@ -226,24 +225,27 @@ TEST_CASE("Walls push and turn the vehicle in a world as the planner says") {
 }
 
 TEST_CASE("Other control laws fly as the planner says, with an observer, with a feed-forward and in worlds") {
+    CascadedPid cascade;
+    cascade.rotor_lead = 1;
+    cascade.vertical_velocity_kd = 0.05;
+    cascade.pitch_rate_kd = 0.01;
+    PlanarLyapunov lyapunov;
+    lyapunov.rotor_lead = 1;
+    lyapunov.horizontal_k = 0.8;
+    lyapunov.joint_k_rate = 5.5;
+    const ControlLaw inversion = shipped("bridge_inspection").robot.controller.law;
     struct Kind {
-        bool is_cascaded, observes, reads;
+        ControlLaw law;
+        bool observes, reads;
     };
     for (const char* name : {"bridge_inspection", "box_girder_bay"}) {
         Problem problem = shipped(name);
         const Plan plan = plan_of(problem, 100);
         problem.aero.ground = EffectModel::multirotor_body;
-        for (const Kind& kind : {Kind{true, false, false}, Kind{false, true, false}, Kind{false, false, true},
-                                 Kind{false, true, true}, Kind{true, true, true}}) {
-            if (kind.is_cascaded) {
-                CascadedPid law;
-                law.rotor_lead = 1;
-                law.vertical_velocity_kd = 0.05;
-                law.pitch_rate_kd = 0.01;
-                problem.robot.controller.law = law;
-            } else {
-                problem.robot.controller.law = shipped(name).robot.controller.law;
-            }
+        for (const Kind& kind : {Kind{cascade, false, false}, Kind{inversion, true, false},
+                                 Kind{inversion, false, true}, Kind{inversion, true, true}, Kind{cascade, true, true},
+                                 Kind{lyapunov, false, false}, Kind{lyapunov, true, true}}) {
+            problem.robot.controller.law = kind.law;
             controllers::Aids aids;
             if (kind.observes) {
                 aids.observer = controllers::DisturbanceObserver{8};
@@ -253,7 +255,7 @@ TEST_CASE("Other control laws fly as the planner says, with an observer, with a 
             }
             give_aids(problem.robot.controller.law, aids);
             problem.uncertainty.reset();
-            CAPTURE(name, kind.is_cascaded, kind.observes, kind.reads);
+            CAPTURE(name, kind.law.index(), kind.observes, kind.reads);
             const judge::PlanJudge judge(problem);
             compare(judge.fly(plan, {true, std::nullopt}), *executed(problem, plan, true, std::nullopt));
             compare(judge.fly(plan, {false, std::nullopt}), *executed(problem, plan, false, std::nullopt));

@@ -144,6 +144,22 @@ TEST_CASE("what a control law has beside its loops survives being written and re
     CHECK(problem_sha256(read) == problem_sha256(problem));
 }
 
+TEST_CASE("a robot file chooses the Lyapunov law, whose gains survive being written and read") {
+    const TestFolder folder;
+    const Problem problem =
+        folder.read(good_problem,
+                    edited(good_robot, inversion_gains,
+                           "  type: lyapunov\n  horizontal: {k: 0.7, k_rate: 1.9}\n  pitch: {rate_filter_s: 0.02}\n"));
+    folder.write("written.yaml", effective_yaml(problem, (folder / "written.yaml").parent_path()));
+    const Problem read = read_problem(folder / "written.yaml");
+    const auto& law = std::get<PlanarLyapunov>(read.robot.controller.law);
+    CHECK(law.horizontal_k == 0.7);
+    CHECK(law.horizontal_k_rate == 1.9);
+    CHECK(law.vertical_k == PlanarLyapunov{}.vertical_k);
+    CHECK(law.pitch_rate_filter_s == 0.02);
+    CHECK(problem_sha256(read) == problem_sha256(problem));
+}
+
 TEST_CASE("errors of several kinds and files are reported in one run, in the order of the files") {
     const TestFolder folder;
     CHECK(folder.errors_of(edited(edited(good_problem, "x_m: -4", "x_m: -40"), "seed: 1", "sead: 1"),

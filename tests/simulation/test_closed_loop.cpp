@@ -24,7 +24,7 @@ constexpr double gravity = 9.80665;
 constexpr double tick_s = 0.01;
 
 simulation::TickModel model_of(const Robot& robot) {
-    return {plant_of(robot), robot.controller.law, 1 / robot.controller.rate_hz};
+    return {plant_of(robot), controllers::flown_law(robot.controller.law), 1 / robot.controller.rate_hz};
 }
 
 State resting_at(double x_m, double z_m, double arm_rad) {

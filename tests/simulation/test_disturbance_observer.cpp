@@ -21,7 +21,7 @@ constexpr double mass_kg = 4.95;
 /// A vehicle in closed loop on which forces and torques act besides its own [N, N, N m, N m].
 class Pushed {
  public:
-    Pushed(const ControlLaw& law, double lag_s, double arm_rad) {
+    Pushed(const FlownLaw& law, double lag_s, double arm_rad) {
         Robot robot = test_robot();
         robot.rotors.time_constant_s = lag_s;
         plant_ = plant_of(robot);
@@ -120,7 +120,7 @@ class Pushed {
     }
 
     PlantModel plant_;
-    ControlLaw law_;
+    FlownLaw law_;
     controllers::LawMemory<double> memory_{};
 };
 
@@ -160,7 +160,7 @@ TEST_CASE("an estimate of a steady push up grows as 1 - exp(-L t), tick by tick"
 
 TEST_CASE("pushes and torques on every coordinate are found at once with the time constant of the gain") {
     const Four push{1.5, -3, 0.4, 0.3};
-    for (const ControlLaw& law : {ControlLaw(observing(10)), ControlLaw(cascade_observing(10))}) {
+    for (const FlownLaw& law : {FlownLaw(observing(10)), FlownLaw(cascade_observing(10))}) {
         for (const double lag_s : {0.0, 0.05}) {
             Pushed vehicle(law, lag_s, 0.6);
             for (int tick = 0; tick < 10; ++tick) {
@@ -202,7 +202,7 @@ TEST_CASE("a steady push leaves no error once it is observed, although no loop h
 }
 
 TEST_CASE("nothing is observed of a lively flight that nothing pushes, with rotors that lag or do not") {
-    for (const ControlLaw& law : {ControlLaw(observing(10)), ControlLaw(cascade_observing(10))}) {
+    for (const FlownLaw& law : {FlownLaw(observing(10)), FlownLaw(cascade_observing(10))}) {
         for (const double lag_s : {0.0, 0.03}) {
             Pushed vehicle(law, lag_s, 0.2);
             Four most{};
