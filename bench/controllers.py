@@ -18,7 +18,9 @@ from concurrent.futures import ThreadPoolExecutor
 TREE = pathlib.Path(__file__).resolve().parent.parent
 OBSERVER = "  observer: {gain_1_s: %g}\n"
 FEED_FORWARD = "  feed_forward: {}\n"
-CASCADED = "controller:\n  type: cascaded-pid\n  rate_hz: 100\n  delay_s: 0.01\n  rotor_lead: 1\n"
+OTHER = "controller:\n  type: %s\n  rate_hz: 100\n  delay_s: 0.01\n  rotor_lead: 1\n"
+CASCADED = OTHER % "cascaded-pid"
+LYAPUNOV = OTHER % "lyapunov"
 # Name, and what becomes of the text of the shipped robot's controller.
 LAWS = [
     ("model-inversion", lambda text: text),
@@ -28,6 +30,8 @@ LAWS = [
     ("+ feed-forward, observer 3 1/s", lambda text: text + FEED_FORWARD + OBSERVER % 3),
     ("cascaded-pid", lambda text: CASCADED),
     ("cascaded-pid + feed-forward, observer 3 1/s", lambda text: CASCADED + FEED_FORWARD + OBSERVER % 3),
+    ("lyapunov", lambda text: LYAPUNOV),
+    ("lyapunov + observer, 3 1/s", lambda text: LYAPUNOV + OBSERVER % 3),
 ]
 
 

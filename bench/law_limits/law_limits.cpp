@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../../tests/support/random.hpp"
@@ -40,30 +41,38 @@ constexpr Surface surfaces[] = {{"ceiling, the arm hanging", true, std::numbers:
 
 struct Kind {
     const char* name;
-    bool is_cascaded;
+    std::string_view type;  ///< of the law; empty: the robot file's
     double observer_1_s;  ///< 0: none
     bool reads;
 };
-constexpr Kind kinds[] = {{"model-inversion", false, 0, false},
-                          {"+ observer, 3 1/s", false, 3, false},
-                          {"+ observer, 10 1/s", false, 10, false},
-                          {"+ feed-forward", false, 0, true},
-                          {"+ feed-forward, observer 3 1/s", false, 3, true},
-                          {"+ feed-forward, observer 10 1/s", false, 10, true},
-                          {"cascaded-pid", true, 0, false},
-                          {"+ observer, 3 1/s", true, 3, false},
-                          {"+ observer, 10 1/s", true, 10, false},
-                          {"+ feed-forward", true, 0, true},
-                          {"+ feed-forward, observer 3 1/s", true, 3, true},
-                          {"+ feed-forward, observer 10 1/s", true, 10, true}};
+constexpr Kind kinds[] = {{"model-inversion", "", 0, false},
+                          {"+ observer, 3 1/s", "", 3, false},
+                          {"+ observer, 10 1/s", "", 10, false},
+                          {"+ feed-forward", "", 0, true},
+                          {"+ feed-forward, observer 3 1/s", "", 3, true},
+                          {"+ feed-forward, observer 10 1/s", "", 10, true},
+                          {"cascaded-pid", "cascaded-pid", 0, false},
+                          {"+ observer, 3 1/s", "cascaded-pid", 3, false},
+                          {"+ observer, 10 1/s", "cascaded-pid", 10, false},
+                          {"+ feed-forward", "cascaded-pid", 0, true},
+                          {"+ feed-forward, observer 3 1/s", "cascaded-pid", 3, true},
+                          {"+ feed-forward, observer 10 1/s", "cascaded-pid", 10, true},
+                          {"lyapunov", "lyapunov", 0, false},
+                          {"+ observer, 3 1/s", "lyapunov", 3, false},
+                          {"+ observer, 10 1/s", "lyapunov", 10, false},
+                          {"+ feed-forward", "lyapunov", 0, true},
+                          {"+ feed-forward, observer 3 1/s", "lyapunov", 3, true},
+                          {"+ feed-forward, observer 10 1/s", "lyapunov", 10, true}};
 
-/// The law of a robot file, or the cascade with its defaults, with what the kind adds.
+/// The law of a robot file, or another with its defaults, with what the kind adds.
 Robot equipped(Robot robot, const Kind& kind, double offset_z_m) {
-    if (kind.is_cascaded) {
-        CascadedPid law;
-        law.rotor_lead = std::visit([](const auto& own) { return own.rotor_lead; }, robot.controller.law);
-        robot.controller.law = law;
+    const double rotor_lead = std::visit([](const auto& own) { return own.rotor_lead; }, robot.controller.law);
+    if (kind.type == CascadedPid::name) {
+        robot.controller.law = CascadedPid{};
+    } else if (kind.type == PlanarLyapunov::name) {
+        robot.controller.law = PlanarLyapunov{};
     }
+    std::visit([&](auto& law) { law.rotor_lead = rotor_lead; }, robot.controller.law);
     std::visit(
         [&](auto& law) {
             law.aids = {};
