@@ -42,7 +42,7 @@ Motion Loop::seen(std::int64_t tick) const {
     return sensors_.seen(motion(), tape_at(world_, tick));
 }
 
-void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
+void Loop::next(std::int64_t tick, const ReferencePoint& reference, bool is_at_surface) {
     const Tape tape = tape_at(world_, tick);
     const Motion now = motion();
     before_ = state_;
@@ -50,7 +50,7 @@ void Loop::next(std::int64_t tick, const ReferencePoint& reference) {
     command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, believed_, memory_);
     wind_ = gusts_.wind();
     state_ = plant_->after(state_, command_, wind_, law_.tick_s());
-    if (state_.contact_n > 0) {
+    if (state_.contact_n > 0 || is_at_surface) {
         law_.stand_still(memory_before, now, motion(), memory_);
     }
     sensors_.remember(now);

@@ -28,7 +28,8 @@ class Loop {
     [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
 
     /// Goes on by a tick. @param tick from the start of the flight
-    void next(std::int64_t tick, const ReferencePoint& reference);
+    /// @param is_at_surface integrals and the observer stand still, contact or not
+    void next(std::int64_t tick, const ReferencePoint& reference, bool is_at_surface = false);
 
     /// The motion of the file's point so long after the beginning of the last tick.
     [[nodiscard]] Motion motion_within(double since_s) const;

@@ -73,7 +73,7 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         TouchCourse course(*touching->touch, now, problem.robot);
         std::int64_t tick = end;
         for (; goes_on && !course.is_over(); ++tick) {
-            loop.next(tick, course.reference());
+            loop.next(tick, course.reference(), course.is_at_surface());
             course.next(loop.state().contact_n);
             goes_on = umpire.sees_touch(loop, course.reference(), surface);
         }

@@ -50,6 +50,10 @@ class TouchCourse {
 
     [[nodiscard]] ReferencePoint reference() const;
     [[nodiscard]] bool is_over() const noexcept { return stage_ == Stage::over; }
+    /// Between the first contact and the last.
+    [[nodiscard]] bool is_at_surface() const noexcept {
+        return stage_ == Stage::settling || stage_ == Stage::holding || stage_ == Stage::pulling;
+    }
     /// Goes on by a tick. @param force_n mean over it
     void next(double force_n);
 

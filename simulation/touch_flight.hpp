@@ -85,6 +85,10 @@ class TouchReference {
     }
     /// Whether the tick that follows belongs to the hold of the force.
     [[nodiscard]] bool is_holding() const noexcept { return phase_ == Phase::hold; }
+    /// Whether it is between the first contact and the last: in between the vehicle may bounce.
+    [[nodiscard]] bool is_at_surface() const noexcept {
+        return phase_ == Phase::settle || phase_ == Phase::hold || phase_ == Phase::leave;
+    }
     [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
  private:
@@ -238,7 +242,7 @@ Rejection fly_touch_ticks(const FlightModel& model, const FlownWorld* world, std
                 const VehicleState<double>& vehicle = state;
                 next = {tick(tick_model, law, vehicle, motion, now, effect, given, step), state.world};
             }
-            if (seen.normal_impulse_n_s > 0) {
+            if (seen.normal_impulse_n_s > 0 || reference.is_at_surface()) {
                 stand_still(tick_model, law, state, next);
             }
             const double end_s = static_cast<double>(first_tick + t + 1) * tick_model.tick_s;
