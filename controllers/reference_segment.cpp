@@ -43,9 +43,10 @@ std::int64_t samples_of(const ReferenceSegment& segment) {
 /// The largest ratio of a speed or an acceleration to its limit at a sample. Sample 0 is the segment's beginning.
 double ratio_at_sample(const ReferenceSegment& segment, std::int64_t sample, const MotionLimits& limits) {
     const std::int64_t tick = segment.ticks() * sample / samples_of(segment);
-    const double ratio = ratio_at(segment.at_tick(tick), limits);
+    const ReferencePoint point = segment.at_tick(tick);
+    const double ratio = ratio_at(point, limits);
     return limits.max_pitch_rate_rad_s
-               ? std::max(ratio, std::abs(segment.pitch_rate_rad_s(tick)) / *limits.max_pitch_rate_rad_s)
+               ? std::max(ratio, std::abs(segment.pitch_rate_rad_s(tick, point)) / *limits.max_pitch_rate_rad_s)
                : ratio;
 }
 
@@ -150,7 +151,10 @@ double ReferenceSegment::peak_jerk_m_s3() const noexcept {
 }
 
 double ReferenceSegment::pitch_rate_rad_s(std::int64_t tick) const noexcept {
-    const ReferencePoint point = at_tick(tick);
+    return pitch_rate_rad_s(tick, at_tick(tick));
+}
+
+double ReferenceSegment::pitch_rate_rad_s(std::int64_t tick, const ReferencePoint& point) const noexcept {
     const double s = static_cast<double>(std::clamp<std::int64_t>(tick, 0, ticks_)) * tick_s_ * inverse_duration_1_s_;
     const double per_duration3 = inverse_duration_1_s_ * inverse_duration_1_s_ * inverse_duration_1_s_;
     double jerk[2];

@@ -56,6 +56,9 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// How fast the direction of a + g turns at the beginning of a tick, 0 <= tick <= ticks() [rad/s]; infinite where
     /// there is none.
     [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick) const noexcept;
+    /// The same for those who know at_tick(tick) already.
+    /// @param point at_tick(tick)
+    [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick, const ReferencePoint& point) const noexcept;
 
     /// Of the powers of the time over the duration, (x, z, arm); see quintic_at().
     [[nodiscard]] const double (&coefficients() const noexcept)[3][6] { return coefficient_; }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -189,6 +190,23 @@ std::vector<KeyError> goal_at_start(const Problem& problem) {
     return {{"goal", "is met at the start already: its tolerance is larger than the way there"}};
 }
 
+/// References may ask for more force than all rotors together have. It is no error: the other limits of motion may keep
+/// references below it, and demands may be clipped (planner.max_saturation).
+std::vector<KeyError> thrust_beyond_rotors(const Problem& problem) {
+    constexpr double rounding = 1.01;  // of thrusts and masses as they stand in files
+    const Robot& robot = problem.robot;
+    const double weight_n = robot.mass_kg() * standard_gravity_m_s2;
+    const double greatest_n = static_cast<double>(robot.rotors.positions_m.size()) * robot.rotors.max_thrust_n;
+    const std::optional<double>& ratio = problem.motion.max_thrust_ratio;
+    if (!ratio || *ratio * weight_n <= rounding * greatest_n) {
+        return {};
+    }
+    return {{"motion.max_thrust_ratio", "is " + to_text(*ratio) + ", and the rotors give " +
+                                            rounded(greatest_n / weight_n) + " times the weight at most (" +
+                                            rounded(greatest_n) + " N of " + rounded(weight_n) +
+                                            " N): flights cannot follow references that ask for more"}};
+}
+
 /// An uncertainty in which nothing is uncertain.
 std::vector<KeyError> exact_uncertainty(const Problem& problem) {
     if (!problem.uncertainty) {
@@ -214,7 +232,7 @@ std::vector<KeyError> problem_warnings(const Problem& problem) {
     for (KeyError& warning : all) {
         warning.key.insert(0, "robot.");
     }
-    for (const auto& find : {no_margin, goal_at_start, exact_uncertainty}) {
+    for (const auto& find : {no_margin, thrust_beyond_rotors, goal_at_start, exact_uncertainty}) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }

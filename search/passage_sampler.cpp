@@ -73,7 +73,7 @@ std::optional<PassageSampler::Bridge> PassageSampler::found(Random& random) cons
     return std::nullopt;
 }
 
-ReferencePoint PassageSampler::through(const Bridge& bridge, Random& random) const {
+PassageSampler::Through PassageSampler::through(const Bridge& bridge, Random& random) const {
     ReferencePoint point = at_rest(bridge.middle);
     if (limits_.max_thrust_ratio) {
         const double force_m_s2 = random.uniform(0.1, 1) * *limits_.max_thrust_ratio * standard_gravity_m_s2;
@@ -82,22 +82,24 @@ ReferencePoint PassageSampler::through(const Bridge& bridge, Random& random) con
         point.acceleration[1] = force_m_s2 * direction.cosine - standard_gravity_m_s2;
     }
     const double turned_rad = 0.5 * std::numbers::pi + random.uniform(-spread_rad, spread_rad);
-    const auto along = lane::sin_cos(bridge.across_rad + turned_rad);
+    const auto direction = lane::sin_cos(bridge.across_rad + turned_rad);
     const double speed_m_s = random.uniform(0, limits_.max_speed_m_s);
-    point.velocity[0] = speed_m_s * along.cosine;
-    point.velocity[1] = speed_m_s * along.sine;
-    return point;
+    point.velocity[0] = speed_m_s * direction.cosine;
+    point.velocity[1] = speed_m_s * direction.sine;
+    const auto across = lane::sin_cos(bridge.across_rad);
+    return {point, {-across.sine, across.cosine}};
 }
 
-ReferencePoint PassageSampler::beside_known(Random& random) const {
-    ReferencePoint point = known_[index_below(known_.size(), random)];
+PassageSampler::Through PassageSampler::beside_known(Random& random) const {
+    Through through = known_[index_below(known_.size(), random)];
+    ReferencePoint& point = through.point;
     const double force_m_s2 = force_change * limits_.max_thrust_ratio.value_or(0) * standard_gravity_m_s2;
     for (const int axis : {0, 1}) {
         point.position[axis] += shift_m * random.uniform(-1, 1);
         point.velocity[axis] += speed_change * limits_.max_speed_m_s * random.uniform(-1, 1);
         point.acceleration[axis] += force_m_s2 * random.uniform(-1, 1);
     }
-    return point;
+    return through;
 }
 
 bool PassageSampler::is_free(const ReferenceSegment& segment) const {
@@ -119,17 +121,24 @@ bool PassageSampler::leads(const ReferencePoint& from, const ReferencePoint& to)
     return is_free(fastest) && keeps_limits(fastest, limits_);
 }
 
-std::optional<ReferencePoint> PassageSampler::rest_beside(const ReferencePoint& through, double side) const {
+std::optional<ReferencePoint> PassageSampler::rest_beside(const Through& through, double side) const {
+    const ReferencePoint& point = through.point;
     for (const double time_s : run_ups_s) {
         const auto ticks = static_cast<std::int64_t>(std::ceil(time_s / tick_s_));
         const double t = static_cast<double>(ticks) * tick_s_;
-        ReferencePoint rest = at_rest(configuration_of(through));
+        ReferencePoint rest = at_rest(configuration_of(point));
+        double ahead_m = 0;
         for (const int axis : {0, 1}) {
             // The way of the cubic of speed between both ends, which has the least jerk.
-            rest.position[axis] += side * through.velocity[axis] * t / 2 + through.acceleration[axis] * t * t / 12;
+            const double step_m = side * point.velocity[axis] * t / 2 + point.acceleration[axis] * t * t / 12;
+            rest.position[axis] += step_m;
+            ahead_m += step_m * through.along[axis];
         }
-        const ReferencePoint& from = side < 0 ? rest : through;
-        const ReferencePoint& to = side < 0 ? through : rest;
+        if (!(side * ahead_m > 0) || space_.rejection_at(configuration_of(rest)) != Rejection::none) {
+            continue;
+        }
+        const ReferencePoint& from = side < 0 ? rest : point;
+        const ReferencePoint& to = side < 0 ? point : rest;
         const ReferenceSegment segment(from, to, ticks, tick_s_);
         // The tree takes the fastest one, which may lead elsewhere.
         if (keeps_limits(segment, limits_) && is_free(segment) && leads(from, to)) {
@@ -139,9 +148,9 @@ std::optional<ReferencePoint> PassageSampler::rest_beside(const ReferencePoint& 
     return std::nullopt;
 }
 
-std::optional<Passage> PassageSampler::way_through(const ReferencePoint& through) const {
-    if (!keeps_limits(through, limits_) ||
-        space_.rejection_at(configuration_of(through), tilt(through)) != Rejection::none) {
+std::optional<PassageSampler::Way> PassageSampler::way_through(const Through& through) const {
+    const ReferencePoint& point = through.point;
+    if (!keeps_limits(point, limits_) || space_.rejection_at(configuration_of(point), tilt(point)) != Rejection::none) {
         return std::nullopt;
     }
     const std::optional<ReferencePoint> run_up = rest_beside(through, -1);
@@ -149,14 +158,14 @@ std::optional<Passage> PassageSampler::way_through(const ReferencePoint& through
     if (!run_out || leads(*run_up, *run_out)) {
         return std::nullopt;
     }
-    return Passage{*run_up, through, *run_out};
+    return Way{through, {*run_up, point, *run_out}};
 }
 
-std::optional<Passage> PassageSampler::way_beside_known(Random& random) const {
+std::optional<PassageSampler::Way> PassageSampler::way_beside_known(Random& random) const {
     return way_through(beside_known(random));
 }
 
-std::optional<Passage> PassageSampler::way_over_bridge(Random& random) {
+std::optional<PassageSampler::Way> PassageSampler::way_over_bridge(Random& random) {
     if (bridges_.empty() || random.chance(new_bridge_share)) {
         const std::optional<Bridge> bridge = found(random);
         if (!bridge) {
@@ -169,8 +178,8 @@ std::optional<Passage> PassageSampler::way_over_bridge(Random& random) {
     }
     const Bridge& bridge = bridges_[index_below(bridges_.size(), random)];
     for (int i = 0; i < tries_over_a_bridge; ++i) {
-        if (const std::optional<Passage> passage = way_through(through(bridge, random))) {
-            return passage;
+        if (const std::optional<Way> way = way_through(through(bridge, random))) {
+            return way;
         }
     }
     return std::nullopt;
@@ -179,14 +188,14 @@ std::optional<Passage> PassageSampler::way_over_bridge(Random& random) {
 std::optional<Passage> PassageSampler::sample(Random& random, const std::function<bool(const Passage&)>& is_wanted) {
     for (int i = 0; i < tries; ++i) {
         const bool is_beside_known = !known_.empty() && random.chance(known_share);
-        const std::optional<Passage> passage = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
-        if (!passage || !is_wanted(*passage)) {
+        const std::optional<Way> way = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
+        if (!way || !is_wanted(way->passage)) {
             continue;
         }
         if (!is_beside_known && known_.size() < max_known) {
-            known_.push_back(passage->through);
+            known_.push_back(way->through);
         }
-        return passage;
+        return way->passage;
     }
     return std::nullopt;
 }

@@ -27,8 +27,8 @@ class PassageSampler {
     /// @param task must outlive it
     explicit PassageSampler(const SearchTask& task);
 
-    /// A way whose reference is within bounds and limits of motion and free of collision, between places that no
-    /// motion from rest to rest connects; nothing after some tries.
+    /// A way whose reference is within bounds and limits of motion and free of collision, between places on both sides
+    /// of a passage that no motion from rest to rest connects; nothing after some tries.
     /// @param is_wanted whether a way is worth knowing
     [[nodiscard]] std::optional<Passage> sample(Random& random, const std::function<bool(const Passage&)>& is_wanted);
 
@@ -40,19 +40,30 @@ class PassageSampler {
         double pitch_rad;
     };
 
+    /// A point at speed in a passage.
+    struct Through {
+        ReferencePoint point;
+        double along[2];  ///< direction along the passage, in x and z; of unit length
+    };
+    struct Way {
+        Through through;
+        Passage passage;
+    };
+
     [[nodiscard]] double tilt(const ReferencePoint& point) const;
     [[nodiscard]] bool collides(const Configuration& at, double pitch_rad) const;
     [[nodiscard]] std::optional<Bridge> found(Random& random) const;
     /// A point there, with some speed along the passage and some force.
-    [[nodiscard]] ReferencePoint through(const Bridge& bridge, Random& random) const;
+    [[nodiscard]] Through through(const Bridge& bridge, Random& random) const;
     /// A point beside that of a way that was found.
-    [[nodiscard]] ReferencePoint beside_known(Random& random) const;
-    [[nodiscard]] std::optional<Passage> way_beside_known(Random& random) const;
-    [[nodiscard]] std::optional<Passage> way_over_bridge(Random& random);
-    [[nodiscard]] std::optional<Passage> way_through(const ReferencePoint& through) const;
-    /// The place from or to which a reference leads that is at rest there and at a point after or before it.
+    [[nodiscard]] Through beside_known(Random& random) const;
+    [[nodiscard]] std::optional<Way> way_beside_known(Random& random) const;
+    [[nodiscard]] std::optional<Way> way_over_bridge(Random& random);
+    [[nodiscard]] std::optional<Way> way_through(const Through& through) const;
+    /// The place from or to which a reference leads that is at rest there and at a point after or before it. It lies
+    /// behind or ahead of the point along the passage: a way that turns back does not lead through.
     /// @param side -1: before the point, 1: after it
-    [[nodiscard]] std::optional<ReferencePoint> rest_beside(const ReferencePoint& through, double side) const;
+    [[nodiscard]] std::optional<ReferencePoint> rest_beside(const Through& through, double side) const;
     /// Whether the fastest reference between two points is within the limits and free of collision.
     [[nodiscard]] bool leads(const ReferencePoint& from, const ReferencePoint& to) const;
     [[nodiscard]] bool is_free(const ReferenceSegment& segment) const;
@@ -62,7 +73,7 @@ class PassageSampler {
     double tick_s_;
     double bridge_m_;  ///< longest distance between the two sides
     std::vector<Bridge> bridges_;
-    std::vector<ReferencePoint> known_;  ///< points of ways that were found
+    std::vector<Through> known_;  ///< of ways that were found
 };
 
 }  // namespace downwash::planning

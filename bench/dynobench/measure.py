@@ -10,6 +10,7 @@ scenes, and the lines of bench_dynobench_ompl.
 import argparse
 import json
 import pathlib
+import resource
 import statistics
 import subprocess
 import sys
@@ -55,7 +56,9 @@ def search(problem, seed, limit_s, stops_at_first=False):
         run = pathlib.Path(work) / "run"
         command = [ROOT / "build/downwash", "solve", problem, "--seed", str(seed), "--threads", "1", "--quiet"]
         command += ["--time-limit", str(limit_s), "--out", run] + (["--stop-at-first"] if stops_at_first else [])
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(command, capture_output=True, check=False)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
         solution = json.loads((run / "solution.json").read_text(encoding="utf-8"))
         line = {
             "problem": pathlib.Path(problem).stem,
@@ -63,6 +66,7 @@ def search(problem, seed, limit_s, stops_at_first=False):
             "limit_s": None if stops_at_first else limit_s,
             "status": solution["status"],
             "first_s": solution["planning"]["first_solution_wall_s"],
+            "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
             "cost_s": None,
             "refused": None,
         }
@@ -121,16 +125,17 @@ def published_table():
 
 def ours_table(lines):
     limits = sorted({line["limit_s"] for line in lines} - {None})
-    print("| problem | solved | first solution s | its cost s | " + " | ".join(f"cost after {t:g} s" for t in limits), end="")
-    print(" | after 10 s, over iDb-A*'s final |\n| --- | --: | --: | --: |" + " --: |" * (len(limits) + 1))
+    print("| problem | solved | first solution s | CPU time of that run s | its cost s | " + " | ".join(f"cost after {t:g} s" for t in limits), end="")
+    print(" | after 10 s, over iDb-A*'s final |\n| --- | --: | --: | --: | --: |" + " --: |" * (len(limits) + 1))
     for problem in PROBLEMS:
         first_s, first_cost_s = first_of(lines, problem)
+        cpu_s = median([line.get("cpu_s") for line in of(lines, problem, None)])
         costs = [median([line["cost_s"] for line in of(lines, problem, limit_s)]) for limit_s in limits]
         longest = [line for line in lines if line["problem"] == problem and line["limit_s"] is not None]
         solved = sum(line["cost_s"] is not None for line in longest)
         after_10 = median([line["cost_s"] for line in of(lines, problem, 10)])
         ratio = after_10 / PUBLISHED["iDb-A*"][problem][2] if after_10 is not None else None
-        cells = [f"{solved}/{len(longest)}", number(first_s, "{:.3f}"), number(first_cost_s)]
+        cells = [f"{solved}/{len(longest)}", number(first_s, "{:.3f}"), number(cpu_s, "{:.3f}"), number(first_cost_s)]
         cells += [number(cost) for cost in costs] + [number(ratio)]
         print(f"| {problem} | " + " | ".join(cells) + " |")
 

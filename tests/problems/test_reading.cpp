@@ -170,6 +170,41 @@ TEST_CASE("errors of several kinds and files are reported in one run, in the ord
           "8.543 N are missing; expected more than 12.14 N a rotor");
 }
 
+TEST_CASE("a limit of thrust that the rotors cannot give is warned of, with its place") {
+    // Four rotors of 28 N carry 4.95 kg: 112 N over 48.54 N is 2.307.
+    const auto warnings_of = [](const std::string& ratio) {
+        const TestFolder folder;
+        folder.write("robot.yaml", good_robot);
+        folder.write("problem.yaml",
+                     edited(good_problem, "aero:\n", "motion: {max_thrust_ratio: " + ratio + "}\naero:\n"));
+        std::vector<LocatedError> warnings;
+        static_cast<void>(read_problem(folder / "problem.yaml", {}, {},
+                                       [&](const LocatedError& found) { warnings.push_back(found); }));
+        return warnings;
+    };
+    CHECK(warnings_of("null").empty());
+    CHECK(warnings_of("2.3").empty());
+    CHECK(warnings_of("2.32").empty());  // rounded somewhere
+    const std::vector<LocatedError> warnings = warnings_of("2.5");
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].line == 9);
+    CHECK(warnings[0].column == 28);
+    CHECK(
+        warnings[0].message ==
+        "motion.max_thrust_ratio is 2.5, and the rotors give 2.31 times the weight at most (112 N of 48.5 N): flights "
+        "cannot follow references that ask for more");
+}
+
+TEST_CASE("an arm that does not move has one angle, and a start at another one is an error") {
+    const std::string robot = edited(good_robot, "max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, 90]");
+    const TestFolder folder;
+    const Problem problem = folder.read(good_problem, robot);
+    CHECK(problem.robot.arm.is_limited);
+    CHECK(problem.robot.arm.lower_limit_rad == problem.robot.arm.upper_limit_rad);
+    CHECK_THAT(folder.errors_of(edited(good_problem, "arm_deg: 90", "arm_deg: 80"), robot),
+               Catch::Matchers::Contains("start.arm_deg is beyond the arm's limits"));
+}
+
 TEST_CASE("every shipped problem is sound") {
     for (const auto& entry : std::filesystem::directory_iterator(DOWNWASH_PROBLEMS)) {
         if (entry.path().extension() == ".yaml") {

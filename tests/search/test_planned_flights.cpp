@@ -2,6 +2,7 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/search/flight_point.hpp"
 #include "downwash/search/planned_flights.hpp"
 
 using namespace downwash;
@@ -108,6 +109,54 @@ TEST_CASE("a flight that comes nearer than the margin is rejected") {
     CHECK(rejection_with(0) == Rejection::none);
     CHECK(rejection_with(0.6) == Rejection::none);
     CHECK(rejection_with(0.7) == Rejection::collision);
+}
+
+TEST_CASE("a flight that asks more of the rotors than they have counts up to the allowed saturation, and is clipped") {
+    // A hover takes 12.1 N of each rotor, the climb up to 12.7 N.
+    const auto flown_with = [](double max_saturation, double max_thrust_n) {
+        Problem problem = test::ceiling_problem();
+        problem.robot.rotors.max_thrust_n = max_thrust_n;
+        problem.planner.max_saturation = max_saturation;
+        Fixture f(std::move(problem));
+        FlightJob job{f.task.start, {{f.segment({-4, 2, quarter_turn}, {-4, 3, quarter_turn})}}, 0};
+        job.start = planning::resting_at(*f.model, {-4, 2, quarter_turn}).vehicle;
+        f.flights.fly({&job, 1});
+        CHECK(f.flights.statistics().rejected.at("saturation") == (job.rejection() == Rejection::saturation ? 1 : 0));
+        return job;
+    };
+    CHECK(flown_with(1, 28).rejection() == Rejection::none);
+    CHECK(flown_with(1, 12.5).rejection() == Rejection::saturation);
+    CHECK(flown_with(1.05, 12.5).rejection() == Rejection::saturation);  // the more is asked, the later it is
+    // What is flown is what the rotors have, not what was asked: the vehicle arrives late.
+    const auto height_m = [&](double max_saturation, double max_thrust_n) {
+        const FlightJob job = flown_with(max_saturation, max_thrust_n);
+        REQUIRE(job.rejection() == Rejection::none);
+        return job.legs.back().end.plant.q[1];
+    };
+    CHECK(height_m(1, 28) == Approx(3).margin(1e-3));
+    CHECK(height_m(1.1, 12.5) < 2.98);
+    CHECK(height_m(1.1, 12.5) > 2.9);
+    // The allowance rejects less and changes no flight.
+    CHECK(height_m(1.1, 12.5) == height_m(3, 12.5));
+    CHECK(height_m(3, 28) == height_m(1, 28));
+    // Other rules go on to hold: with 12.3 N the vehicle falls behind until it does not follow its reference.
+    CHECK(flown_with(20, 12.3).rejection() == Rejection::tracking);
+}
+
+TEST_CASE("an arm that does not move stays at its angle in flight") {
+    Problem problem = test::ceiling_problem();
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = 0;
+    problem.start.arm_rad = 0;
+    Fixture f(std::move(problem));
+    FlightJob job{f.task.start, {{f.segment({-4, 2, 0}, {-2, 3, 0})}}, 0};
+    f.flights.fly({&job, 1});
+    REQUIRE(job.rejection() == Rejection::none);
+    // The joint holds it against the vehicle's accelerations.
+    CHECK(std::abs(configuration_of(job.legs.back().end.plant.q).arm_rad) < 1e-3);
+
+    CHECK(f.flights.is_worth_flying(f.segment({-4, 2, 0}, {-2, 3, 0})));
+    CHECK_FALSE(f.flights.is_worth_flying(f.segment({-4, 2, 0}, {-4, 2, 0.3})));
 }
 
 namespace {

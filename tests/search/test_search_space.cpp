@@ -53,6 +53,29 @@ TEST_CASE(
     CHECK(inside.z_m == Approx(3.1));
 }
 
+TEST_CASE("an arm that does not move is at its angle in every sample, and distances are those of the vehicle") {
+    Problem problem = with_configuration_goal();
+    problem.robot.arm.is_limited = true;
+    problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = problem.start.arm_rad;
+    const Fixture f(problem);
+    planning::Random random(3);
+    for (int i = 0; i < 100; ++i) {
+        const Configuration any = f.space.sample(random);
+        const Configuration near = f.space.sample_near(any, 1, random);
+        const std::optional<Configuration> goal = f.space.sample_goal(random);
+        REQUIRE(goal);
+        for (const Configuration& c : {any, near, *goal, f.space.steered(any, *goal, 0.5)}) {
+            CHECK(c.arm_rad == Approx(problem.start.arm_rad).margin(1e-12));
+        }
+        CHECK(f.space.distance_m(any, near) == Approx(std::hypot(any.x_m - near.x_m, any.z_m - near.z_m)));
+        CHECK(f.space.is_near_goal(*goal));
+    }
+    Configuration turned = problem.start.configuration();
+    turned.arm_rad += 1e-3;
+    CHECK(f.space.rejection_at(problem.start.configuration()) == Rejection::none);
+    CHECK(f.space.rejection_at(turned) == Rejection::arm_limits);
+}
+
 TEST_CASE("an arm that turns more than once reaches a direction by the shorter turn") {
     Problem problem = test::ceiling_problem();
     test::limit_arm(problem.robot, -200 * pi / 180, 300 * pi / 180);
