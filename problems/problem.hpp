@@ -71,6 +71,7 @@ struct PlannerSettings {
     std::uint32_t seed = 1;
     double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
     double max_saturation = 1;      ///< of a rotor or the joint while planning: greatest demand over its limit, >= 1
+    std::optional<double> max_pitch_rate_rad_s;  ///< of the vehicle while planning, > 0; empty: any
     // Where the problem has an uncertainty:
     std::uint64_t worlds = 8;               ///< that every edge has to survive, the nominal one included, >= 1
     double max_failure_probability = 0.01;  ///< of a plan that is called solved, in (0, 1)

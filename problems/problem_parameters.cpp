@@ -305,6 +305,13 @@ void add_planner(Rows& rows) {
                        [](auto& p) -> auto& { return p.planner.max_saturation; })
                        .at_least(1)
                        .at_most(1000));
+    rows.push_back(number(
+                       "planner.max_pitch_rate_deg_s",
+                       "how fast the vehicle may turn while planning; an edge that turns faster is rejected as "
+                       "unstable; null: at any rate",
+                       [](auto& p) -> auto& { return p.planner.max_pitch_rate_rad_s; })
+                       .at_least(1e-3)
+                       .at_most(1e5));
     const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
     constexpr std::string_view with_uncertainty = "with an uncertainty";
     rows.push_back(parameters::integer<Problem>(

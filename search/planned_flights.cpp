@@ -18,6 +18,7 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
     rules.margin_m = problem.planner.safety_margin_m;
     rules.bounds = problem.bounds;
     rules.max_saturation = problem.planner.max_saturation;
+    rules.max_pitch_rate_rad_s = problem.planner.max_pitch_rate_rad_s.value_or(rules.max_pitch_rate_rad_s);
     if (!in_nominal_world) {
         rules = rules_of_execution();
     }

@@ -52,9 +52,10 @@ struct FlightRules {
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
     double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
-    std::function<bool()> is_over;      ///< polled now and then; true ends the flight as interrupted
-    bool measures_clearance = false;    ///< integrates clearance (slow), for the objective of that name
-    bool finds_min_clearance = false;   ///< of every flight, for certificates
+    double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< of the vehicle
+    std::function<bool()> is_over;     ///< polled now and then; true ends the flight as interrupted
+    bool measures_clearance = false;   ///< integrates clearance (slow), for the objective of that name
+    bool finds_min_clearance = false;  ///< of every flight, for certificates
 };
 
 /// The outcome of a flight along one segment.

@@ -16,6 +16,7 @@ struct RuleLimits {
     double arm_low_rad, arm_high_rad;  ///< infinite without limits
     double max_tracking_error_m, max_arm_error_rad;
     double max_saturation;
+    double max_pitch_rate_rad_s;
 };
 
 /// Those of a flight with this arm. An arm that does not move has no limits to leave: its joint only holds it.
@@ -30,7 +31,8 @@ inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm
             has_limits ? arm.upper_limit_rad : infinity,
             rules.max_tracking_error_m,
             rules.max_arm_error_rad,
-            rules.max_saturation};
+            rules.max_saturation,
+            rules.max_pitch_rate_rad_s};
 }
 
 /// Distance of the vehicle from its reference in (x, z) [m].
@@ -72,7 +74,9 @@ T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& sta
     rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
     // Not a number either: a limit of the actuators may have hidden that nothing sensible was asked of them.
     rejection = lane::select(saturation <= T(limits.max_saturation), rejection, number_of(Rejection::saturation));
-    return lane::select(instability(state, error_m) > T(0), number_of(Rejection::unstable), rejection);
+    const T beyond_stability =
+        lane::max(instability(state, error_m), lane::abs(state.plant.u[2]) - T(limits.max_pitch_rate_rad_s));
+    return lane::select(beyond_stability > T(0), number_of(Rejection::unstable), rejection);
 }
 
 }  // namespace downwash::simulation

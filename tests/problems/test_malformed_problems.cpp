@@ -201,7 +201,8 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n16:101: unknown "
      "key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m, max_saturation, worlds, max_failure_probability, confidence or parameters\n16:112: unknown key "
+     "safety_margin_m, max_saturation, max_pitch_rate_deg_s, worlds, max_failure_probability, confidence or "
+     "parameters\n16:112: unknown key "
      "'max_iteration' "
      "in planner: did you mean 'max_iterations'?"},
     {"aero:\n", "aero: none\naero2:\n", "10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
@@ -212,6 +213,8 @@ const Edit edits[] = {
      "16:97: planner.max_iterations is 0: expected a whole number from 1 to 1e+15, or null"},
     {"seed: 1", "seed: 1, max_saturation: 0.5",
      "16:97: planner.max_saturation is 0.5: expected a number from 1 to 1000"},
+    {"seed: 1", "seed: 1, max_pitch_rate_deg_s: 0",
+     "16:97: planner.max_pitch_rate_deg_s is 0: expected a number in deg/s from 0.001 to 100000, or null"},
     {"aero:\n", "motion: {max_thrust_ratio: 1, max_pitch_rate_deg_s: 0}\naero:\n",
      "9:28: motion.max_thrust_ratio is 1: expected a number from 1.001 to 100, or null\n9:53: "
      "motion.max_pitch_rate_deg_s is 0: expected a number in deg/s from 0.1 to 36000, or null"},
@@ -229,7 +232,8 @@ const Edit edits[] = {
      "16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
      "16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m, max_saturation, worlds, max_failure_probability, confidence or parameters"},
+     "safety_margin_m, max_saturation, max_pitch_rate_deg_s, worlds, max_failure_probability, confidence or "
+     "parameters"},
 };
 
 }  // namespace

@@ -143,6 +143,30 @@ TEST_CASE("a flight that asks more of the rotors than they have counts up to the
     CHECK(flown_with(20, 12.3).rejection() == Rejection::tracking);
 }
 
+TEST_CASE("a flight in which the vehicle turns faster than it may counts as unstable") {
+    const auto rejection_with = [](std::optional<double> max_pitch_rate_rad_s) {
+        Problem problem = test::ceiling_problem();
+        problem.planner.max_pitch_rate_rad_s = max_pitch_rate_rad_s;
+        Fixture f(std::move(problem));
+        FlightJob job{f.task.start, {{f.segment({-4, 2, quarter_turn}, {-2, 2, quarter_turn})}}, 0};
+        f.flights.fly({&job, 1});
+        CHECK(f.flights.statistics().rejected.at("unstable") == (job.rejection() == Rejection::unstable ? 1 : 0));
+        return job.rejection();
+    };
+    Fixture f(test::ceiling_problem());
+    FlightState state = f.task.start;
+    const ReferenceSegment segment = f.segment({-4, 2, quarter_turn}, {-2, 2, quarter_turn});
+    double fastest_rad_s = 0;
+    for (std::int64_t tick = 0; tick < segment.ticks(); ++tick) {
+        controllers::Actuation<double> given{};
+        state = simulation::tick(f.model->tick(), state, segment.at_tick(tick), test::FreeAir{}, given);
+        fastest_rad_s = std::max(fastest_rad_s, std::abs(state.plant.u[2]));
+    }
+    CHECK(rejection_with(std::nullopt) == Rejection::none);
+    CHECK(rejection_with(1.02 * fastest_rad_s) == Rejection::none);
+    CHECK(rejection_with(0.98 * fastest_rad_s) == Rejection::unstable);
+}
+
 TEST_CASE("an arm that does not move stays at its angle in flight") {
     Problem problem = test::ceiling_problem();
     problem.robot.arm.is_limited = true;
