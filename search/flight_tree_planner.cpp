@@ -261,7 +261,7 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             tasks[i] = recorded(i, std::move(tasks[i]));
         }
     }
-    run_side_by_side(tasks, std::min(threads_, 2));
+    run_side_by_side(tasks, std::min(threads_, 3));
     if (recorder_ != nullptr) {
         WorkPiece round;
         round.kind = WorkPiece::Kind::round;

@@ -108,9 +108,7 @@ class Simulation {
         }
         begin_stage(0);
         processors_.run_to_end([this](double idle_s, double serial_share) {
-            Schedule::Idle& idle = !in_round_         ? result_.outside
-                                   : one_has_ended_() ? result_.round_end
-                                                      : result_.inside;
+            Schedule::Idle& idle = !in_round_ ? result_.outside : one_has_ended_() ? result_.round_end : result_.inside;
             idle.serial_s += idle_s * serial_share;
             idle.flights_s += idle_s * (1 - serial_share);
         });
@@ -205,7 +203,8 @@ class Simulation {
             return policy_.threads;
         }
         const Task& of = tasks_[static_cast<std::size_t>(task)];
-        return std::max(1, allowed_[static_cast<std::size_t>(task)] / static_cast<int>(std::max<std::size_t>(1, of.running)));
+        return std::max(
+            1, allowed_[static_cast<std::size_t>(task)] / static_cast<int>(std::max<std::size_t>(1, of.running)));
     }
 
     void run_chain(const WorkChain& chain, std::size_t next, int task, Then then) {
@@ -218,11 +217,13 @@ class Simulation {
         switch (item.kind) {
             case WorkItem::Kind::serial: {
                 const bool is_divisible = task == tree || task == refinement;
-                const double divided_s = is_divisible && threads_for(task) > 1 ? policy_.divided_share * item.work_s : 0;
+                const double divided_s =
+                    is_divisible && threads_for(task) > 1 ? policy_.divided_share * item.work_s : 0;
                 processors_.run(item.work_s - divided_s, Processors::Use::serial,
                                 [this, divided_s, task, go_on = std::move(go_on)] {
                                     const auto threads = static_cast<std::size_t>(threads_for(task));
-                                    share_out(divided_s / static_cast<double>(threads), divided_s > 0 ? threads : 0, threads, go_on);
+                                    share_out(divided_s / static_cast<double>(threads), divided_s > 0 ? threads : 0,
+                                              threads, go_on);
                                 });
                 break;
             }
@@ -270,8 +271,7 @@ class Simulation {
         const std::size_t jobs = batch.ticks.size();
         const std::size_t helpers = jobs <= 2 ? 0 : static_cast<std::size_t>(threads - 1);
         const std::size_t lanes = std::clamp<std::size_t>((jobs + helpers) / (helpers + 1), 1, WorkPiece::max_lanes);
-        const auto flight =
-            std::make_shared<BatchFlight>(BatchFlight{batch, lanes, 0, helpers + 1, std::move(then)});
+        const auto flight = std::make_shared<BatchFlight>(BatchFlight{batch, lanes, 0, helpers + 1, std::move(then)});
         for (std::size_t i = 0; i < helpers; ++i) {
             processors_.run(policy_.wake_s, Processors::Use::wait, [this, flight] { take_jobs({flight, {}}); });
         }
@@ -298,8 +298,7 @@ class Simulation {
             left -= passes;
         }
         std::erase(thread.lanes, 0);
-        processors_.run(time_s, Processors::Use::flight,
-                        [this, thread = std::move(thread)] { take_jobs(thread); });
+        processors_.run(time_s, Processors::Use::flight, [this, thread = std::move(thread)] { take_jobs(thread); });
     }
 
     const SchedulePolicy& policy_;
@@ -356,12 +355,44 @@ WorkChain merged(std::span<const WorkChain> steps) {
     return all;
 }
 
+/// A plan's execution whose certificate flies so many of its chunks at once. A chunk is two batches of 64 flights: the
+/// hover at the start, and the plan to its only goal.
+WorkChain flown_ahead(const WorkChain& chain, std::size_t chunks) {
+    constexpr std::size_t chunk_jobs = 64;
+    const auto is_full = [](const WorkItem& item) {
+        return item.kind == WorkItem::Kind::batch && item.ticks.size() == chunk_jobs;
+    };
+    WorkChain all;
+    std::vector<WorkChain> pending;  // chunks, the last of which may lack its second batch
+    const auto finish = [&] {
+        for (std::size_t i = 0; i < pending.size(); i += chunks) {
+            const WorkChain together = merged(std::span(pending).subspan(i, std::min(chunks, pending.size() - i)));
+            all.insert(all.end(), together.begin(), together.end());
+        }
+        pending.clear();
+    };
+    for (const WorkItem& item : chain) {
+        if (is_full(item)) {
+            if (pending.empty() || pending.back().size() == 2) {
+                pending.emplace_back();
+            }
+            pending.back().push_back(item);
+        } else if (item.kind == WorkItem::Kind::serial && !pending.empty()) {
+            all.push_back(item);  // worlds are drawn between chunks
+        } else {
+            finish();
+            all.push_back(item);
+        }
+    }
+    finish();
+    return all;
+}
+
 std::vector<WorkStage> with_merged(const SearchWork& work, const SchedulePolicy& policy) {
     std::vector<WorkStage> stages;
     std::size_t rounds = 0;
     for (const WorkStage& stage : work.stages) {
-        const bool has_round =
-            std::ranges::any_of(stage.round.tasks, [](const auto& steps) { return !steps.empty(); });
+        const bool has_round = std::ranges::any_of(stage.round.tasks, [](const auto& steps) { return !steps.empty(); });
         const bool joins = has_round && rounds > 0 && rounds % static_cast<std::size_t>(policy.rounds_merged) != 0;
         rounds += has_round ? 1 : 0;
         if (!joins) {
@@ -373,6 +404,14 @@ std::vector<WorkStage> with_merged(const SearchWork& work, const SchedulePolicy&
         for (std::size_t task = 0; task < 3; ++task) {
             auto& steps = last.round.tasks[task];
             steps.insert(steps.end(), stage.round.tasks[task].begin(), stage.round.tasks[task].end());
+        }
+    }
+    const auto chunks = static_cast<std::size_t>(policy.flies_ahead ? policy.threads / 16 : 1);
+    if (chunks > 1) {
+        for (WorkStage& stage : stages) {
+            for (WorkChain& execution : stage.round.tasks[0]) {
+                execution = flown_ahead(execution, chunks);
+            }
         }
     }
     const auto width = static_cast<std::size_t>(policy.steps_merged);

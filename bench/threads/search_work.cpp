@@ -206,8 +206,8 @@ SearchWork search_work(std::span<const WorkPiece> pieces, double begin_s, double
                 leaves.push_back(&piece);
                 break;
             case WorkPiece::Kind::step: {
-                const auto first = std::ranges::find_if(
-                    leaves, [&](const WorkPiece* leaf) { return leaf->begin_s >= piece.begin_s; });
+                const auto first =
+                    std::ranges::find_if(leaves, [&](const WorkPiece* leaf) { return leaf->begin_s >= piece.begin_s; });
                 outside.insert(outside.end(), leaves.begin(), first);
                 leaves.erase(leaves.begin(), first);
                 round_begins_s = std::min(round_begins_s, piece.begin_s);

@@ -60,7 +60,7 @@ struct SearchWork {
 
 /// Processor time by what it was spent on [s].
 struct WorkShares {
-    double outside_serial_s = 0, outside_flights_s = 0;        ///< before the first plan and between rounds
+    double outside_serial_s = 0, outside_flights_s = 0;       ///< before the first plan and between rounds
     std::array<double, 3> task_serial_s{}, task_flights_s{};  ///< of rounds, by task
     std::size_t rounds = 0, steps = 0, batches = 0, jobs = 0;
 
