@@ -187,7 +187,7 @@ class Simulation {
         ++mine->running;
         const auto number = static_cast<int>(mine - tasks_.data());
         const double began_s = processors_.now_s();
-        run_chain(step, 0, number, [this, mine, number, began_s, stage] {
+        run_step(step, number, [this, mine, number, began_s, stage] {
             mine->spent_s += processors_.now_s() - began_s;
             --mine->running;
             if (mine->has_ended() && number != 0) {
@@ -195,6 +195,26 @@ class Simulation {
             }
             work_on_tasks(stage);
         });
+    }
+
+    /// Of an execution with a certificate the direct flight, which is all before its first batch, beside the rest.
+    void run_step(const WorkChain& step, int task, Then then) {
+        const bool has_flight =
+            task == 0 && policy_.flies_beside && policy_.threads > 1 && !step.empty() &&
+            step[0].kind == WorkItem::Kind::serial &&
+            std::ranges::any_of(step, [](const WorkItem& item) { return item.kind == WorkItem::Kind::batch; });
+        if (!has_flight) {
+            run_chain(step, 0, task, std::move(then));
+            return;
+        }
+        const auto ended = std::make_shared<int>(0);
+        const Then join = [ended, then = std::move(then)] {
+            if (++*ended == 2) {
+                then();
+            }
+        };
+        processors_.run(step[0].work_s, Processors::Use::serial, join);
+        run_chain(step, 1, task, join);
     }
 
     /// Threads that may work on a piece of a task.

@@ -174,6 +174,31 @@ TEST_CASE("processors are shared evenly where more threads want to run") {
     CHECK(wall_s(work, on(2)) == Approx((200 + 20) / 2.0));
 }
 
+TEST_CASE("a direct flight goes on beside the certificate") {
+    const SearchWork work = round_of({{serial(60), batch(std::vector<std::int64_t>(16, 100)), serial(5)}}, {}, {});
+    CHECK(wall_s(work, on(1)) == Approx(60 + 200 + 5));
+    // Four threads on three processors for 80 s, which leaves the certificate 40 s.
+    CHECK(wall_s(work, on(3)) == Approx(80 + 40 + 5));
+    SchedulePolicy before = on(3);
+    before.flies_beside = false;
+    CHECK(wall_s(work, before) == Approx(60 + 100 + 5));
+}
+
+TEST_CASE("many threads fly chunks of a certificate at once") {
+    const TickTime by_kernel{1, 2, 0};  // 4 lanes take half as long as 8
+    const WorkChain chunk{batch(std::vector<std::int64_t>(64, 10), by_kernel),
+                          batch(std::vector<std::int64_t>(64, 100), by_kernel)};
+    WorkChain certificate = chunk;
+    certificate.insert(certificate.end(), chunk.begin(), chunk.end());
+    const SearchWork work = round_of({certificate}, {}, {});
+    CHECK(wall_s(work, on(1)) == Approx(2 * 16 * 110));
+    CHECK(wall_s(work, on(16)) == Approx(2 * 110));
+    CHECK(wall_s(work, on(32)) == Approx(110));
+    SchedulePolicy before = on(32);
+    before.flies_ahead = false;
+    CHECK(wall_s(work, before) == Approx(2 * 110));
+}
+
 TEST_CASE("steps in flight overlap, and merged steps fill more lanes") {
     const std::vector<WorkChain> steps(4, {serial(10), batch({100, 100, 100, 100}, {1, 1.5, 0})});
     const SearchWork work = round_of({}, steps, {});
