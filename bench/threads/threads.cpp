@@ -32,8 +32,8 @@ constexpr std::array thread_counts{1, 2, 4, 8, 16, 32};
 
 struct Given {
     std::vector<std::string> problems;
-    std::uint64_t iterations = 200;            ///< in worlds
-    std::uint64_t believed_iterations = 1500;  ///< as believed
+    std::uint64_t iterations = 150;            ///< in worlds
+    std::uint64_t believed_iterations = 1000;  ///< as believed
     std::uint32_t seeds = 2;
 };
 
