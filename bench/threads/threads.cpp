@@ -211,6 +211,12 @@ void print_measured(const std::vector<Measured>& problems, double wake_s) {
         two += problem.two;
     }
     row("all", all, one, two);
+    constexpr double noticeable = 0.03;
+    if (two.others_s > noticeable * 2 * two.wall_s) {
+        fmt::print(
+            "\n**Other programs shared the machine**, so the measured speed-ups of this table are too low and the "
+            "errors too large.\n");
+    }
 }
 
 void print_shares(const std::vector<Measured>& problems) {
