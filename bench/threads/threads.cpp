@@ -391,8 +391,8 @@ void run(const Given& given) {
         "batch has, by processor time. The simulation deals this work out to threads as the planner does: tasks of a "
         "round "
         "to workers, flights to the lanes of each thread. It does not know that threads share caches and memory, so it "
-        "is "
-        "an upper bound. The plans and counts of all searches were the same, recorded or not, on one thread and on "
+        "promises a little too much. The plans and counts of all searches were the same, recorded or not, on one "
+        "thread and on "
         "two.\n\n",
         source_commit(), processor(), given.seeds, load, 1e6 * wake_s);
     for (const bool in_worlds : {true, false}) {
