@@ -1,9 +1,11 @@
 #include "downwash/planner/flight_search.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 #include <utility>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/rivals/control_planners.hpp"
 #include "downwash/search/flight_space.hpp"
@@ -58,6 +60,11 @@ class FlightSearch {
  private:
     [[nodiscard]] bool is_over() { return weak_goal_ || clock_.is_over(); }
     [[nodiscard]] bool survives_execution(const Plan& plan, double cost);
+    [[nodiscard]] bool flies_well(const Plan& plan);
+    [[nodiscard]] bool needs_certificate() const { return worlds_ != nullptr && goals_.size() == worlds_->goals(); }
+    [[nodiscard]] WorldCounter world_counter() {
+        return [this](std::uint64_t worlds, std::uint64_t failures) { clock_.certifies(worlds, failures); };
+    }
     [[nodiscard]] bool is_certified(const Plan& plan, double cost);
     [[nodiscard]] bool can_stop(const Plan& plan);
     [[nodiscard]] std::vector<Counterexample> lessons();
@@ -104,22 +111,43 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
         return false;  // too late for a certificate
     }
     const PlannerSettings& settings = task_.problem.planner;
-    if (settings.variant == Variant::mp_arm_ada) {
-        try {
-            execution_ =
-                execute_directly(task_.model, start_, before_.continued_by(plan), goals_, task_.problem.energy_budget_j,
-                                 execution_wall_s_, [this] { return is_over(); });
-        } catch (const WorkStopped&) {
-            discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
-            return false;
-        }
-    }
-    known_at_s_ = clock_.seconds();
-    if (execution_ && !is_good(*execution_, settings.safety_margin_m)) {
-        discarded_ = obstruction_of(*execution_, task_.space);
+    if (settings.variant == Variant::mp_arm_ada && !flies_well(plan)) {
         return false;
     }
+    known_at_s_ = clock_.seconds();
     return (worlds_ == nullptr || is_certified(plan, cost)) && can_stop(plan);
+}
+
+/// Whether a plan of MP-ARM-ADA is good when executed with direct aerodynamics. If the plan needs a certificate,
+/// another thread begins with it meanwhile; a plan that is not good has asked for none.
+bool FlightSearch::flies_well(const Plan& plan) {
+    const Plan flown = before_.continued_by(plan);
+    bool is_finished = false;
+    std::atomic<bool> is_bad = false;
+    const auto fly = [&] {
+        try {
+            execution_ = execute_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
+                                          execution_wall_s_, [this] { return is_over(); });
+            is_finished = true;
+        } catch (const WorkStopped&) {  // too late
+        }
+        is_bad = !is_finished || !is_good(*execution_, task_.problem.planner.safety_margin_m);
+    };
+    const auto certify = [&] {
+        if (!is_bad) {
+            certificate_ = worlds_->certify(
+                flown, attempts_ + 1, [&] { return is_bad || is_over(); }, world_counter());
+            clock_.has_certified();
+        }
+    };
+    run_parallel(needs_certificate() ? 2 : 1, options_.threads,
+                 [&](std::size_t task) { task == 0 ? fly() : certify(); });
+    if (!is_finished) {
+        discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
+    } else if (is_bad) {
+        discarded_ = obstruction_of(*execution_, task_.space);
+    }
+    return !is_bad;
 }
 
 /// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case.
@@ -137,16 +165,15 @@ bool FlightSearch::can_stop(const Plan& plan) {
 }
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
-/// no certificate.
+/// no certificate; any other has been flown for one.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
-    const Plan flown = before_.continued_by(plan);
-    const StopCondition is_too_late = [this] { return is_over(); };
-    const WorldCounter counter = [this](std::uint64_t worlds, std::uint64_t failures) {
-        clock_.certifies(worlds, failures);
-    };
-    certificate_ = goals_.size() == worlds_->goals() ? worlds_->certify(flown, ++attempts_, is_too_late, counter)
-                                                     : worlds_->screen(flown, goals_.size(), is_too_late, counter);
-    clock_.has_certified();
+    if (needs_certificate()) {
+        ++attempts_;
+    } else {
+        certificate_ = worlds_->screen(
+            before_.continued_by(plan), goals_.size(), [this] { return is_over(); }, world_counter());
+        clock_.has_certified();
+    }
     known_at_s_ = clock_.seconds();
     if (certificate_->is_given) {
         return true;
@@ -271,6 +298,7 @@ void FlightSearch::run_tree() {
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});
+    planner.record_to(options_.recorder);
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_known(options_.known_plan, options_.known_places);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
@@ -76,7 +77,10 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
                              std::shared_ptr<const AeroMap> map, const SolveOptions& options)
     : problem_(problem),
       flights_(problem, std::move(model), std::move(map), options.threads),
-      threads_(options.threads) {}
+      threads_(options.threads),
+      recorder_(options.recorder) {
+    flights_.record_to(recorder_);
+}
 
 std::vector<FlownWorld> search_worlds(const Problem& problem) {
     std::vector<FlownWorld> worlds;
@@ -157,6 +161,7 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
     }
     const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds);
     const std::span<const Goal> goals = std::span(flights_.goals()).first(visits);
+    const ParallelScope recorded(recorder_, samples.size());
     run_parallel(samples.size(), threads_, [&](std::size_t i) {
         if (!starts[i]) {
             return;
@@ -176,8 +181,11 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
 bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
                                         const StopCondition& is_over, const WorldCounter& counter,
                                         CertificateRecord& record) {
-    constexpr std::uint64_t chunk = 64;  // worlds side by side: a bad plan fails in the first of them
+    constexpr std::uint64_t chunk = 64;   // worlds side by side: a bad plan fails in the first of them
+    constexpr int threads_of_chunk = 16;  // that it keeps busy; for more, chunks are flown that are likely to be wanted
+    const auto chunks_at_once = static_cast<std::uint64_t>(std::max(1, threads_ / threads_of_chunk));
     constexpr std::size_t flown_directly = 2;
+    std::deque<WorldFlight> flown;  // of the worlds after those of the record
     for (;;) {
         throw_if_over(is_over);
         if (counter) {
@@ -196,14 +204,20 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
             }
             continue;
         }
-        std::vector<FlownWorld> worlds;
         const std::uint64_t first = first_world + record.worlds();
-        for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
-            worlds.push_back(world(first + i));
+        const std::uint64_t next = std::min(chunk, wanted);
+        if (flown.size() < next) {
+            std::vector<FlownWorld> worlds;
+            for (std::uint64_t i = flown.size(); i < std::min(chunks_at_once * chunk, wanted); ++i) {
+                worlds.push_back(world(first + i));
+            }
+            const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds, is_over);
+            flown.insert(flown.end(), flights.begin(), flights.end());
         }
-        const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds, is_over);
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            record.add({first + i, outcome_of(flights[i].rejection), flights[i].min_clearance_m, flights[i].goal});
+        for (std::uint64_t i = 0; i < next; ++i) {
+            const WorldFlight& flight = flown.front();
+            record.add({first + i, outcome_of(flight.rejection), flight.min_clearance_m, flight.goal});
+            flown.pop_front();
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/base/parallel.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
 #include "downwash/search/plan_refiner.hpp"
 #include "downwash/search/random.hpp"
@@ -65,6 +66,8 @@ class FlightTreePlanner : public ompl::base::Planner {
         known_plan_ = std::move(plan);
         known_places_ = std::move(places);
     }
+    /// Notes the work of searches from now on; nullptr: none. The recorder must outlive the planner, or the next call.
+    void record_to(WorkRecorder* recorder);
     /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
@@ -91,6 +94,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     void begin(const FlightPoint& start);
     void grow();
     void refine();
+    [[nodiscard]] SteppedTask recorded(int number, SteppedTask task) const;
     void go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated);
     void hand_to_refiner();
     [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
@@ -109,6 +113,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     int threads_;
     CandidateHooks hooks_;
     std::function<void()> observer_;
+    WorkRecorder* recorder_ = nullptr;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
     std::optional<Plan> known_plan_;

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Measures searches on one and two threads, simulates their schedule on up to 32, and writes bench/results/threads.md. About
+# four minutes. Run it on a machine that does nothing else.
+set -euo pipefail
+cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
+
+./dev build --target bench_threads >&2
+mkdir -p bench/results
+build/bench/bench_threads problems/*.yaml "$@" >bench/results/threads.md.new
+mv bench/results/threads.md.new bench/results/threads.md
+cat bench/results/threads.md
