@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <future>
 #include <optional>
+#include <system_error>
 #include <utility>
 
-#include "downwash/base/parallel.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/rivals/control_planners.hpp"
 #include "downwash/search/flight_space.hpp"
@@ -140,8 +141,23 @@ bool FlightSearch::flies_well(const Plan& plan) {
             clock_.has_certified();
         }
     };
-    run_parallel(needs_certificate() ? 2 : 1, options_.threads,
-                 [&](std::size_t task) { task == 0 ? fly() : certify(); });
+    // The certificate stays on this thread: where it is solve()'s own, it tells the caller how the search goes.
+    std::future<void> flight;
+    if (needs_certificate() && options_.threads > 1) {
+        try {
+            flight = std::async(std::launch::async, fly);
+        } catch (const std::system_error&) {  // no more threads
+        }
+    }
+    if (!flight.valid()) {
+        fly();
+    }
+    if (needs_certificate()) {
+        certify();
+    }
+    if (flight.valid()) {
+        flight.get();
+    }
     if (!is_finished) {
         discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
     } else if (is_bad) {

@@ -214,7 +214,7 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, max_saturation: 0.5",
      "16:97: planner.max_saturation is 0.5: expected a number from 1 to 1000"},
     {"seed: 1", "seed: 1, max_pitch_rate_deg_s: 0",
-     "16:97: planner.max_pitch_rate_deg_s is 0: expected a number in deg/s from 0.001 to 100000, or null"},
+     "16:103: planner.max_pitch_rate_deg_s is 0: expected a number in deg/s from 0.001 to 100000, or null"},
     {"aero:\n", "motion: {max_thrust_ratio: 1, max_pitch_rate_deg_s: 0}\naero:\n",
      "9:28: motion.max_thrust_ratio is 1: expected a number from 1.001 to 100, or null\n9:53: "
      "motion.max_pitch_rate_deg_s is 0: expected a number in deg/s from 0.1 to 36000, or null"},
