@@ -61,7 +61,7 @@ limit() { # ROW, N: a cell of that table, without marks
         /^## / { is_wanted = /^## ars_lrm, ceiling, .*lag 50 ms/ }
         is_wanted && index($0, row) == 1 { gsub(/[ *]/, "", $(n + 1)); print $(n + 1); exit }' bench/results/law_limits.md
 }
-quotes docs/control.md "the model inversion needs $(limit model-inversion 2) m. An observer of 10 1/s takes it to $(limit '+ observer, 10 1/s' 2) m"
+quotes docs/control.md "the model inversion needs $(limit model-inversion 2) m. The shipped robot's observer of 3 1/s takes it to $(limit '+ observer, 3 1/s' 2) m, one of 10 1/s to $(limit '+ observer, 10 1/s' 2) m"
 quotes docs/control.md "to the limit of the flyable area, $(limit '+ feed-forward' 2) m"
 quotes docs/control.md "3 cm wrong the feed-forward needs $(limit '+ feed-forward' 4) m, with one that is 5 cm wrong $(limit '+ feed-forward' 8) m"
 

@@ -17,6 +17,13 @@ inline constexpr double radius_m = 0.1905;
 inline constexpr double hub_height_m = 0.06;
 inline constexpr double ceiling_m = 5;  // of ceiling_problem, wide over everything
 
+/// A vehicle far from everything.
+inline FlightModel in_free_air(const Robot& robot) {
+    AeroSettings calm;
+    calm.enabled = false;
+    return {robot, {}, std::make_shared<const Scene>(std::vector<Obstacle>{}), calm};
+}
+
 /// Hover with hanging arm a distance below the wide ceiling, where height has nothing to do with pitch and arm.
 inline HoverAnalysis below_ceiling(const FlightModel& model, double gap_m) {
     return analyse_hover(model, 0, ceiling_m - gap_m - hub_height_m, quarter_turn);

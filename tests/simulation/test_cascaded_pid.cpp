@@ -20,13 +20,6 @@ Robot robot_with(const CascadedPid& law) {
     return robot;
 }
 
-/// Far from everything.
-FlightModel in_free_air(const Robot& robot) {
-    AeroSettings calm;
-    calm.enabled = false;
-    return {robot, {}, std::make_shared<const Scene>(std::vector<Obstacle>{}), calm};
-}
-
 FlightState flown(const FlightModel& model, FlightState state, const ReferencePoint& reference, int ticks) {
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<double> given{};

@@ -19,12 +19,6 @@ Robot robot_with(const PlanarLyapunov& law) {
     return robot;
 }
 
-FlightModel in_free_air(const Robot& robot) {
-    AeroSettings calm;
-    calm.enabled = false;
-    return {robot, {}, std::make_shared<const Scene>(std::vector<Obstacle>{}), calm};
-}
-
 struct Coordinate {
     double value, rate, acceleration;
 };
