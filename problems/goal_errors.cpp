@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/controllers/control_law.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/goal_reach.hpp"
 #include "downwash/problems/touch_places.hpp"
+#include "downwash/simulation/contact_goal.hpp"
 
 namespace downwash {
 namespace {
@@ -266,7 +270,23 @@ std::vector<KeyError> contacts_without_place(const ProblemCheck& check) {
     return reason.empty() ? std::vector<KeyError>() : std::vector<KeyError>{{"goal.contact", reason}};
 }
 
-const std::array<Check<ProblemCheck>, 8> checks{{
+/// A soft law takes up the force of a touch slowly.
+std::vector<KeyError> touches_that_settle_late(const ProblemCheck& check) {
+    const Problem& p = check.problem();
+    constexpr double longest_s = 60;
+    const double stiffness_1_s2 = std::visit(
+        [](const auto& law) { return std::min(law.position_stiffness_1_s2(0), law.position_stiffness_1_s2(1)); },
+        controllers::flown_law(p.robot.controller.law));
+    const double settling_s = touch_settling_constants / (force_loop_share * std::sqrt(stiffness_1_s2));
+    if (!p.goal.contact || settling_s <= longest_s) {
+        return {};
+    }
+    return {{"robot.controller", "answers a metre of position error with " + rounded(stiffness_1_s2) +
+                                     " m/s2: a touch would settle for more than " + rounded(longest_s) +
+                                     " s; raise the gains of the position"}};
+}
+
+const std::array<Check<ProblemCheck>, 9> checks{{
     {{"goal"}, too_many_goals},
     {{"goal"}, unclear_goals},
     {{"goal", "robot.controller"}, holds_beyond_longest_plan},
@@ -277,6 +297,7 @@ const std::array<Check<ProblemCheck>, 8> checks{{
     {{"goal", "environment", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
      end_effectors_out_of_reach},
     {{"goal", "start", "environment", "robot", "aero", "planner.safety_margin_m"}, contacts_without_place},
+    {{"goal", "robot.controller"}, touches_that_settle_late},
 }};
 
 }  // namespace

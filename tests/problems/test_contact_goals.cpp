@@ -76,6 +76,17 @@ TEST_CASE("the end of the arm touches a wall from a side, and a ceiling from bel
     CHECK(*under_ceiling.goal.any_of.front().end_effector->direction_rad == Approx(-quarter_turn));
 }
 
+TEST_CASE("a contact that a soft law would settle for minutes is an error") {
+    using Catch::Matchers::Contains;
+    Problem problem = contact_problem("ceiling", TouchingPart::frame);
+    test::gains_of(problem.robot).position_kp = 0.05;
+    CHECK(problem_errors(problem).empty());
+    for (const double kp : {0.04, 0.0}) {
+        test::gains_of(problem.robot).position_kp = kp;
+        CHECK_THAT(only_error(problem), Contains("robot.controller") && Contains("would settle for more than 60 s"));
+    }
+}
+
 TEST_CASE("a contact without a place says what is in its way") {
     using Catch::Matchers::Contains;
     Problem problem = contact_problem("celing", TouchingPart::frame);
