@@ -95,7 +95,8 @@ ExitCode run(const SolveArguments& given) {
         solution = downwash::solve(plannable, options);
     }
     const RunRecord record = folder.write(read, given.problem, warnings, solution);
-    if (solution.map != nullptr || !solution.interrupted) {  // without a map there was no search to be shown yet
+    // Of the variants only MP-ARM-ADA has a map. Without a search there is nothing to be shown yet.
+    if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
         write_page(folder.path(), record, given.threads);
     }
     fmt::print("{}", given.as_json ? record.solution_text

@@ -11,16 +11,19 @@ namespace {
 
 /// A search that goes on for ten minutes, running as far as it says `text`.
 struct LongSearch : Workspace {
-    explicit LongSearch(const std::string& text) { REQUIRE(program.has_said(text)); }
+    explicit LongSearch(const std::string& text, const std::string& variant = "mp-arm-ada")
+        : program(*this, words("solve", problem_file("open_air"), "--time-limit 600 --out x --variant", variant)) {
+        REQUIRE(program.has_said(text));
+    }
 
-    Program program{*this, words("solve", problem_file("open_air"), "--time-limit 600 --out x")};
+    Program program;
 };
 
 }  // namespace
 
 TEST_CASE("A signal in the middle of a search writes the best plan so far") {
     const auto [signal, code] = GENERATE(std::pair(SIGINT, 130), std::pair(SIGTERM, 143));
-    const LongSearch work("best cost");
+    const LongSearch work("best cost", GENERATE("mp-arm-ada", "mp-arm-da", "mp-arm"));
     work.program.send(signal);
     const Result result = work.program.wait();
     CHECK(result.code == code);
