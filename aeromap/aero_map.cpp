@@ -160,14 +160,10 @@ bool AeroMap::is_touched(const std::vector<Scene::Bounds>& changed, const Bounds
         return true;
     }
     return std::any_of(changed.begin(), changed.end(), [&](const Scene::Bounds& box) {
-        // Cells are refined by blocks of them: one that is touched may change all of its own.
-        constexpr std::size_t block = FactorPatches::block_cells;
-        const ColumnRange columns = columns_beside({box});
-        const std::size_t first = columns.first / block * block;
-        const std::size_t last = (columns.last / block + 1) * block;
+        const ColumnRange columns = FactorPatches::changing_with(columns_beside({box}));
         return columns.first < columns.last &&
-               extent_.x_low_m + static_cast<double>(first) * cell_m_ <= part.x_high_m &&
-               extent_.x_low_m + static_cast<double>(last) * cell_m_ >= part.x_low_m;
+               extent_.x_low_m + static_cast<double>(columns.first) * cell_m_ <= part.x_high_m &&
+               extent_.x_low_m + static_cast<double>(columns.last) * cell_m_ >= part.x_low_m;
     });
 }
 

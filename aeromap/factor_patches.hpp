@@ -2,6 +2,7 @@
 
 // Private to aeromap.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,17 @@ class FactorPatches {
     /// The largest blocks, and the strip, are as many cells wide and high. Where their lower left corners are flyable
     /// K is exact there.
     static constexpr std::size_t block_cells = 8;
+
+    /// Which columns of a layer change with some of them: their whole blocks, and the block before them, whose right
+    /// edge is theirs. None without any.
+    [[nodiscard]] static ColumnRange changing_with(const ColumnRange& columns) {
+        if (columns.first >= columns.last) {
+            return {0, 0};
+        }
+        const std::size_t first = columns.first / block_cells;
+        return {(first - std::min<std::size_t>(first, 1)) * block_cells,
+                (columns.last + block_cells - 1) / block_cells * block_cells};
+    }
 
     /// Whether the cells [i, i + n) of the strip's rows [k, k + n) are flyable throughout; of those in the layer.
     enum class Flyable : std::uint8_t { none, some, all };

@@ -69,8 +69,7 @@ class RowsBuilder {
         }
     }
 
-    /// Those that may have changed, and those where other cells are flyable; whole blocks of patches, and the block
-    /// before them, whose right edge is theirs.
+    /// Those that may have changed, and those where other cells are flyable, with all that change with them.
     [[nodiscard]] ColumnRange not_as_before(const LayerBefore& before) {
         ColumnRange columns = before.changed;
         for (std::size_t k = first_; k < last_; ++k) {
@@ -80,13 +79,8 @@ class RowsBuilder {
                 }
             }
         }
-        if (columns.first >= columns.last) {
-            return {0, 0};
-        }
-        constexpr std::size_t block = FactorPatches::block_cells;
-        const std::size_t first = columns.first / block;
-        const std::size_t last = (columns.last + block - 1) / block;
-        return {(first - std::min<std::size_t>(first, 1)) * block, std::min(grid_.columns, last * block)};
+        const ColumnRange changing = FactorPatches::changing_with(columns);
+        return {changing.first, std::min(grid_.columns, changing.last)};
     }
 
     [[nodiscard]] double x_at(std::size_t i) const { return grid_.x_low_m + static_cast<double>(i) * grid_.side_m; }

@@ -130,7 +130,8 @@ TEST_CASE("a touch that is too fast, or not with the part that is meant to, is a
     CHECK(touch_from_hover(problem).outcome == Outcome::collision);
 
     problem = touching_problem(TouchingPart::frame, 5);
-    problem.obstacles.push_back(box("lamp", {0.1, 0.1, 0.05}, {-1, 0, 4.975}));  // between the rotors
+    // Between the rotors, 2 mm lower than the top of the body will be.
+    problem.obstacles.push_back(box("lamp", {0.1, 0.1, 0.022}, {-1, 0, 4.989}));
     CHECK(touch_from_hover(problem).outcome == Outcome::collision);
 }
 
