@@ -75,7 +75,6 @@ class BlockReader {
     /// The next runs; none after the last one. They are valid until the next call.
     std::vector<StoredRun>& next() {
         runs_.clear();
-        place_of_.clear();
         read_columns();
         if (!runs_.empty()) {
             const std::optional<std::int64_t> before = last_;
@@ -110,7 +109,6 @@ class BlockReader {
                         last_ ? fmt::format("WHERE id > {}", *last_) : "", block_runs),
             [&](Count key, Count experiment, Count planner, Count seed, Count status, Count is_solved,
                 Count is_approximate, Count is_correct, const auto&... figures) {
-                place_of_[key] = runs_.size();
                 const auto known_status = std::min<Count>(status, run_status_count);
                 runs_.push_back({key,
                                  {experiment - 1,
@@ -135,8 +133,12 @@ class BlockReader {
         database_.for_each<Count, Columns...>(
             fmt::format("SELECT runid, {} FROM {} WHERE {} {}", columns, table, range_, order),
             [&](Count key, const Columns&... values) {
-                if (const auto found = place_of_.find(key); found != place_of_.end()) {
-                    take(runs_[found->second], values...);
+                const auto found = std::lower_bound(  // in a damaged file keys may be negative
+                    runs_.begin(), runs_.end(), key, [](const StoredRun& run, Count of) {
+                        return static_cast<std::int64_t>(run.key) < static_cast<std::int64_t>(of);
+                    });
+                if (found != runs_.end() && found->key == key) {
+                    take(*found, values...);
                 }
             });
     }
@@ -199,7 +201,6 @@ class BlockReader {
     std::optional<std::int64_t> last_;
     std::string range_;
     std::vector<StoredRun> runs_;
-    std::map<Count, std::size_t> place_of_;
 };
 
 }  // namespace

@@ -74,8 +74,10 @@ Database::Database(const std::filesystem::path& file, bool creates)
     sqlite3* opened = nullptr;
     // For reading too: only a connection that may write can take back what a killed program left half written. SQLite
     // opens a file that is write-protected for reading.
+    constexpr int one_thread_at_a_time = SQLITE_OPEN_NOMUTEX;  // see the class
     const int result =
-        sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READWRITE | (creates ? SQLITE_OPEN_CREATE : 0), nullptr);
+        sqlite3_open_v2(file_.c_str(), &opened,
+                        SQLITE_OPEN_READWRITE | one_thread_at_a_time | (creates ? SQLITE_OPEN_CREATE : 0), nullptr);
     database_.reset(opened);
     check(result);
     sqlite3_busy_timeout(opened, waiting_ms);

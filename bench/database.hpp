@@ -29,7 +29,7 @@ inline constexpr int max_database_text_bytes = 1 << 24U;
 
 /// One SQLite file. Every statement is committed at once, unless a Transaction lives. Values are double,
 /// std::uint64_t, text and optional ones of these, which are NULL when empty. A file may come from anybody: neither its
-/// schema nor its content makes a statement run code or take longer than the file is large.
+/// schema nor its content makes a statement run code or take longer than the file is large. For one thread at a time.
 class Database {
  public:
     /// Opens a file. @throws DatabaseError when it does not exist, unless it is to be created, or is no database or too
