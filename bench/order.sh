@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares the order of targets that the planner chooses with others, and writes bench/results/order.md. A quarter of an
-# hour.
+# Compares the order of targets that the planner chooses with others, and writes bench/results/order.md. Ten minutes;
+# close everything else first.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -48,9 +48,9 @@ struct Count {
     std::size_t unknown = 0;   ///< places passed over
 };
 
-class Campaign {
+class VerdictFlights {
  public:
-    explicit Campaign(const Options& options) : options_(options), random_(options.seed) {}
+    explicit VerdictFlights(const Options& options) : options_(options), random_(options.seed) {}
 
     /// Adds flights at random places of one problem to a row, until half of so many were called unstable and half
     /// stable, or so many places were looked at.
@@ -186,8 +186,8 @@ int main(int argc, char** argv) {
     app.add_option("--flights", options.flights, "flights per row")->check(CLI::PositiveNumber);
     app.add_option("--seed", options.seed, "of places and disturbances");
     return run_program(app, argc, argv, [&options] {
-        Campaign campaign(options);
-        campaign.run();
-        campaign.print();
+        VerdictFlights flights(options);
+        flights.run();
+        flights.print();
     });
 }

@@ -28,7 +28,7 @@ struct Options {
     std::string problem;
     unsigned scenes = 20;
     std::size_t targets = 8;
-    std::uint64_t iterations = 20000;
+    double time_s = 10;
     std::uint64_t leg_iterations = 350;
     int jobs = 2;
     unsigned seed = 1;
@@ -76,8 +76,8 @@ Problem random_scene(const Options& options, unsigned seed) {
             problem.targets.push_back(target);
         }
     }
-    problem.planner.time_limit_s.reset();
-    problem.planner.max_iterations = options.iterations;
+    problem.planner.time_limit_s = options.time_s;
+    problem.planner.max_iterations.reset();
     problem.uncertainty.reset();
     return problem;
 }
@@ -130,6 +130,7 @@ struct Legs {
 Legs flown_legs(const Problem& problem, const Options& options, const SolveOptions& how) {
     Problem leg = problem;
     leg.targets.clear();
+    leg.planner.time_limit_s.reset();
     leg.planner.max_iterations = options.leg_iterations;
     std::vector<Start> hovers(problem.targets.size(), problem.start);
     const auto fly = [&](const Start& start, std::size_t to) {
@@ -143,7 +144,10 @@ Legs flown_legs(const Problem& problem, const Options& options, const SolveOptio
             if (found.status == Status::solved && found.execution_cost < cost) {
                 cost = found.execution_cost;
                 const Configuration end = found.plan->last();
-                hovers[to] = {.x_m = end.x_m, .z_m = end.z_m, .arm_rad = end.arm_rad};
+                hovers[to] = {};
+                hovers[to].x_m = end.x_m;
+                hovers[to].z_m = end.z_m;
+                hovers[to].arm_rad = end.arm_rad;
             }
         }
         return cost;
@@ -176,8 +180,8 @@ std::optional<double> executed_cost(const Problem& problem, const Order& targets
 
 struct Row {
     unsigned scene = 0;
-    std::uint64_t legs = 0;  ///< that the planner flew to compare orders
-    double wall_s = 0;       ///< of its search
+    std::uint64_t legs = 0;                     ///< that the planner flew to compare orders
+    bool is_exact = false, is_nearest = false;  ///< the chosen order is the exact one, that of nearest-first
     double legs_chosen = none, legs_exact = 0, legs_nearest = 0, legs_given = 0;  ///< costs by the reference
     std::optional<double> chosen, exact, nearest;                                 ///< executed
 };
@@ -203,7 +207,8 @@ Row measured(const Problem& problem, const Options& options, unsigned scene) {
     Row row;
     row.scene = scene;
     row.legs = solution.order->legs;
-    row.wall_s = solution.planning.wall_s;
+    row.is_exact = chosen == exact;
+    row.is_nearest = chosen == nearest;
     if (solution.status == Status::solved) {
         row.chosen = solution.execution_cost;
         row.legs_chosen = legs.cost_of(chosen);
@@ -216,10 +221,8 @@ Row measured(const Problem& problem, const Options& options, unsigned scene) {
     return row;
 }
 
-double median_wall_s(std::vector<Row> rows) {
-    const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
-    std::ranges::nth_element(rows, middle, {}, &Row::wall_s);
-    return middle->wall_s;
+std::string same(bool is_same) {
+    return is_same ? " (same)" : "";
 }
 
 void print(const std::vector<Row>& rows, const Options& options) {
@@ -227,27 +230,29 @@ void print(const std::vector<Row>& rows, const Options& options) {
         "# Targets in any order\n\n"
         "Commit {}, g++ {}, {}, one thread a search, seed {}. `bench/order.sh` writes this page.\n\n"
         "{} random scenes with six blocks and {} targets, everything as believed, objective energy. The planner gets "
-        "{} "
-        "iterations for a scene, which\ntake {:.1f} s in the median. *Legs* is how many it flew to compare orders.\n\n"
+        "{:g} "
+        "s for a scene;\n{} searches ran at a time. *Legs* is how many it flew to compare orders.\n\n"
         "*By legs*: each of the {} legs from the start to a target and between two targets is planned as a problem of "
         "its own, by two searches of {}\niterations, of which the cheaper flight counts, and by up to eight more where "
         "these find none. The planner does not see these flights. The cost\nof the order that it chose, by these legs, "
         "is divided by that of the cheapest of all orders (exact), of nearest-first and of the order of the file.\n\n"
         "*Executed*: the cost of the executed flight of `in_any_order`, divided by that of the flight in the other "
-        "order. The planner is given that order as\na list, with as many iterations, of which it needs none to compare "
-        "orders. Below 1 the chosen order is cheaper.\n\n"
+        "order. The planner is given that order as\na list, with as much time, of which it needs none to compare "
+        "orders. "
+        "Below 1 the chosen order is cheaper. *Same*: both orders are one and the same,\nand the ratio shows how far "
+        "two searches in one order differ.\n\n"
         "| scene | legs | by legs: exact | nearest-first | given | executed: exact | nearest-first |\n"
         "|---|---|---|---|---|---|---|\n",
         source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.seed, options.scenes, options.targets,
-        options.iterations, median_wall_s(rows), options.targets * options.targets, options.leg_iterations);
+        options.time_s, options.jobs, options.targets * options.targets, options.leg_iterations);
     constexpr double allowed = 1.03;
     double worst = 0, worst_executed = 0, worst_nearest = 0;
-    int failures = 0, dearer_than_nearest = 0, dear = 0, executed_dear = 0, executed_dearer = 0;
+    int failures = 0, dearer_than_nearest = 0, dear = 0, executed_dear = 0, executed_dearer = 0, dearer_in_same = 0;
     for (const Row& row : rows) {
-        fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n", row.scene, row.legs,
+        fmt::print("| {} | {} | {} | {} | {} | {}{} | {}{} |\n", row.scene, row.legs,
                    ratio(row.legs_chosen, row.legs_exact), ratio(row.legs_chosen, row.legs_nearest),
-                   ratio(row.legs_chosen, row.legs_given), ratio(row.chosen, row.exact),
-                   ratio(row.chosen, row.nearest));
+                   ratio(row.legs_chosen, row.legs_given), ratio(row.chosen, row.exact), same(row.is_exact),
+                   ratio(row.chosen, row.nearest), same(row.is_nearest));
         worst = std::max(worst, row.legs_chosen / row.legs_exact);
         dearer_than_nearest += row.legs_chosen > row.legs_nearest * (1 + 1e-9) ? 1 : 0;
         dear += row.legs_chosen > allowed * row.legs_exact ? 1 : 0;
@@ -258,7 +263,9 @@ void print(const std::vector<Row>& rows, const Options& options) {
         }
         if (row.chosen && row.nearest) {
             worst_nearest = std::max(worst_nearest, *row.chosen / *row.nearest);
-            executed_dearer += *row.chosen > *row.nearest ? 1 : 0;
+            const bool is_dearer = *row.chosen > *row.nearest;
+            executed_dearer += is_dearer ? 1 : 0;
+            dearer_in_same += is_dearer && row.is_nearest ? 1 : 0;
         }
     }
     fmt::print(
@@ -266,10 +273,10 @@ void print(const std::vector<Row>& rows, const Options& options) {
         "more "
         "than nearest-first in {}.\nExecuted, it costs at most {:.3f} of the exact one, more than {} of it in {} "
         "scenes; "
-        "more than nearest-first in {} scenes, at most {:.3f} of it.\nIn {} of {} scenes no flight through all targets "
-        "was found.\n",
+        "more than nearest-first in {} scenes, in {} of them in the same order, at most {:.3f} of it.\nIn {} of {} "
+        "scenes no flight through all targets was found.\n",
         worst, allowed, dear, rows.size(), dearer_than_nearest, worst_executed, allowed, executed_dear, executed_dearer,
-        worst_nearest, failures, rows.size());
+        dearer_in_same, worst_nearest, failures, rows.size());
 }
 
 }  // namespace
@@ -280,7 +287,7 @@ int main(int argc, char** argv) {
     app.add_option("problem", options.problem, "problem file of which robot and settings are taken")->required();
     app.add_option("--scenes", options.scenes, "random scenes")->check(CLI::PositiveNumber);
     app.add_option("--targets", options.targets, "targets in each")->check(CLI::Range(1, 10));
-    app.add_option("--iterations", options.iterations, "of every search")->check(CLI::PositiveNumber);
+    app.add_option("--time", options.time_s, "of every search [s]")->check(CLI::PositiveNumber);
     app.add_option("--leg-iterations", options.leg_iterations, "of each leg that orders are measured by")
         ->check(CLI::PositiveNumber);
     app.add_option("-j,--jobs", options.jobs, "scenes at a time")->check(CLI::PositiveNumber);
