@@ -73,17 +73,17 @@ class VerdictFlights {
             if (!is_wanted) {
                 continue;
             }
-            const bool grew = fly_disturbed(*model, hover.trim, count.disturbance, random_).grew;
+            const auto [grew, end_m] = fly_disturbed(*model, hover.trim, count.disturbance, random_);
             (is_unstable ? count.unstable : count.stable) += 1;
             count.critical += std::abs(rate_1_s) < critical_rate_1_s ? 1 : 0;
             count.grew += is_unstable && grew ? 1 : 0;
             count.decayed += is_stable && !grew ? 1 : 0;
             if (grew != is_unstable) {
                 disagreements_.push_back(fmt::format(
-                    "{}, {}, up to {:g}: called {}, {}; growth rate {:.5f} 1/s at x {:.17g}, z {:.17g}, arm "
+                    "{}, {}, up to {:g}: called {}, {} to {:.2g}; growth rate {:.5f} 1/s at x {:.17g}, z {:.17g}, arm "
                     "{:.17g}",
                     problem.name, count.robot, count.disturbance.size, name_of(hover.verdict),
-                    grew ? "grew" : "decayed", rate_1_s, x_m, z_m, arm_rad));
+                    grew ? "grew" : "decayed", end_m, rate_1_s, x_m, z_m, arm_rad));
             }
         }
     }
@@ -120,9 +120,9 @@ class VerdictFlights {
             "so "
             "many; of the stable ones with a growth\nrate below -{} 1/s one in {} is taken. Each is disturbed by up "
             "to the given size in every coordinate (m, rad) and rate (per s), and flown for\n{} s with direct "
-            "aerodynamics. It grew when it left the given distance, or was farther away in the last quarter than in "
-            "the "
-            "one before.\nShares with 95 % Wilson intervals; every flight counts. `critical`: flights with a growth "
+            "aerodynamics. It grew when it left the given distance; or when it was farther away in the last quarter "
+            "than in the one before, or\nas far (a limit cycle) and farther than it began.\nShares with 95 % Wilson "
+            "intervals; every flight counts. `critical`: flights with a growth "
             "rate "
             "within {} 1/s of zero. `unknown`: places passed over\nbecause the model ends there.\n\n"
             "| problem | robot | disturbance, leaving | called unstable: grew | called stable: decayed | critical | "

@@ -42,7 +42,9 @@ DisturbedHover fly_disturbed(const FlightModel& model, const HoverTrim& trim, co
             before = std::max(before, d);
         }
     }
-    return {in_the_end > before && in_the_end > 1e-9, d};
+    constexpr double as_far = 0.99;
+    const bool is_in_limit_cycle = in_the_end > disturbance.size && in_the_end > as_far * before;
+    return {is_in_limit_cycle || (in_the_end > before && in_the_end > 1e-9), d};
 }
 
 }  // namespace downwash::bench

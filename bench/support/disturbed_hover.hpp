@@ -17,7 +17,9 @@ struct Disturbance {
 
 /// What comes of a disturbed hover.
 struct DisturbedHover {
-    bool grew;     ///< it left, or was farther away in the last quarter of the flight than in the one before
+    /// It left; or in the last quarter of the flight it was farther away than in the one before, or as far (a limit
+    /// cycle) and farther than it began.
+    bool grew;
     double end_m;  ///< how far away it was in the end: the greatest difference of a coordinate [m, rad]
 };
 
