@@ -59,29 +59,40 @@ Goal hover_at(const Configuration& rest) {
 
 }  // namespace
 
-Braking::Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
+Braking::Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, MapAround map_around,
                  std::vector<FlownWorld> worlds, int threads)
-    : problem_(problem), model_(std::move(model)), map_(std::move(map)), worlds_(std::move(worlds)) {
+    : problem_(problem),
+      model_(std::move(model)),
+      map_around_(std::move(map_around)),
+      worlds_(std::move(worlds)),
+      threads_(threads) {
     worlds_.insert(worlds_.begin(), model_->nominal_world());
-    FlightRules rules = rules_of_execution();
-    rules.finds_min_clearance = true;
-    pool_ = std::make_unique<FlightPool>(*model_, map_.get(), rules, nullptr, threads);
 }
 
-Bounds Braking::reach(const Problem& problem, const Start& from) {
-    const ReferencePoint reference = reference_at(from);
-    Bounds reach{from.x_m, from.x_m, from.z_m, from.z_m};
-    for (const Way& way : ways) {
-        const Configuration rest = rest_of(reference, harder_limits(problem.motion, way.harder), way);
-        reach = {std::min(reach.x_low_m, rest.x_m), std::max(reach.x_high_m, rest.x_m),
-                 std::min(reach.z_low_m, rest.z_m), std::max(reach.z_high_m, rest.z_m)};
+void Braking::fly_around(const Bounds& places) {
+    std::shared_ptr<const AeroMap> map = map_around_(places);
+    if (!pool_ || map != map_) {
+        map_ = std::move(map);
+        FlightRules rules = rules_of_execution();
+        rules.finds_min_clearance = true;
+        pool_ = std::make_unique<FlightPool>(*model_, map_.get(), rules, nullptr, threads_);
     }
-    constexpr double swing_m = 0.5;
-    const Bounds& bounds = problem.bounds;  // stops are within them, however fast the vehicle is
-    return {std::clamp(reach.x_low_m, bounds.x_low_m, bounds.x_high_m) - swing_m,
-            std::clamp(reach.x_high_m, bounds.x_low_m, bounds.x_high_m) + swing_m,
-            std::clamp(reach.z_low_m, bounds.z_low_m, bounds.z_high_m) - swing_m,
-            std::clamp(reach.z_high_m, bounds.z_low_m, bounds.z_high_m) + swing_m};
+}
+
+/// Those between the vehicle and the rests, and around them.
+Bounds Braking::places_on(std::span<const Try> tries, const Start& from) const {
+    Bounds places{from.x_m, from.x_m, from.z_m, from.z_m};
+    for (const Try& each : tries) {
+        const Configuration rest = each.plan.last();
+        places = {std::min(places.x_low_m, rest.x_m), std::max(places.x_high_m, rest.x_m),
+                  std::min(places.z_low_m, rest.z_m), std::max(places.z_high_m, rest.z_m)};
+    }
+    constexpr double swing_m = 0.3;
+    const Bounds& bounds = problem_.bounds;  // rests are within them, wherever the vehicle is
+    return {std::clamp(places.x_low_m, bounds.x_low_m, bounds.x_high_m) - swing_m,
+            std::clamp(places.x_high_m, bounds.x_low_m, bounds.x_high_m) + swing_m,
+            std::clamp(places.z_low_m, bounds.z_low_m, bounds.z_high_m) - swing_m,
+            std::clamp(places.z_high_m, bounds.z_low_m, bounds.z_high_m) + swing_m};
 }
 
 std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
@@ -99,9 +110,10 @@ std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     return tries;
 }
 
-/// Mostly the first way is safe. Where it is not, all are flown in the nominal world, and those that are safe there in
-/// the others, until one is safe in all of them.
-std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) const {
+/// Only ways to a clear place count, if there is one. Mostly the first is safe, for which a small map is enough. Where
+/// it is not, all are flown in the nominal world, and those that are safe there in the others, until one is safe in
+/// all.
+std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) {
     std::vector<FlightState> vehicles = fleet;
     if (vehicles.empty()) {
         const FlightState here = start_state(*model_, from);
@@ -114,11 +126,21 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
     if (tries.empty()) {
         return std::nullopt;
     }
+    const double margin_m = kept_margin_m(vehicles.front());
+    const auto is_clear = [&](const Try& each) {
+        const Configuration rest = each.plan.last();
+        return model_->collisions().clearance_m({rest.x_m, rest.z_m, 0, rest.arm_rad}) >= margin_m;
+    };
+    if (std::any_of(tries.begin(), tries.end(), is_clear)) {
+        std::erase_if(tries, [&](const Try& each) { return !is_clear(each); });
+    }
     const auto is_safe = [](const Try& each) { return each.failures == 0; };
     const std::span all(tries);
+    fly_around(places_on(all.first(1), from));
     fly(all.first(1), vehicles, 0, worlds_.size());
     std::size_t flown = 1;
     if (!is_safe(tries.front())) {
+        fly_around(places_on(all, from));
         fly(all.subspan(1), vehicles, 0, 1);
         std::stable_partition(tries.begin() + 1, tries.end(), is_safe);
         constexpr std::size_t together = 2;
@@ -134,10 +156,15 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
     return Stop{std::move(best->plan), best->failures};
 }
 
+/// That of the problem, if the vehicle has it.
+double Braking::kept_margin_m(const FlightState& vehicle) const {
+    const double here_m = model_->collisions().clearance_m(pose_of(vehicle));
+    return std::min(problem_.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
+}
+
 void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
-                  std::size_t last_world) const {
-    const double here_m = model_->collisions().clearance_m(pose_of(fleet.front()));
-    const double margin_m = std::min(problem_.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
+                  std::size_t last_world) {
+    const double margin_m = kept_margin_m(fleet.front());
     const std::int64_t settling = std::llround(goal_settling_s / model_->tick().tick_s);
     std::vector<FlightJob> jobs;
     for (const Try& each : tries) {
@@ -167,7 +194,8 @@ StopFinder::StopFinder(const Problem& problem, std::shared_ptr<const FlightModel
     : problem_(problem),
       model_(model),
       worlds_(std::move(worlds)),
-      braking_(problem, model, map, worlds_, threads),
+      braking_(
+          problem, model, [map](const Bounds&) { return map; }, worlds_, threads),
       flights_(problem, model, map, threads) {}
 
 SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {

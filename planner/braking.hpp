@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,11 +22,14 @@ inline constexpr double stop_hold_s = 4;
 /// limits of motion allow, and a hover there for stop_hold_s.
 class DOWNWASH_EXPORT Braking {
  public:
+    /// A map of the planner's own model around some places of the vehicle; nullptr: surfaces do not act.
+    using MapAround = std::function<std::shared_ptr<const AeroMap>(const Bounds& places)>;
+
     /// @param problem whose rules count: bounds, obstacles, margin and, with an uncertainty, its worlds
-    /// @param map of the planner's own model over the places of the stops; nullptr: surfaces do not act
+    /// @param map_around asked for the places of the ways to brake that are flown next
     /// @param worlds in which stops have to be safe beside the nominal one   @param threads at least 1
     /// @pre the problem outlives it
-    Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
+    Braking(const Problem& problem, std::shared_ptr<const FlightModel> model, MapAround map_around,
             std::vector<FlownWorld> worlds, int threads = 1);
 
     /// A stop, and in how many of the worlds, the nominal one included, it is not safe.
@@ -35,12 +39,9 @@ class DOWNWASH_EXPORT Braking {
     };
     /// The first of some ways to brake that is safe: it touches nothing in any world, and in the nominal one it comes
     /// to rest and keeps the margin, if the vehicle has it where it begins. Where none is, the one that fails in the
-    /// fewest worlds; nothing if all of them leave the bounds.
+    /// fewest worlds, of those that end at a clear place if there is one; nothing if all of them leave the bounds.
     /// @param fleet the vehicle in the nominal world and in each of the worlds; empty: it is the same in all of them
-    [[nodiscard]] std::optional<Stop> best_stop(const Start& from, const std::vector<FlightState>& fleet = {}) const;
-
-    /// The places around the way on which a vehicle may stop, for the map of stops.
-    [[nodiscard]] static Bounds reach(const Problem& problem, const Start& from);
+    [[nodiscard]] std::optional<Stop> best_stop(const Start& from, const std::vector<FlightState>& fleet = {});
 
  private:
     /// A way to brake that does not leave the bounds.
@@ -50,22 +51,28 @@ class DOWNWASH_EXPORT Braking {
         std::size_t failures = 0;  ///< in the worlds in which it was flown
     };
     [[nodiscard]] std::vector<Try> all_tries(const ReferencePoint& from) const;
+    [[nodiscard]] Bounds places_on(std::span<const Try> tries, const Start& from) const;
+    [[nodiscard]] double kept_margin_m(const FlightState& vehicle) const;
     /// Flies some of them side by side, in the worlds from the first to before the last.
     void fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
-             std::size_t last_world) const;
+             std::size_t last_world);
+    /// Later flights are with a map around these places.
+    void fly_around(const Bounds& places);
 
     const Problem& problem_;
     std::shared_ptr<const FlightModel> model_;
-    std::shared_ptr<const AeroMap> map_;
+    MapAround map_around_;
     std::vector<FlownWorld> worlds_;  ///< the nominal one first
-    std::unique_ptr<FlightPool> pool_;
+    int threads_;
+    std::shared_ptr<const AeroMap> map_;
+    std::unique_ptr<FlightPool> pool_;  ///< with the map; nothing before the first flight
 };
 
 /// Where vehicles can stop as they follow plans of a problem from its start, in every world from where they are in that
 /// world. Reference and way to brake are the same in all of them.
 class DOWNWASH_EXPORT StopFinder {
  public:
-    /// As for Braking.
+    /// As for Braking, with one map over all places.
     StopFinder(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                std::vector<FlownWorld> worlds, int threads = 1);
 

@@ -236,13 +236,15 @@ bool Planner::can_keep(const Plan& left, double& cost) const {
                        [](const WorldFlight& each) { return each.rejection == Rejection::none; });
 }
 
-/// A map of the places where the vehicle may stop: the one that is there, if nothing has changed over or under them.
-std::shared_ptr<const AeroMap> Planner::map_around(const Start& start) const {
-    const Bounds reach = planning::Braking::reach(problem_, start);
-    if (map_ && !map_->is_touched(unmapped_, rotor_extent(problem_.robot.rotors, reach))) {
+/// A map around some places of the vehicle: the one that is there, if nothing has changed over or under them.
+std::shared_ptr<const AeroMap> Planner::map_around(const Bounds& places) const {
+    if (!problem_.aero.enabled) {
+        return nullptr;
+    }
+    if (map_ && !map_->is_touched(unmapped_, rotor_extent(problem_.robot.rotors, places))) {
         return map_;
     }
-    return model_->make_map(reach, options_.threads);
+    return model_->make_map(places, options_.threads);
 }
 
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
@@ -264,9 +266,8 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
         left = Plan{{{0, reference}}, model_->tick().tick_s};
     }
 
-    const bool has_effects = problem_.aero.enabled;
-    const planning::Braking braking(problem_, model_, has_effects ? map_around(start) : nullptr, worlds(),
-                                    options_.threads);
+    planning::Braking braking(
+        problem_, model_, [this](const Bounds& places) { return map_around(places); }, worlds(), options_.threads);
     Answer first;
     first.plan = left;
     if (auto stop = braking.best_stop(start)) {
@@ -275,7 +276,7 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
     publish(call, std::move(first));
 
-    if (has_effects && (!map_ || !unmapped_.empty())) {
+    if (problem_.aero.enabled && (!map_ || !unmapped_.empty())) {
         map_ = map_ ? model_->remake_map(*map_, unmapped_, options_.threads)
                     : model_->make_map(problem_.bounds, options_.threads, {}, options_.map_cache);
         unmapped_.clear();

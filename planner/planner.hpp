@@ -108,7 +108,7 @@ class DOWNWASH_EXPORT Planner {
     void take_up(const SceneChange& change);
     void drop_visited_goals(std::int64_t tick);
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
-    [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Start& start) const;
+    [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Bounds& places) const;
     [[nodiscard]] bool can_keep(const Plan& left, double& cost) const;
     void search(Call& call, const Plan& left);
     void publish(Call& call, Answer answer);
