@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Flies dynobench's problems of the planar rotor and writes what came of it. bench/dynobench.sh calls it.
 
-Usage: bench/dynobench/measure.py ours FILE [--seeds N] [--limits S...] [--problems PROBLEM.yaml...]
+Usage: bench/dynobench/measure.py ours FILE [--seeds N] [--limits S...] [--jobs N] [--problems PROBLEM.yaml...]
        bench/dynobench/measure.py page OURS RANDOM OMPL >bench/results/dynobench.md
 The first adds a line of JSON for each search to FILE, the second makes the page of such files: the five problems, random
 scenes, and the lines of bench_dynobench_ompl.
@@ -9,12 +9,13 @@ scenes, and the lines of bench_dynobench_ompl.
 
 import argparse
 import json
+import os
 import pathlib
-import resource
 import statistics
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 import judge
 
@@ -56,9 +57,9 @@ def search(problem, seed, limit_s, stops_at_first=False):
         run = pathlib.Path(work) / "run"
         command = [ROOT / "build/downwash", "solve", problem, "--seed", str(seed), "--threads", "1", "--quiet"]
         command += ["--time-limit", str(limit_s), "--out", run] + (["--stop-at-first"] if stops_at_first else [])
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(command, capture_output=True, check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        planner = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        _, status, used = os.wait4(planner.pid, 0)
+        planner.returncode = os.waitstatus_to_exitcode(status)
         solution = json.loads((run / "solution.json").read_text(encoding="utf-8"))
         line = {
             "problem": pathlib.Path(problem).stem,
@@ -66,7 +67,7 @@ def search(problem, seed, limit_s, stops_at_first=False):
             "limit_s": None if stops_at_first else limit_s,
             "status": solution["status"],
             "first_s": solution["planning"]["first_solution_wall_s"],
-            "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+            "cpu_s": used.ru_utime + used.ru_stime,
             "cost_s": None,
             "refused": None,
         }
@@ -80,12 +81,13 @@ def search(problem, seed, limit_s, stops_at_first=False):
 
 def search_all(given):
     problems = given.problems or [HERE / f"{name}.yaml" for name in PROBLEMS]
-    with open(given.file, "a", encoding="utf-8") as file:
-        for seed in range(1, given.seeds + 1):
-            for problem in problems:
-                for limit_s in given.limits:
-                    print(json.dumps(search(problem, seed, limit_s)), file=file, flush=True)
-                print(json.dumps(search(problem, seed, max(given.limits), True)), file=file, flush=True)
+    searches = []
+    for seed in range(1, given.seeds + 1):
+        for problem in problems:
+            searches += [(problem, seed, limit_s) for limit_s in given.limits] + [(problem, seed, max(given.limits), True)]
+    with open(given.file, "a", encoding="utf-8") as file, ThreadPoolExecutor(given.jobs) as pool:
+        for line in pool.map(lambda each: search(*each), searches):
+            print(json.dumps(line), file=file, flush=True)
 
 
 def read_lines(path):
@@ -233,6 +235,7 @@ def main():
     ours.add_argument("--problems", nargs="+")
     ours.add_argument("--seeds", type=int, default=5)
     ours.add_argument("--limits", type=float, nargs="+", default=[1.0, 10.0, 60.0])
+    ours.add_argument("--jobs", type=int, default=2, help="searches at a time, of one thread each")
     ours.set_defaults(run=search_all)
     made = commands.add_parser("page")
     for name in ("ours", "random", "ompl"):
