@@ -110,9 +110,9 @@ std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     return tries;
 }
 
-/// Only ways to a clear place count, if there is one. Mostly the first is safe, for which a small map is enough. Where
-/// it is not, all are flown in the nominal world, and those that are safe there in the others, until one is safe in
-/// all.
+/// Only ways to a clear place count, if there is one. Mostly the first is safe, else one of the next two, for which a
+/// small map is enough. Where none of them is, the others are flown in the nominal world, and those that are safe there
+/// in the worlds, until one is safe in all.
 std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) {
     std::vector<FlightState> vehicles = fleet;
     if (vehicles.empty()) {
@@ -136,19 +136,25 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
     }
     const auto is_safe = [](const Try& each) { return each.failures == 0; };
     const std::span all(tries);
-    fly_around(places_on(all.first(1), from));
-    fly(all.first(1), vehicles, 0, worlds_.size());
-    std::size_t flown = 1;
-    if (!is_safe(tries.front())) {
-        fly_around(places_on(all, from));
-        fly(all.subspan(1), vehicles, 0, 1);
-        std::stable_partition(tries.begin() + 1, tries.end(), is_safe);
-        constexpr std::size_t together = 2;
-        while (flown < all.size() &&
-               std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(flown), is_safe)) {
-            const std::size_t count = std::min(together, all.size() - flown);
-            fly(all.subspan(flown, count), vehicles, 1, worlds_.size());
-            flown += count;
+    std::size_t flown = 0;
+    const auto has_safe = [&] { return std::ranges::any_of(all.first(flown), is_safe); };
+    const auto fly_next = [&](std::size_t count, std::size_t first_world) {
+        count = std::min(count, all.size() - flown);
+        fly(all.subspan(flown, count), vehicles, first_world, worlds_.size());
+        flown += count;
+    };
+    fly_around(places_on(all.first(std::min<std::size_t>(3, all.size())), from));
+    fly_next(1, 0);
+    if (!has_safe()) {
+        fly_next(2, 0);
+    }
+    if (!has_safe() && flown < all.size()) {
+        const std::span others = all.subspan(flown);
+        fly_around(places_on(others, from));
+        fly(others, vehicles, 0, 1);
+        std::stable_partition(others.begin(), others.end(), is_safe);
+        while (!has_safe() && flown < all.size()) {
+            fly_next(2, 1);
         }
     }
     const auto best = std::min_element(tries.begin(), tries.begin() + static_cast<std::ptrdiff_t>(flown),
