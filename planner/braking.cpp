@@ -110,9 +110,19 @@ std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     return tries;
 }
 
-/// Only ways to a clear place count, if there is one. Mostly the first is safe, else one of the next two, for which a
-/// small map is enough. Where none of them is, the others are flown in the nominal world, and those that are safe there
-/// in the worlds, until one is safe in all.
+/// Ways to places without the margin, unless all are.
+void Braking::leave_out_near_rests(std::vector<Try>& tries, double margin_m) const {
+    const auto is_near = [&](const Try& each) {
+        const Configuration rest = each.plan.last();
+        return model_->collisions().clearance_m({rest.x_m, rest.z_m, 0, rest.arm_rad}) < margin_m;
+    };
+    if (!std::ranges::all_of(tries, is_near)) {
+        std::erase_if(tries, is_near);
+    }
+}
+
+/// Mostly the first way is safe, else one of the next two, for which a small map is enough. Where none of them is, the
+/// others are flown in the nominal world, and those that are safe there in the worlds, until one is safe in all.
 std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) {
     std::vector<FlightState> vehicles = fleet;
     if (vehicles.empty()) {
@@ -126,14 +136,7 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
     if (tries.empty()) {
         return std::nullopt;
     }
-    const double margin_m = kept_margin_m(vehicles.front());
-    const auto is_clear = [&](const Try& each) {
-        const Configuration rest = each.plan.last();
-        return model_->collisions().clearance_m({rest.x_m, rest.z_m, 0, rest.arm_rad}) >= margin_m;
-    };
-    if (std::any_of(tries.begin(), tries.end(), is_clear)) {
-        std::erase_if(tries, [&](const Try& each) { return !is_clear(each); });
-    }
+    leave_out_near_rests(tries, kept_margin_m(vehicles.front()));
     const auto is_safe = [](const Try& each) { return each.failures == 0; };
     const std::span all(tries);
     std::size_t flown = 0;

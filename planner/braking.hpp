@@ -51,6 +51,7 @@ class DOWNWASH_EXPORT Braking {
         std::size_t failures = 0;  ///< in the worlds in which it was flown
     };
     [[nodiscard]] std::vector<Try> all_tries(const ReferencePoint& from) const;
+    void leave_out_near_rests(std::vector<Try>& tries, double margin_m) const;
     [[nodiscard]] Bounds places_on(std::span<const Try> tries, const Start& from) const;
     [[nodiscard]] double kept_margin_m(const FlightState& vehicle) const;
     /// Flies some of them side by side, in the worlds from the first to before the last.
