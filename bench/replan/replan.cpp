@@ -73,7 +73,7 @@ Change drawn_change(const Problem& problem, const Plan& plan, std::int64_t tick,
         return {"of a new box", {{box}, {}, {}}, {{}, {box.name}, {}}};
     }
     const auto movable = static_cast<int>(problem.obstacles.size()) - 1;  // the first is the ground
-    const Obstacle& old = problem.obstacles[static_cast<std::size_t>(1 + draw.below(movable))];
+    const Obstacle& old = problem.obstacles[1 + static_cast<std::size_t>(draw.below(movable))];
     if (kind == 2) {
         Obstacle moved = old;
         moved.center_world_m[0] += draw.uniform(-0.3, 0.3);
