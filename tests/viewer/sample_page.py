@@ -202,7 +202,9 @@ def unsolved_report():
     report["solution"]["planning"] = {
         **planning_json([], {"collision": 8123, "unstable": 17}), "nearest_approach_m": 0.431,
         "obstruction": {"cause": "collision", "x_m": 1.2, "z_m": 9.4, "arm_rad": -0.4, "goal_distance_m": 0.62}, "goal": 2}
-    report.update(flight=None, _columns=None)
+    report.update(flight=None, _columns=None, goal_order="in_turn")
+    report["goals"].insert(0, {"kind": "state", "x_m": -6, "z_m": 9.1, "arm_rad": 0.8,
+                               "tolerance_x_m": 0.1, "tolerance_z_m": 0.1, "is_disc": False})
     return report
 
 
