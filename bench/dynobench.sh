@@ -15,7 +15,8 @@ for problem in empty_0 empty_1 fall_through quad_bugtrap quad_obs_column; do
     for planner in rrt sst; do # two at a time, as ours
         build/bench/bench_dynobench_ompl "bench/dynobench/$problem.yaml" "$planner" >"$work/ompl.$problem.$planner.jsonl" &
     done
-    wait -n && wait -n # the failure of one is a failure
+    wait -n # the failure of either ends the script
+    wait -n
 done
 cat "$work"/ompl.*.jsonl >"$work/ompl.jsonl"
 bench/dynobench/measure.py page "$work/ours.jsonl" "$work/random.jsonl" "$work/ompl.jsonl" >bench/results/dynobench.md.new
