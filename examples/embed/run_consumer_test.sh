@@ -17,21 +17,23 @@ cmake --install "$build" --prefix "$prefix" >"$work/install.log" || {
 }
 
 echo "installed headers stand alone and show no library but the standard one"
-count=0
-while read -r header; do
-    echo "#include <${header#"$prefix/include/"}>" >"$work/header.cpp"
-    g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I "$prefix/include" -MD -MF "$work/header.d" "$work/header.cpp"
-    if grep -nE '/(eigen3|Eigen|ompl[^/]*|fcl|yaml-cpp|boost|nlohmann|spdlog|fmt|ceres|glog|gflags|octomap)/|/pugi(xml|config)\.hpp' "$work/header.d"; then
-        echo "$header brings the header above into programs that use it"
-        exit 1
-    fi
-    count=$((count + 1))
-done < <(find "$prefix/include" -name '*.hpp' ! -path '*/downwash/ompl/*' | LC_ALL=C sort)
-[[ $count -gt 0 ]] || {
+others='/(eigen3|Eigen|ompl[^/]*|fcl|yaml-cpp|boost|nlohmann|spdlog|fmt|ceres|glog|gflags|octomap)/|/pugi(xml|config)\.hpp'
+mapfile -t headers < <(cd "$prefix/include" && find . -name '*.hpp' ! -path './downwash/ompl/*' -printf '%P\n' | LC_ALL=C sort)
+[[ ${#headers[@]} -gt 0 ]] || {
     echo "no header was installed"
     exit 1
 }
-echo "    $count headers"
+# shellcheck disable=SC2016 # expanded by the inner shell
+printf '%s\0' "${headers[@]}" | include=$prefix/include others=$others xargs -0 -n 8 -P "$(nproc)" bash -c '
+    set -euo pipefail
+    for header in "$@"; do
+        read_by_it=$(g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I "$include" -MD -MF - -x c++ - <<<"#include <$header>")
+        if grep -nE "$others" <<<"$read_by_it"; then
+            echo "$header brings the header above into programs that use it"
+            exit 1
+        fi
+    done' check
+echo "    ${#headers[@]} headers"
 
 problem=$prefix/share/downwash/problems/bridge_inspection.yaml
 for flags in '' '-march=native'; do
