@@ -167,8 +167,10 @@ class Merge {
  public:
     Merge(const Shards& shards, const fs::path& file)
         : shards_(shards), database_(file, true), writer_(database_), origins_(shards.plan) {
-        // The file appears when it is whole, so that it need not be so before.
-        database_.execute("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF; PRAGMA cache_size = -64000");
+        // The file appears when it is whole, so that it need not be so before; all rows of a run follow it.
+        database_.execute(
+            "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF; PRAGMA cache_size = -64000; "
+            "PRAGMA foreign_keys = OFF");
     }
 
     void write() {
@@ -179,12 +181,12 @@ class Merge {
         for (std::uint32_t i = 0; i < shards_.all.size(); ++i) {
             read_runs(
                 shards_.all[i].folder, [](const CampaignPlan&) {},
-                [&](const Run& run) {
+                [&](Run&& run) {
                     if (const std::uint32_t other = origins_.add(run, i); other != Origins::none) {
                         duplicates.add(shards_.plan, run, shards_.all[other], shards_.all[i]);
                         return;
                     }
-                    writer_.add(run);
+                    writer_.add(std::move(run));
                     ++done_;
                 });
         }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -251,8 +253,8 @@ std::set<RunKey> remove_damaged_runs(const Database& database, const CampaignPla
     return whole;
 }
 
-void RunWriter::add(const Run& finished) {
-    const Run run = storable(finished);
+void RunWriter::add(Run finished) {
+    const Run run = storable(std::move(finished));
     database_.insert(
         "runs (experimentid, plannerid, seed, time, status, solved, approximate_solution, solution_difference, "
         "correct_solution, time_to_first_solution, best_cost, iterations, edges_simulated, states_checked, "
@@ -262,13 +264,16 @@ void RunWriter::add(const Run& finished) {
         number(run.status == RunStatus::approximate), run.nearest_approach_m, number(run.holds()), run.first_solution_s,
         run.cost, run.iterations, run.edges_simulated, run.states_checked, run.simulated_s, run.discarded);
     const std::uint64_t key = database_.last_key();
+    std::vector<std::tuple<std::uint64_t, double, std::uint64_t, double, std::optional<double>>> progress;
     for (const Improvement& improvement : run.improvements) {
-        database_.insert("progress", key, improvement.wall_s, improvement.iteration, improvement.cost,
-                         improvement.flown_cost);
+        progress.emplace_back(key, improvement.wall_s, improvement.iteration, improvement.cost, improvement.flown_cost);
     }
+    database_.insert_rows("progress", progress);
+    std::vector<std::tuple<std::uint64_t, std::string_view, std::uint64_t>> rejections;
     for (const auto& [cause, edges] : run.rejections) {
-        database_.insert("rejections", key, cause, edges);
+        rejections.emplace_back(key, cause, edges);
     }
+    database_.insert_rows("rejections", rejections);
     if (run.flight) {
         const FlightFigures& flight = *run.flight;
         database_.insert("flights", key, downwash::name_of(flight.outcome), flight.cost, flight.energy_j,

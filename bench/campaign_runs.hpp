@@ -40,7 +40,7 @@ class RunWriter {
     /// @param database outlives the writer and has tables of the present layout
     explicit RunWriter(const Database& database) : database_(database) {}
 
-    void add(const Run& finished);
+    void add(Run finished);
     /// Forgets what it knows of the file, after a transaction that was rolled back.
     void forget() { machines_.clear(); }
 

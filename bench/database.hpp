@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,6 +13,7 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -52,6 +55,32 @@ class Database {
         std::string marks;
         ((static_cast<void>(values), marks += marks.empty() ? "?" : ", ?"), ...);
         run("INSERT INTO " + into + " VALUES (" + marks + ")", values...);
+    }
+
+    /// Inserts rows, several by each statement.
+    template <class... Values>
+    void insert_rows(const std::string& into, const std::vector<std::tuple<Values...>>& rows) const {
+        constexpr std::size_t most = 16;
+        for (std::size_t begin = 0; begin < rows.size(); begin += most) {
+            const std::size_t end = std::min(begin + most, rows.size());
+            std::string marks = "(?";
+            for (std::size_t i = 1; i < sizeof...(Values); ++i) {
+                marks += ", ?";
+            }
+            marks += ")";
+            std::string sql = "INSERT INTO " + into + " VALUES " + marks;
+            for (std::size_t i = begin + 1; i < end; ++i) {
+                sql += ", " + marks;
+            }
+            const Prepared prepared(*this, sql);
+            int parameter = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                std::apply([&](const auto&... values) { (bind(prepared.statement(), ++parameter, values), ...); },
+                           rows[i]);
+            }
+            while (step(prepared.statement())) {
+            }
+        }
     }
 
     /// Calls take(column...) for every row of an answer. A value of another type than its column is converted, and is

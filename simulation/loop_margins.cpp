@@ -132,7 +132,7 @@ class FrequencyResponse {
 /// Margins from samples of L over rising frequencies, between which its logarithm is taken as linear.
 LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
     const FrequencyResponse response(loop);
-    constexpr int samples = 2000;
+    constexpr int samples = 500;
     constexpr double lowest_rad_s = 0.02;
     const double highest_rad_s = std::numbers::pi / tick_s;
     LoopMargins margins{infinity, infinity, 0, infinity};

@@ -107,7 +107,15 @@ class Campaign:
         return "".join(file.read_text(errors="replace") for file in sorted((self.folder / "logs").glob(pattern)))
 
     def wait_for_merge(self, job: str, limit_s: float):
-        self.cluster.wait_until(lambda: self.cluster.has_ended(job), f"job {job} ends\n{self.cluster.ask('squeue')}", limit_s)
+        def has_ended() -> bool:
+            self.cluster.release_held()
+            return self.cluster.has_ended(job)
+
+        self.cluster.wait_until(has_ended, f"job {job} ends", limit_s)
+
+    def shard_folders(self) -> list[pathlib.Path]:
+        """Of the shards that have results, as merge.sh finds them."""
+        return sorted(file.parent for file in (self.folder / "shards").glob("shard-*/campaign.db"))
 
     def check_equal(self, alone: pathlib.Path, folder: pathlib.Path | None = None):
         expected, found = rows_of(alone), rows_of((folder or self.folder) / "merged")
@@ -220,7 +228,7 @@ def long_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Pat
         campaign = Campaign(cluster, program, problems, seeds=1000, shards=16)
         campaign.write_scripts()
         campaign.change_script("scratch=${DOWNWASH_SCRATCH", f"DOWNWASH_SCRATCH={folder}/scratch.$SLURMD_NODENAME\nscratch=${{DOWNWASH_SCRATCH")
-        campaign.change_script("--wall-limit 30", "--wall-limit 6")
+        campaign.change_script("--wall-limit 30", "--wall-limit 2")
         clock = None
         if FAKE_TIME is not None:
             clock = folder / "clock"
@@ -238,7 +246,7 @@ def long_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Pat
             Faults(campaign, clock).happen()
             rounds = 1
             campaign.wait_for_merge(job, 400)
-            while campaign.run("merge", folder / "trial", "--force", *sorted((campaign.folder / "shards").iterdir()),
+            while campaign.run("merge", folder / "trial", "--force", *campaign.shard_folders(),
                                codes=(0, 1)).returncode == 1 and rounds < 5:
                 print(f"runs are missing after {time.monotonic() - begin:.0f} s: submitted again", flush=True)
                 rounds += 1

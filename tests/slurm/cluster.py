@@ -132,6 +132,20 @@ class Cluster:
         state = self.ask("scontrol", "-o", "show", "job", job).partition("JobState=")[2].split(" ")[0]
         return state in ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY")
 
+    def release_held(self):
+        """What an operator does where the controller died while it launched a task: after its restart it tries again, finds
+        the task running, and holds it and drains its node."""
+        for job in self.ask("squeue", "-h", "-r", "-t", "PD", "-o", "%i %r").splitlines():
+            name, reason = job.split(maxsplit=1)
+            if "Held" in reason or "held" in reason:
+                print(f"job {name} is held: released", flush=True)
+                self.run("scontrol", "release", name)
+        for node in self.ask("sinfo", "-h", "-N", "-o", "%N %T").splitlines():
+            name, state = node.split()
+            if state.startswith("drain"):
+                print(f"{name} is drained: resumed", flush=True)
+                self.run("scontrol", "update", f"nodename={name}", "state=resume")
+
     def wait_until(self, holds, what: str, limit_s: float = 30):
         end = time.monotonic() + limit_s
         while not holds():
@@ -140,4 +154,4 @@ class Cluster:
             time.sleep(0.1)
 
     def logs(self) -> str:
-        return "\n".join(f"== {file}\n{file.read_text(errors='replace')[-1500:]}" for file in sorted(self.folder.glob("*.log")))
+        return self.ask("squeue") + "\n" + self.ask("sinfo", "-N", "-l") + "\n" + "\n".join(f"== {file}\n{file.read_text(errors='replace')[-1500:]}" for file in sorted(self.folder.glob("*.log")))
