@@ -177,7 +177,6 @@ class Merge {
         Transaction all(database_);
         write_plan(database_, shards_.plan, std::nullopt);
         Duplicates duplicates;
-        std::vector<double> totals_s(shards_.plan.experiments.size());
         for (std::uint32_t i = 0; i < shards_.all.size(); ++i) {
             read_runs(
                 shards_.all[i].folder, [](const CampaignPlan&) {},
@@ -191,6 +190,7 @@ class Merge {
                 });
         }
         duplicates.require_none();
+        writer_.count();
         all.commit();
     }
 

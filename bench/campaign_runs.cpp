@@ -298,9 +298,22 @@ void RunWriter::add(Run finished) {
         database_.insert("run_machines", key, key_of(run.made_on->machine), run.made_on->load);
     }
     database_.insert("checksums", key, checksum_of(run));
-    database_.run("UPDATE campaign_checksum SET finished_runs = finished_runs + 1");
-    database_.run("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?", run.wall_s,
-                  std::uint64_t{run.experiment + 1});
+    ++added_;
+    added_s_[run.experiment] += run.wall_s;
+}
+
+void RunWriter::count() {
+    database_.run("UPDATE campaign_checksum SET finished_runs = finished_runs + ?", std::exchange(added_, 0));
+    for (const auto& [experiment, wall_s] : std::exchange(added_s_, {})) {
+        database_.run("UPDATE experiments SET totaltime = totaltime + ? WHERE id = ?", wall_s,
+                      std::uint64_t{experiment + 1});
+    }
+}
+
+void RunWriter::forget() {
+    machines_.clear();
+    added_ = 0;
+    added_s_.clear();
 }
 
 std::uint64_t RunWriter::key_of(const Machine& machine) {

@@ -41,14 +41,18 @@ class RunWriter {
     explicit RunWriter(const Database& database) : database_(database) {}
 
     void add(Run finished);
+    /// Adds what was added since the last call to the file's sums. Before the end of the transaction.
+    void count();
     /// Forgets what it knows of the file, after a transaction that was rolled back.
-    void forget() { machines_.clear(); }
+    void forget();
 
  private:
     [[nodiscard]] std::uint64_t key_of(const Machine& machine);
 
     const Database& database_;
     std::map<Machine, std::uint64_t> machines_;
+    std::uint64_t added_ = 0;                ///< since count()
+    std::map<std::size_t, double> added_s_;  ///< wall time of these, by experiment
 };
 
 }  // namespace downwash::bench

@@ -162,6 +162,7 @@ void CampaignStore::add(const Run& finished) {
     Transaction all(database_);
     try {
         writer_.add(finished);
+        writer_.count();
         all.commit();
     } catch (...) {
         writer_.forget();

@@ -117,6 +117,7 @@ int main(int argc, char** argv) {
                 }
             }
         }
+        writer.count();
         all.commit();
     }
     return 0;
