@@ -154,4 +154,5 @@ class Cluster:
             time.sleep(0.1)
 
     def logs(self) -> str:
-        return self.ask("squeue") + "\n" + self.ask("sinfo", "-N", "-l") + "\n" + "\n".join(f"== {file}\n{file.read_text(errors='replace')[-1500:]}" for file in sorted(self.folder.glob("*.log")))
+        ends = [f"== {file}\n{file.read_text(errors='replace')[-1500:]}" for file in sorted(self.folder.glob("*.log"))]
+        return "\n".join([self.ask("squeue"), self.ask("sinfo", "-N", "-l"), *ends])
