@@ -63,14 +63,13 @@ class Database {
         constexpr std::size_t most = 16;
         for (std::size_t begin = 0; begin < rows.size(); begin += most) {
             const std::size_t end = std::min(begin + most, rows.size());
-            std::string marks = "(?";
-            for (std::size_t i = 1; i < sizeof...(Values); ++i) {
-                marks += ", ?";
-            }
-            marks += ")";
-            std::string sql = "INSERT INTO " + into + " VALUES " + marks;
-            for (std::size_t i = begin + 1; i < end; ++i) {
-                sql += ", " + marks;
+            std::string sql = "INSERT INTO " + into + " VALUES ";
+            for (std::size_t i = begin; i < end; ++i) {
+                sql += i == begin ? "(?" : ", (?";
+                for (std::size_t value = 1; value < sizeof...(Values); ++value) {
+                    sql += ", ?";
+                }
+                sql += ")";
             }
             const Prepared prepared(*this, sql);
             int parameter = 0;
