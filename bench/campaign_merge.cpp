@@ -167,7 +167,8 @@ class Merge {
  public:
     Merge(const Shards& shards, const fs::path& file)
         : shards_(shards), database_(file, true), writer_(database_), origins_(shards.plan) {
-        // The file appears when it is whole, so that it need not be so before; all rows of a run follow it.
+        // The file appears when it is whole, so that it need not be so before. Foreign keys need no check: the writer
+        // adds the rows of a run after the run itself.
         database_.execute(
             "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF; PRAGMA cache_size = -64000; "
             "PRAGMA foreign_keys = OFF");

@@ -266,11 +266,10 @@ void report_flights(const Given& given, const Problem& problem, Planner& planner
         }
     }
     fmt::print(
-        "## Flights\n\nA box of 0.5 m appears on the way of a flight in a drawn world (tick {:g} s), and the best "
-        "answer "
-        "without a search is flown in that world.\n\n| | flights | answers | lost | of these announced |\n| --- | ---: "
-        "| "
-        "--- | ---: | ---: |\n",
+        "## Flights\n\nA box of 0.5 m appears on the way of a flight in a drawn world (tick {:g} s), and "
+        "the best answer without a search is flown in that world.\n\n"
+        "| | flights | answers | lost | of these announced |\n"
+        "| --- | ---: | --- | ---: | ---: |\n",
         tick_s);
     for (const bool has_room : {true, false}) {
         const Count& count = counts[has_room ? 0 : 1];
