@@ -24,29 +24,17 @@ SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
                                {hubs.high_m[0] + r, hubs.high_m[1] + r, infinity}};
     double below_m = infinity;
     double above_m = infinity;
-    const auto add = [&](const Scene::Bounds& part) {
-        for (const std::size_t axis : {0U, 1U}) {
-            if (part.high_m[axis] < column.low_m[axis] || part.low_m[axis] > column.high_m[axis]) {
-                return;
-            }
+    std::array<std::byte, 4096> room;
+    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
+    std::pmr::vector<std::size_t> parts(&memory);
+    scene.add_parts_meeting(column, parts);
+    for (const std::size_t part : parts) {
+        const Scene::Bounds bounds = scene.part_bounds(part);
+        if (bounds.low_m[2] <= hubs.high_m[2]) {
+            below_m = std::min(below_m, std::max(0.0, hubs.low_m[2] - bounds.high_m[2]));
         }
-        if (part.low_m[2] <= hubs.high_m[2]) {
-            below_m = std::min(below_m, std::max(0.0, hubs.low_m[2] - part.high_m[2]));
-        }
-        if (part.high_m[2] >= hubs.low_m[2]) {
-            above_m = std::min(above_m, std::max(0.0, part.low_m[2] - hubs.high_m[2]));
-        }
-    };
-    for (std::size_t i = 0; i < scene.primitive_count(); ++i) {
-        add(scene.part_bounds(i));
-    }
-    if (scene.part_count() > scene.primitive_count()) {
-        std::array<std::byte, 4096> room;
-        std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-        std::pmr::vector<std::size_t> parts(&memory);
-        scene.add_parts_meeting(column, parts);
-        for (const std::size_t part : parts) {
-            add(scene.part_bounds(part));
+        if (bounds.high_m[2] >= hubs.low_m[2]) {
+            above_m = std::min(above_m, std::max(0.0, bounds.low_m[2] - hubs.high_m[2]));
         }
     }
     const double unit_m = effect.rotor_radius_m();

@@ -287,9 +287,9 @@ double average_by_areas(const DiscQuery& query, double background_m, const std::
     return background + excess / (pi * query.radius_m * query.radius_m);
 }
 
-/// Triangles and boxes of octrees over or under the disc, in the scene's order, however they were found; none that is
-/// seen from its edge only.
-void add_others(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
+/// The parts that may lie over or under the disc, in the scene's order, however they were found: primitives first. Of
+/// triangles, none that is seen from its edge only.
+void add_parts(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
     const auto& [x, y, z] = query.hub_m;
     const double r = query.radius_m;
     const bool is_below = query.side == Side::below;
@@ -305,9 +305,6 @@ double disc_average(const DiscQuery& query, const Footprints& footprints) {
     // Room for about 20 parts over one disc; more of them make the pool fetch memory.
     std::array<std::byte, 6144> room;
     std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-    std::pmr::vector<std::size_t> others(&memory);
-    add_others(query, others);
-
     std::list<Footprint> spare;
     std::pmr::vector<FacingPart> candidates(&memory);
     candidates.reserve(16);
@@ -324,7 +321,15 @@ double disc_average(const DiscQuery& query, const Footprints& footprints) {
         }
     };
     const std::span<const Footprint> primitives = footprints.of_primitives();
-    std::for_each(primitives.begin(), primitives.end(), add_over_disc);
+    std::pmr::vector<std::size_t> others(&memory);
+    if (footprints.are_few_primitives()) {
+        std::for_each(primitives.begin(), primitives.end(), add_over_disc);
+    } else {
+        add_parts(query, others);
+        const auto first_other = std::lower_bound(others.begin(), others.end(), primitives.size());
+        std::for_each(others.begin(), first_other, [&](std::size_t part) { add_over_disc(primitives[part]); });
+        others.erase(others.begin(), first_other);
+    }
     const bool are_few = candidates.size() + others.size() <= max_with_crossings;
     if (are_few) {
         for (const std::size_t part : others) {

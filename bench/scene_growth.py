@@ -20,7 +20,7 @@ import tempfile
 import time
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
-OBSTACLES = [10, 100, 1_000, 10_000, 100_000]
+OBSTACLES = [10, 100, 1_000, 10_000, 25_000, 100_000]
 TRIANGLES = [1_000, 10_000, 100_000, 1_000_000]
 SEARCH_S = 10
 

@@ -249,7 +249,7 @@ std::size_t Scene::primitive_count() const noexcept {
 void Scene::add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const {
     const Parts& all = solids_->parts;
     const auto gap = [&](const Bounds& other) { return gap_m(box, other); };
-    all.any_other(gap, 0, [&](std::size_t part) {
+    all.any(gap, 0, [&](std::size_t part) {
         if (gap(all.bounds(part)) <= 0) {
             parts.push_back(part);
         }

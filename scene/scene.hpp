@@ -58,7 +58,7 @@ class DOWNWASH_EXPORT Scene {
     /// How many parts are primitives.
     [[nodiscard]] std::size_t primitive_count() const noexcept;
 
-    /// Appends the parts other than primitives whose bounding boxes meet a box.
+    /// Appends the parts whose bounding boxes meet a box, in no order.
     void add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const;
 
     /// Whether a part is a triangle, which has no inside.

@@ -193,6 +193,29 @@ TEST_CASE("A map is the same to the bit for any number of threads") {
     }
 }
 
+TEST_CASE("Obstacles beside the plane of motion change no value of a map, however many they are") {
+    test::Random random(30);
+    const std::vector<Obstacle> near = random_obstacles(random, 6);
+    std::vector<Obstacle> all = near;
+    for (int i = 0; i < 300; ++i) {
+        all.push_back(
+            test::any_obstacle(random, {random.uniform(-9, 9), 5 + random.uniform(0, 9), random.uniform(-2, 2)}));
+    }
+    const Bounds extent{-2, 2, -1.5, 1.5};
+    const AeroMap alone(test::layers(effect_in(near, 0.2), {0}), {}, extent, 2);
+    const AeroMap among(test::layers(effect_in(all, 0.2), {0}), {}, extent, 2);
+    int felt = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double x = random.uniform(extent.x_low_m, extent.x_high_m);
+        const double z = random.uniform(extent.z_low_m, extent.z_high_m);
+        CAPTURE(x, z);
+        REQUIRE(among.factor(0, x, z) == alone.factor(0, x, z));
+        REQUIRE(among.is_flyable(0, x, z) == alone.is_flyable(0, x, z));
+        felt += alone.factor(0, x, z) > 1.01;
+    }
+    CHECK(felt > 1000);
+}
+
 TEST_CASE("Over level ground a map that is wider keeps no more values") {
     const auto effect = effect_in({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}}, 0.2);
     const auto bytes = [&effect](double to_x_m) {

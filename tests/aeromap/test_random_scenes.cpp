@@ -340,3 +340,31 @@ TEST_CASE("Mirroring any scene and the rotor together changes nothing") {
     }
     CHECK(felt > 30);
 }
+
+TEST_CASE("Obstacles that are not over or under the disc change nothing, however many they are") {
+    test::Random random(29);
+    std::vector<Obstacle> all;
+    for (int i = 0; i < 400; ++i) {
+        all.push_back(obstacle_of(random.integer(0, 5), random, test::any_point(random, {5, 5, 1.5})));
+    }
+    const DirectEffect effect = effect_of(all);
+    int felt = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Vector3 hub_m = test::any_point(random, {5, 5, 1.5});
+        std::vector<Obstacle> near;
+        for (const Obstacle& obstacle : all) {
+            const Scene::Bounds bounds = bounds_of(obstacle);
+            if (bounds.low_m[0] < hub_m[0] + radius && bounds.high_m[0] > hub_m[0] - radius &&
+                bounds.low_m[1] < hub_m[1] + radius && bounds.high_m[1] > hub_m[1] - radius) {
+                near.push_back(obstacle);
+            }
+        }
+        const DirectEffect::Factors found = effect.factors(hub_m);
+        const DirectEffect::Factors alone = effect_of(near).factors(hub_m);
+        felt += alone.total > 1.01;
+        CAPTURE(hub_m, near.size());
+        REQUIRE(found.ground == alone.ground);
+        REQUIRE(found.ceiling == alone.ceiling);
+    }
+    CHECK(felt > 100);
+}
