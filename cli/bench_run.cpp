@@ -112,7 +112,7 @@ void add_bench_run(CLI::App& bench, Action& action) {
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
     command.add_flag("--resume", given.resumes,
                      "continue with the results that are there, if they were begun with the same settings");
-    add_jobs(command, given.jobs, "that of the campaign, or one per processor");
+    add_jobs(command, given.jobs, "that of the campaign, or one per processor, in a shard one");
     add_value(command, "--shard I/N", given.shard,
               "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
     add_pilot(command, given.pilot, "with --shard, and the same for all shards");

@@ -120,7 +120,7 @@ void add_limits(Rows& rows) {
                        .at_least(0)
                        .at_most(1e6));
     rows.push_back(parameters::integer<Campaign>(
-                       "jobs", "searches that run at a time, one thread each; null: one per processor",
+                       "jobs", "searches that run at a time, one thread each; null: one per processor, in a shard one",
                        [](auto& c) -> auto& { return c.jobs; })
                        .at_least(1)
                        .at_most(256));

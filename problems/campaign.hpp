@@ -62,7 +62,7 @@ struct Campaign {
     bool as_believed = false;  ///< plan as if nothing were uncertain
     /// Worlds of the problem's uncertainty in which every reported plan is flown, the same for all plans of a problem.
     std::uint64_t evaluation_worlds = 0;
-    std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor
+    std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor, in a shard one
     std::vector<CampaignExpectation> expect;
 };
 
