@@ -7,7 +7,7 @@
 namespace downwash {
 namespace {
 
-constexpr AlgorithmParameter goal_bias{"goal_bias", 0.05, 0, 1, "share of the samples that lie in the goal region; 0.05 unless given for mp-arm"};
+constexpr AlgorithmParameter goal_bias{"goal_bias", 0.05, 0, 1, "share of the samples that lie in the goal region"};
 constexpr AlgorithmParameter rewire_factor{"rewire_factor", 1.1, 1, 100,
                                            "neighbours, as a multiple of what the theory requires"};
 

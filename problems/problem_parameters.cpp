@@ -248,7 +248,9 @@ void add_objective(Rows& rows) {
 
 /// A row for each name; what it means depends on the algorithm, and so does its default.
 void add_algorithm_parameters(Rows& rows) {
-    rows.push_back(group("planner.parameters", "parameters of the algorithm, see `downwash planners`"));
+    rows.push_back(
+        group("planner.parameters",
+              "parameters of the algorithm; `downwash planners` shows each algorithm's with their defaults"));
     for (const auto& [known, algorithms] : known_parameters()) {
         const AlgorithmParameter& parameter = *known;
         const std::string_view name = parameter.name;
