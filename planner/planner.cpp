@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/braking.hpp"
 #include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/planner/worlds.hpp"
+#include "downwash/search/search_space.hpp"
 
 namespace downwash {
 namespace {
@@ -35,6 +37,20 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
         }
     }
     return places;
+}
+
+/// The same limits as in PlannerSettings. No time at all is one, too: then there is only the stop.
+void throw_if_unlimited(const ReplanOptions& options) {
+    constexpr double most_s = 1e6;
+    constexpr std::uint64_t most_iterations = 1'000'000'000'000'000;
+    if (options.time_limit_s && !(*options.time_limit_s <= most_s)) {
+        throw_input_error("is " + std::to_string(*options.time_limit_s) + ": expected at most 1000000 s",
+                          "time_limit_s");
+    }
+    if (options.max_iterations && *options.max_iterations > most_iterations) {
+        throw_input_error("is " + std::to_string(*options.max_iterations) + ": expected at most 10^15",
+                          "max_iterations");
+    }
 }
 
 bool is_finite(const Start& start) {
@@ -115,6 +131,7 @@ const Solution& Planner::solve(std::stop_token stop) {
     remember(solution_);
     if (solution_.status == Status::solved) {
         problem_ = in_order(problem_, solution_.order);
+        problem_.energy_budget_j.reset();  // how much of it a vehicle has left, it knows itself
     }
     return solution_;
 }
@@ -168,16 +185,18 @@ void Planner::take_up(const SceneChange& change) {
         return true;
     };
     for (const std::string& name : change.removed) {
-        if (!take_away(name)) {
+        if (name.empty() || !take_away(name)) {
             throw_input_error("has no obstacle '" + name + "' to remove: expected the name of one that is there",
                               "environment.obstacles");
         }
     }
     for (const Obstacle& obstacle : change.put) {
-        static_cast<void>(take_away(obstacle.name));
-        next.obstacles.push_back(obstacle);
+        if (!obstacle.name.empty()) {
+            static_cast<void>(take_away(obstacle.name));
+        }
         box_of(obstacle);
     }
+    next.obstacles.insert(next.obstacles.end(), change.put.begin(), change.put.end());
     if (change.goal) {
         next.stops.clear();
         next.targets.clear();
@@ -211,15 +230,16 @@ void Planner::drop_visited_goals(std::int64_t tick) {
                          problem_.stops.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.stops)));
 }
 
-/// Those of a search, which are chosen so that dangers come early; none where everything is as believed.
-std::vector<FlownWorld> Planner::worlds() const {
-    if (!problem_.uncertainty || problem_.planner.variant != Variant::mp_arm_ada) {
-        return {};
-    }
-    return planning::search_worlds(problem_);
+bool Planner::plans_in_worlds() const {
+    return problem_.uncertainty && problem_.planner.variant == Variant::mp_arm_ada;
 }
 
-bool Planner::can_keep(const Plan& left, double& cost) const {
+/// Those of a search, which are chosen so that dangers come early; none where everything is as believed.
+std::vector<FlownWorld> Planner::worlds() const {
+    return plans_in_worlds() ? planning::search_worlds(problem_) : std::vector<FlownWorld>{};
+}
+
+bool Planner::can_keep(const Plan& left, const StopCondition& is_over, double& cost) const {
     const Execution flight = execute(*model_, start_state(*model_, problem_.start), left.reference, goals_of(problem_),
                                      problem_.aero.enabled);
     cost = cost_of(flight, problem_.planner.objective);
@@ -231,7 +251,7 @@ bool Planner::can_keep(const Plan& left, double& cost) const {
         return true;
     }
     WorldFlights flights(problem_, model_, map_, options_.threads);
-    const std::vector<WorldFlight> flown = flights.fly(left, goals_of(problem_).size(), in);
+    const std::vector<WorldFlight> flown = flights.fly(left, goals_of(problem_).size(), in, is_over);
     return std::all_of(flown.begin(), flown.end(),
                        [](const WorldFlight& each) { return each.rejection == Rejection::none; });
 }
@@ -249,16 +269,21 @@ std::shared_ptr<const AeroMap> Planner::map_around(const Bounds& places) const {
 
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
     Call call{options, {}, {}};
+    throw_if_unlimited(options);
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
     if (!is_finite(start)) {
         throw_input_error("has a number that is not finite: expected finite ones", "start");
     }
     take_up(change);
+    {
+        const std::scoped_lock lock(mutex_);
+        latest_.reset();
+    }
     if (!change.goal) {
         drop_visited_goals(tick);
     }
     problem_.start = start;
-    const ReferencePoint reference = start.reference ? *start.reference : at_rest(start.configuration());
+    const ReferencePoint reference = planning::reference_at(start);
     Plan left;
     if (plan_ && !change.goal) {
         left = rest_of_plan(*plan_, tick, reference);
@@ -276,16 +301,10 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
     publish(call, std::move(first));
 
-    if (problem_.aero.enabled && (!map_ || !unmapped_.empty())) {
-        map_ = map_ ? model_->remake_map(*map_, unmapped_, options_.threads)
-                    : model_->make_map(problem_.bounds, options_.threads, {}, options_.map_cache);
-        unmapped_.clear();
+    try {
+        find_better(call, left, plan_ && !change.goal);
+    } catch (const WorkStopped&) {  // there is what was found before
     }
-    double cost = 0;
-    if (plan_ && !change.goal && can_keep(left, cost)) {
-        publish(call, {Advice::keep, left, cost, 0, {}});
-    }
-    search(call, left);
     if (call.best.advice == Advice::keep || call.best.advice == Advice::follow) {
         plan_ = call.best.plan;
     } else {
@@ -294,8 +313,26 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     return call.best;
 }
 
+/// @param has_plan whether what is left leads to the goal
+/// @throws WorkStopped when a stop is requested before the search
+void Planner::find_better(Call& call, const Plan& left, bool has_plan) {
+    const StopCondition is_over = [&call] { return call.options.stop.stop_requested(); };
+    throw_if_over(is_over);
+    if (problem_.aero.enabled && (!map_ || !unmapped_.empty())) {
+        map_ = map_ ? model_->remake_map(*map_, unmapped_, options_.threads, is_over)
+                    : model_->make_map(problem_.bounds, options_.threads, {}, options_.map_cache, is_over);
+        unmapped_.clear();
+    }
+    double cost = 0;
+    if (has_plan && can_keep(left, is_over, cost)) {
+        publish(call, {Advice::keep, left, cost, 0, {}});
+    }
+    search(call, left);
+}
+
 void Planner::search(Call& call, const Plan& left) {
     Problem next = problem_;
+    next.planner.seed += ++searches_;  // certificates are flown in worlds that no earlier search has seen
     next.planner.time_limit_s = call.options.time_limit_s;
     next.planner.max_iterations = call.options.max_iterations;
     if (call.options.time_limit_s) {
@@ -314,8 +351,9 @@ void Planner::search(Call& call, const Plan& left) {
     options.known_plan = left;
     options.known_places = places_;
     Solution found = downwash::solve(PlannableProblem{next, model_}, options);
-    const bool is_better =
-        found.status == Status::solved && (call.best.advice != Advice::keep || found.execution_cost < call.best.cost);
+    // In worlds the plan that is found has a certificate, and what is kept has flown in the worlds of a search only.
+    const bool is_better = found.status == Status::solved && (call.best.advice != Advice::keep || plans_in_worlds() ||
+                                                              found.execution_cost < call.best.cost);
     remember(found);
     if (is_better) {
         Answer answer{Advice::follow, *found.plan, found.execution_cost, 0, {}};

@@ -20,7 +20,7 @@ namespace downwash {
 
 /// What of a problem is another since the last plan.
 struct SceneChange {
-    std::vector<Obstacle> put;         ///< new ones, and those that take the place of the obstacle of their name
+    std::vector<Obstacle> put;         ///< new ones; one with a name takes the place of the obstacle of that name
     std::vector<std::string> removed;  ///< names of obstacles that are gone
     std::optional<Goal> goal;          ///< instead of all goals that were not visited yet
 };
@@ -40,7 +40,9 @@ enum class Advice : std::uint8_t {
 /// An answer to where to fly from a moment on.
 struct Answer {
     Advice advice = Advice::none;
-    Plan plan;        ///< from the start on, its first knot at tick 0; of `none` what is left of the last plan
+    /// From the start on, its first knot at tick 0. Of `none` it is what is left of the last plan where every way to
+    /// brake leaves the bounds.
+    Plan plan;
     double cost = 0;  ///< of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
     double after_wall_s = 0;           ///< since replan() was called
     std::optional<Solution> solution;  ///< of the search; `follow` only
@@ -48,11 +50,12 @@ struct Answer {
 
 /// How to replan. Its functions must not throw.
 struct ReplanOptions {
-    /// Wall time of all [s], and iterations of the search. As in PlannerSettings: with iterations alone the result does
-    /// not depend on how fast the machine is.
+    /// Wall time of all [s], at most 10^6, and iterations of the search, at most 10^15. As in PlannerSettings: with
+    /// iterations alone the result does not depend on how fast the machine is. An aero map that has to be made before
+    /// the search is finished whatever the time.
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;
-    std::stop_token stop;  ///< ends the search early
+    std::stop_token stop;  ///< ends the call early, once it is known how to stop
     /// Called by replan()'s thread with each answer that is better than the one before: first what is safe at once.
     std::function<void(const Answer&)> on_answer;
 };
@@ -71,21 +74,24 @@ class DOWNWASH_EXPORT Planner {
     Planner(const Planner&) = delete;
     Planner& operator=(const Planner&) = delete;
 
-    /// Plans from the problem's start, and keeps the plan. Targets in any order then have the order of the plan.
+    /// Plans from the problem's start, and keeps the plan. Targets in any order then have the order of the plan, and
+    /// an energy budget is dropped: replan() does not know what the vehicle has left of it.
     const Solution& solve(std::stop_token stop = {});
 
     /// Takes up changes and says what to do from a start on. A stop is looked for first, then whether what is left of
-    /// the last plan still holds, then a better plan is searched for. The plan of the last answer, if it leads to the
-    /// goal, is kept as the last plan.
+    /// the last plan still holds, then a better plan is searched for. With an uncertainty, a plan that is found has a
+    /// certificate and replaces what is left of the last plan, which has flown in the worlds of the search only, even
+    /// if it costs more. The plan of the last answer, if it leads to the goal, is kept as the last plan.
     /// @param start the whole vehicle at the moment from which the answer counts; see start_of() and state_at()
     /// @param tick of the last plan at that moment
-    /// @throws InputError, with nothing changed, when the problem with the changes has errors apart from its start
+    /// @throws InputError, with nothing changed, when the problem with the changes has errors apart from its start, or
+    /// a limit is out of range
     Answer replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options = {});
 
     /// Takes a plan for the last one, from the problem's start to its goals, as one that was made before.
     void adopt(const Plan& plan) { plan_ = plan; }
 
-    /// The best answer so far to the last call of replan(); empty before the first.
+    /// The best answer so far to the last call of replan(); empty before its first answer.
     [[nodiscard]] std::optional<Answer> latest() const;
 
     /// The vehicle as it will be some ticks later, by the planner's own model without noise.
@@ -107,9 +113,11 @@ class DOWNWASH_EXPORT Planner {
 
     void take_up(const SceneChange& change);
     void drop_visited_goals(std::int64_t tick);
+    [[nodiscard]] bool plans_in_worlds() const;
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
     [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Bounds& places) const;
-    [[nodiscard]] bool can_keep(const Plan& left, double& cost) const;
+    [[nodiscard]] bool can_keep(const Plan& left, const StopCondition& is_over, double& cost) const;
+    void find_better(Call& call, const Plan& left, bool has_plan);
     void search(Call& call, const Plan& left);
     void publish(Call& call, Answer answer);
     void remember(const Solution& solution);
@@ -121,6 +129,7 @@ class DOWNWASH_EXPORT Planner {
     std::vector<Scene::Bounds> unmapped_;  ///< changes that the map does not know yet
     std::optional<Plan> plan_;
     std::vector<Configuration> places_;  ///< that carried the tree of the last search
+    std::uint32_t searches_ = 0;         ///< of replan() so far
     Solution solution_;
     mutable std::mutex mutex_;  ///< of latest_
     std::optional<Answer> latest_;

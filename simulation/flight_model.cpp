@@ -52,8 +52,8 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
 }
 
 std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<Scene::Bounds>& changed,
-                                                       int threads) const {
-    return std::make_shared<const AeroMap>(before.rebuilt(layers_, changed, threads));
+                                                       int threads, const StopCondition& is_over) const {
+    return std::make_shared<const AeroMap>(before.rebuilt(layers_, changed, threads, is_over));
 }
 
 bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
