@@ -132,6 +132,9 @@ namespace {
 
 std::string certificate_rows(const Certificate& certificate, const std::filesystem::path& folder) {
     const auto& probability = certificate.failure_probability;
+    if (certificate.worlds == 0) {
+        return row("certificate", "not given: the search ended before its first flights");
+    }
     std::string text =
         row("certificate",
             fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",

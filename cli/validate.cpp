@@ -84,7 +84,7 @@ ExitCode run(const ValidateArguments& given) {
     const Claims claims = read_claims(plan_file(given.plan), problem);
     require_whole_plan(given.plan);
     const SourceFile source{plan_file(given.plan), read_whole_file(plan_file(given.plan), max_solution_bytes)};
-    const std::uint64_t seed = given.seed.value_or(problem.planner.seed);
+    const std::uint64_t seed = given.seed.value_or(claims.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
     const Problem flown = in_order(problem, claims.order);
@@ -116,6 +116,10 @@ ExitCode run(const ValidateArguments& given) {
                                   interruption.token(), [&](double share) { display.show("worlds", share); }});
         if (!validation.worlds) {
             display.say("interrupted before all worlds were flown: there are no statistics");
+        } else if (const auto& fails = validation.worlds->failure_probability;
+                   claims.certified_share && fails.low > *claims.certified_share) {
+            validation.disagreements.push_back(
+                {"certificate: failure probability at most", *claims.certified_share, fails.estimate});
         }
     }
     if (folder) {
@@ -146,8 +150,7 @@ void add_validate(CLI::App& program, Action& action) {
     add_value(command, "--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
     add_value(command, "--world I", given.world,
               "world I of the problem's uncertainty to fly in; default: the undisturbed one");
-    add_value(command, "--seed N", given.seed,
-              "seed of the random numbers; of the worlds, default: that of the problem");
+    add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
     add_out(command, "DIR", given.out,
             "folder for validation.json, what --json prints, and the page validation.html; default: no files");
     add_threads(command, given.threads);

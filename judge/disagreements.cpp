@@ -131,7 +131,9 @@ std::vector<Disagreement> disagreements_in_plan(const Claims& claims, const Prob
         list.compare("plan.waypoints[" + std::to_string(i) + "]", claims.waypoints[i],
                      configuration_of(knots[i].point));
     }
-    list.compare("plan.reference[0]", claims.plan.first(), problem.start.configuration());
+    const Start& start = problem.start;
+    list.compare("plan.reference[0]", claims.plan.first(),
+                 start.reference ? configuration_of(*start.reference) : start.configuration());
     check_limits(claims.plan, problem.motion, list);
     check_goals(claims.plan, problem, list);
     return std::move(list.found);

@@ -28,7 +28,8 @@ struct Certificate {
     bool is_given = false;  ///< the failure probability is at most max_failure_probability, with this confidence
     std::uint64_t worlds = 0;
     std::uint64_t failures = 0;
-    /// Of all worlds, with the confidence below.
+    /// Of all worlds, with the confidence below, by these flights alone: only is_given counts that the test has stages
+    /// and that several plans asked.
     FailureInterval failure_probability;
     double max_failure_probability = 0;
     double confidence = 0;

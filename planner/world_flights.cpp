@@ -197,6 +197,9 @@ void WorldFlights::touch(const std::vector<FlightJob>& jobs, const Plan& held, c
         FlightState state = jobs[i].end();
         flight.rejection =
             fly_touch(*model_, map_.get(), *touch, last.point, state, {jobs[i].world, last.tick}).rejection;
+        if (flight.rejection == Rejection::collision) {
+            flight.min_clearance_m = 0;
+        }
         if (flight.rejection == Rejection::none && !meets_goal(goals_.back(), plant, state)) {
             flight.rejection = Rejection::goal_missed;
         }

@@ -130,8 +130,9 @@ class CorePlanner {
         const Call call(*this);
         return interruptible(stop, [&](Attendance& attendance) {
             tell_ = telling(attendance, on_progress);
+            const std::shared_ptr<const CoreProblem> of = problem_now();  // which loses its targets to their order
             Solution solution = planner_.solve(attendance.token());
-            return CoreSolution{problem_now(), std::move(solution)};
+            return CoreSolution{of, std::move(solution)};
         });
     }
 
@@ -147,6 +148,10 @@ class CorePlanner {
         }
         if (max_iterations && *max_iterations == 0) {
             throw_input_error("is 0: expected at least 1", "max_iterations");
+        }
+        {
+            const std::scoped_lock lock(mutex_);
+            latest_.reset();
         }
         return interruptible(stop, [&](Attendance& attendance) {
             ReplanOptions options{time_limit_s, max_iterations, attendance.token(), {}};

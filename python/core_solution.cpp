@@ -3,7 +3,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "downwash/base/files.hpp"
@@ -65,6 +67,11 @@ CoreSolution read(const std::string& file, const std::shared_ptr<CoreProblem>& p
 
 }  // namespace
 
+/// Files hold all digits, those of angles in degrees.
+bool is_near(double a, double b) {
+    return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
 Problem as_visited(const Problem& problem, const Solution& solution) {
     const auto fits = [&problem](const Visit& visit) {
         return visit.target < problem.targets.size() &&
@@ -72,6 +79,21 @@ Problem as_visited(const Problem& problem, const Solution& solution) {
     };
     if (!problem.targets.empty() && solution.order && !std::ranges::all_of(solution.order->visits, fits)) {
         throw_input_error("is a plan of other targets than the problem has", "the solution");
+    }
+    if (solution.plan) {
+        const double tick_s = 1 / problem.robot.controller.rate_hz;
+        if (!is_near(solution.plan->tick_s, tick_s)) {
+            throw_input_error("is a plan on control ticks of " + std::to_string(solution.plan->tick_s) +
+                                  " s, but the problem's robot has ticks of " + std::to_string(tick_s) + " s",
+                              "the solution");
+        }
+        const Start& start = problem.start;
+        const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
+        const Configuration first = solution.plan->first();
+        if (!is_near(begin.x_m, first.x_m) || !is_near(begin.z_m, first.z_m) ||
+            !is_near(begin.arm_rad, first.arm_rad)) {
+            throw_input_error("is a plan that begins elsewhere than the problem", "the solution");
+        }
     }
     return in_order(problem, solution.order);
 }

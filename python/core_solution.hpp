@@ -20,7 +20,7 @@ struct CoreSolution {
 [[nodiscard]] std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress);
 
 /// A problem with its goals in the order in which a plan visits them.
-/// @throws InputError if the plan is of other targets
+/// @throws InputError if the plan is of another problem: of other targets, from another start or on other control ticks
 [[nodiscard]] Problem as_visited(const Problem& problem, const Solution& solution);
 
 }  // namespace downwash::python

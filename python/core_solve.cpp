@@ -38,6 +38,11 @@ CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int thre
         options.finds_stops = true;
         options.map = map != nullptr ? map->map : nullptr;
         options.map_cache = cache;
+        const Problem& asked = problem->problem();
+        const bool needs_map = asked.planner.variant == Variant::mp_arm_ada && asked.aero.enabled;
+        if (needs_map && options.map != nullptr && !problem->model()->is_mine(*options.map, asked.bounds)) {
+            throw_input_error("is of another scene, robot, model or bounds: expected a map of the same problem", "map");
+        }
         return solve(problem->placed.plannable, options);
     });
     return {problem, std::move(solution)};
@@ -65,7 +70,7 @@ CoreSolution executed(const CoreSolution& of, const std::shared_ptr<CoreProblem>
     Solution& solution = flown.solution;
     solution.execution_world.reset();
     if (world_index) {
-        solution.execution_world = {*world_index, seed.value_or(problem->problem().planner.seed)};
+        solution.execution_world = {*world_index, seed.value_or(solution.seed)};
     }
     const auto world = world_of(problem->problem(), solution.execution_world);
     solution.execution = interruptible(stop, [&](Attendance& attendance) {

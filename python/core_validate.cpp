@@ -70,7 +70,7 @@ py::tuple validate(const std::shared_ptr<CoreProblem>& problem, const CoreSoluti
     if ((runs > 0 || world) && !problem->problem().uncertainty) {
         throw_input_error("need to know what is uncertain: the problem has no `uncertainty:`", "worlds");
     }
-    const std::uint64_t seed = asked_seed.value_or(problem->problem().planner.seed);
+    const std::uint64_t seed = asked_seed.value_or(of.solution.seed);
     const Plan& plan = *of.solution.plan;
     judge::JudgedFlight flight;
     const std::optional<judge::WorldRuns> worlds = interruptible(stop, [&](Attendance& attendance) {

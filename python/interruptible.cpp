@@ -49,7 +49,7 @@ void Attendance::wait() {
 
 void Attendance::attend(const std::vector<std::function<void()>>& callbacks) {
     try {
-        if (raised_) {
+        if (raised_ || failure_) {
             return;
         }
         for (const std::function<void()>& callback : callbacks) {
@@ -64,12 +64,18 @@ void Attendance::attend(const std::vector<std::function<void()>>& callbacks) {
     } catch (py::error_already_set& error) {
         raised_.emplace(error);
         interrupt_.request_stop();
+    } catch (...) {  // as of a stop whose is_set() is no truth value
+        failure_ = std::current_exception();
+        interrupt_.request_stop();
     }
 }
 
 void Attendance::rethrow() const {
     if (raised_) {
         throw py::error_already_set(*raised_);
+    }
+    if (failure_) {
+        std::rethrow_exception(failure_);
     }
 }
 

@@ -49,6 +49,7 @@ class Attendance {
     bool is_last_told_ = false;                     ///< of those: by tell()
     bool is_closed_ = false;
     std::optional<py::error_already_set> raised_;
+    std::exception_ptr failure_;  ///< of ours, while Python was asked
 };
 
 /// Runs work(attendance) as Attendance says. Work must not touch Python but through Attendance::tell().

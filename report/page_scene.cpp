@@ -198,7 +198,7 @@ Json goals_json(const Problem& problem, const std::optional<VisitOrder>& order) 
     for (std::size_t i = 0; i < visited.size(); ++i) {
         add(visited[i], names[i], false);
     }
-    if (order && flown.targets.empty()) {
+    if (order && flown.targets.empty() && !problem.targets.empty()) {
         for (const LeftOutTarget& each : order->left_out) {
             add(problem.targets[each.target], "target " + std::to_string(each.target + 1) + ", left out", true);
         }

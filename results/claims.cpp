@@ -44,6 +44,22 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
     }
 }
 
+void read_certificate(JsonReader& reader, const Node& root, std::optional<double>& certified_share) {
+    const auto node = JsonReader::member(root, "certificate");
+    if (!node || node->json->is_null()) {
+        return;
+    }
+    if (!node->json->is_object()) {
+        reader.report(*node, "expected a group of keys or null");
+        return;
+    }
+    bool is_given = false;
+    reader.read_flag(*node, "given", is_given);
+    if (is_given) {
+        certified_share = reader.amount(*node, "max_failure_probability", 0);
+    }
+}
+
 }  // namespace
 
 Claims read_claims(const std::string& path, const Problem& problem) {
@@ -58,6 +74,7 @@ Claims read_claims(const std::string& path, const Problem& problem) {
         claims.waypoints = std::move(text.waypoints);
         claims.order = problems::read_order(reader, root, problem);
         read_flight(reader, root, claims.flight);
+        read_certificate(reader, root, claims.certified_share);
     });
     return claims;
 }

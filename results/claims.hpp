@@ -33,6 +33,7 @@ struct Claims {
     std::optional<VisitOrder> order;  ///< in which it visits the targets of the problem, if that has some
     std::vector<Configuration> waypoints;
     std::optional<FlightClaims> flight;
+    std::optional<double> certified_share;  ///< the failure probability that a given certificate promises at most
 };
 
 /// Reads a solution file without comparing its parts. What a plan written by hand leaves out is taken from the

@@ -39,6 +39,9 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
                          {"outcome", name_of(each.outcome)},
                          {"min_clearance_m", number(each.min_clearance_m)}});
     }
+    const auto clearance_m = [&](double quantile_m) {
+        return certificate->worlds > 0 ? number(quantile_m) : Json{};  // of no flight there is none
+    };
     const auto& clearance = certificate->clearance_m;
     const auto& probability = certificate->failure_probability;
     return {{"given", certificate->is_given},
@@ -50,7 +53,9 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
             {"confidence", certificate->confidence},
             {"attempts", certificate->attempts},
             {"clearance_m",
-             {{"p01", number(clearance.p01)}, {"p10", number(clearance.p10)}, {"p50", number(clearance.p50)}}},
+             {{"p01", clearance_m(clearance.p01)},
+              {"p10", clearance_m(clearance.p10)},
+              {"p50", clearance_m(clearance.p50)}}},
             {"causes", certificate->causes},
             {"worst", std::move(worst)}};
 }

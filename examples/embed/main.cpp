@@ -35,7 +35,7 @@ int main() {
     options.stop = interrupt.get_token();
     options.on_progress = [](const Progress& p) { std::printf("%.1f s: %zu nodes\n", p.wall_s, std::size_t(p.nodes)); };
     const Solution solution = solve(problem, options);
-    if (solution.status != Status::solved) {
+    if (solution.status != Status::solved || !solution.execution) {
         return 1;
     }
     const Execution& flight = *solution.execution;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -166,8 +167,18 @@ class Mission {
         } else {
             options.time_limit_s = planning_share * lead_s;
         }
-        options.on_answer = [&](const Answer& answer) { link_.send({from_tick, start, answer.plan, answer.advice}); };
+        std::exception_ptr lost;  // which must not leave the planner halfway
+        options.on_answer = [&](const Answer& answer) {
+            try {
+                link_.send({from_tick, start, answer.plan, answer.advice});
+            } catch (...) {
+                lost = std::current_exception();
+            }
+        };
         const Answer answer = planner_.replan(start, from_tick - following_.from_tick, change, options);
+        if (lost) {
+            std::rethrow_exception(lost);
+        }
         say(reason, answer.advice, answer.plan);
         wait_until(from_tick);
     }

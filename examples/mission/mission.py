@@ -30,6 +30,14 @@ MAX_DRIFT_M = 0.15
 MAX_ATTEMPTS = 6  # plans for one target
 TIMEOUT_S = 2
 
+# What a message of a type has to have.
+NUMBERS = {
+    "hello": ("tick_s",),
+    "telemetry": ("tick", "x_m", "z_m", "pitch_rad", "arm_rad", "vz_m_s"),
+    "accepted": ("id",),
+}
+OTHERS = {"hello": ("lock_step",), "telemetry": ("range_up_m",), "rejected": ("reason",), "ended": ("outcome",)}
+
 
 class MissionFailed(Exception):
     """There is no way on."""
@@ -75,8 +83,8 @@ class VehicleLink:
         hello = self._message()
         if hello["type"] != "hello":
             raise ConnectionLost("it does not say hello")
-        self.tick_s: float = hello["tick_s"]
-        self.is_lock_step: bool = hello["lock_step"]
+        self.tick_s = float(hello["tick_s"])
+        self.is_lock_step = bool(hello["lock_step"])
 
     @staticmethod
     def _connected(path: str, until: float) -> socket.socket:
@@ -101,7 +109,10 @@ class VehicleLink:
             if message["type"] == "telemetry":
                 return message
             if message["type"] == "accepted":
-                self.accepted = self._sent[message["id"]]
+                number = int(message["id"])
+                if not 0 <= number < len(self._sent):
+                    raise ConnectionLost(f"it accepts reference {number}, which nobody sent")
+                self.accepted = self._sent[number]
             elif message["type"] == "rejected":
                 print(f"            the vehicle rejects a reference: {message['reason']}")
             elif message["type"] == "ended":
@@ -140,9 +151,10 @@ class VehicleLink:
         line, self._arrived = self._arrived.split(b"\n", 1)
         try:
             message: dict[str, Any] = json.loads(line)
-            if message["type"] == "telemetry":
-                _ = [float(message[name]) for name in ("tick", "x_m", "z_m", "pitch_rad", "arm_rad", "vz_m_s")]
-                _ = message["range_up_m"]
+            for name in NUMBERS.get(message["type"], ()):
+                float(message[name])
+            for name in OTHERS.get(message["type"], ()):
+                _ = message[name]
             return message
         except (KeyError, TypeError, ValueError):
             raise ConnectionLost(f"it sent what is no message: {line[:80].decode(errors='replace')}") from None

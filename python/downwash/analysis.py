@@ -22,8 +22,8 @@ def hold(
     arm_deg: arm angle relative to the multirotor [deg]; default: that of the problem's start
     threads: number of threads; default: one per processor
 
-    Returns columns with the names of `downwash aeromap hold --json` (docs/hold.md): `verdict`, `limit`, the effect of
-    the surfaces, the trim and the stability. What a verdict leaves undefined is NaN.
+    Returns the figures of `downwash aeromap hold --json` (docs/hold.md) as columns: `verdict`, `limit`, the effect of
+    the surfaces, the trim (`reference_x_m`, ...) and the stability. What a verdict leaves undefined is NaN.
     """
     columns, verdicts, limits = _core.hold(problem._core, np.asarray(points, dtype=np.float64), arm_deg, threads or 0)
     table: Dict[str, npt.NDArray[Any]] = dict(columns)
@@ -38,7 +38,8 @@ def draw_worlds(problem: Problem, count: int, *, seed: int | None = None) -> Dic
     seed: of the worlds; default: that of the problem
 
     Returns the column `world`, and one for every parameter that worlds draw, with its name in `validate`'s sensitivity:
-    differences, or relative changes, in SI units and radians. The rows are those of `Validation.flights`.
+    differences, or relative changes, in SI units and radians. The rows are those of `Validation.flights` of the same
+    seed.
     """
     table: Dict[str, npt.NDArray[Any]] = dict(_core.draw_worlds(problem._core, count, seed))
     table["world"] = table["world"].astype(np.int64)
@@ -50,7 +51,7 @@ class Validation:
 
     def __init__(self, record: dict[str, Any], flights: Dict[str, npt.NDArray[Any]] | None) -> None:
         self.record = record
-        """With the names of `downwash validate --json`."""
+        """With names of `downwash validate --json`: outcome and figures of the flight, and the statistics of worlds."""
         self.flights = flights
         """Columns world, outcome, min_clearance_m, max_tracking_error_m, energy_j; None without worlds."""
 
@@ -90,7 +91,7 @@ def validate(
 
     runs: fly in the worlds 1 to `runs` of the problem's uncertainty as well
     world: the one world to fly in; default: the undisturbed one
-    seed: of the worlds; default: that of the problem
+    seed: of the worlds; default: that of the solution
     threads: number of threads, on which the result does not depend; default: one per processor
     on_progress: called with the share of the worlds that is done, by the calling thread
     stop: a threading.Event; when it ends the runs, there are no statistics

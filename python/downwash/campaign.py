@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import pathlib
 import sqlite3
 from typing import Any
 
@@ -53,7 +54,7 @@ class Campaign:
         self._has_machines = marks[1] != _LAYOUTS[0]
 
     def _open(self) -> sqlite3.Connection:
-        return sqlite3.connect(f"file:{os.path.abspath(self._file)}?mode=ro", uri=True)
+        return sqlite3.connect(pathlib.Path(self._file).absolute().as_uri() + "?mode=ro", uri=True)
 
     def _frame(self, columns: str, join: str = "") -> Any:
         import pandas

@@ -51,7 +51,7 @@ class Start:
     pitch_rate_rad_s: float = 0
     arm_rate_rad_s: float = 0
     reference: ReferencePoint | None = None
-    """That the vehicle follows at this moment. None: it is to stay where it is."""
+    """That the vehicle follows at this moment. None: where it is, as it moves."""
     rotor_thrust_n: tuple[float, ...] = ()
     """Free-air thrust that each rotor's lag has reached [N]. Empty: the rotors carry the weight."""
     controller_memory: tuple[float, ...] = ()
@@ -106,7 +106,10 @@ class Answer:
 
     @property
     def plan(self) -> Columns:
-        """The knots of what to follow, from the start on; of `none` and `stop` the way to brake."""
+        """The knots of what to follow, from the start on; of `stop` and `none` the way to brake.
+
+        Where every way to brake leaves the bounds, that of `none` is what is left of the last plan.
+        """
         return self._core.plan()
 
     @property
@@ -205,13 +208,13 @@ class Planner:
 
         start: the whole vehicle at the moment from which the answer counts
         tick: of the last plan at that moment
-        put: obstacles as a problem file has them, new ones or in place of those of their names
+        put: obstacles as a problem file has them; one with a name takes the place of the obstacle of that name
         removed: names of obstacles that are gone
         goal: as a problem file has it, in place of all goals that were not visited yet
-        time_limit_s: wall time of all
+        time_limit_s: wall time of all, at most 10^6; an aero map that has to be made first is finished
         max_iterations: of the search
         on_answer: called with every Answer that is better than the one before, by the thread that called `replan`
-        stop: a threading.Event, which ends the search early
+        stop: a threading.Event, which ends the call early, once it is known how to stop
         """
         text = ""
         if put or goal is not None:
@@ -226,7 +229,7 @@ class Planner:
         return Answer(core)
 
     def latest(self) -> Answer | None:
-        """The best answer so far to the last call of `replan`; None before the first."""
+        """The best answer so far to the last call of `replan`; None before its first answer."""
         core = self._core.latest()
         return None if core is None else Answer(core)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import re
@@ -129,9 +130,9 @@ class Problem:
         if self._document is None:
             self._document = self.to_dict()
         try:
-            return _at(self._document, key)
+            return copy.deepcopy(_at(self._document, key))
         except (IndexError, KeyError, TypeError):
-            raise KeyError(f"{key} is no key of this problem; explain() lists the keys of problem files") from None
+            raise KeyError(f"{key} is no key of this problem; docs/keys.md lists the keys of problem files") from None
 
     def _has(self, key: str) -> bool:
         try:
@@ -146,7 +147,8 @@ class Problem:
     def to_dict(self, folder: Path = ".") -> dict[str, Any]:
         """Everything that a problem file holds, with all defaults filled in and the robot inline.
 
-        Paths of files are relative to `folder`. `Problem.from_dict` makes the same problem of it.
+        Paths of files are relative to `folder`. `Problem.from_dict` makes the same problem of it, up to the rounding of
+        angles; `to_yaml` is exact.
         """
         document: dict[str, Any] = json.loads(self._core.json(os.fspath(folder)))
         return document
@@ -162,7 +164,7 @@ class Problem:
 
     @property
     def file(self) -> str:
-        """Where it was read from; `<text>` or `<dict>` if from none."""
+        """Where it was read from; `<text>` or `<dict>` if from none, or after a group of keys was replaced."""
         return self._core.file
 
     @property

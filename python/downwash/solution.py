@@ -249,7 +249,7 @@ def execute(
 
     aero: whether surfaces act on the rotors
     world: index of the world of the problem's uncertainty to fly in; default: the nominal one
-    seed: of the worlds; default: that of the problem
+    seed: of the worlds; default: that of the solution
     stop: a threading.Event; when it ends the flight, Stopped is raised
     """
     flown = Solution(_core.execute(solution._core, problem._core, aero, world, seed, stop), problem)

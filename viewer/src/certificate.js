@@ -58,7 +58,7 @@ function make_quantiles({certificate}) {
                           h("td", {class: "count"}, number(count, ",d")),
                           h("td", {class: "bar-cell", "aria-hidden": "true"},
                             h("span", {class: "bar", style: `width: ${((100 * count) / most).toFixed(2)}%`})))))) :
-            h("p", null, "No flight failed."));
+            h("p", null, certificate.worlds > 0 ? "No flight failed." : "The search ended before the first flights."));
 }
 
 function make_worst({certificate}) {
