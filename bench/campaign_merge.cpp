@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include "downwash/bench/campaign_shards.hpp"
 #include "downwash/bench/campaign_store.hpp"
+#include "downwash/bench/machine.hpp"
 #include "downwash/bench/saved_copy.hpp"
 
 namespace downwash::bench {
@@ -27,8 +29,8 @@ struct Shard {
     [[nodiscard]] std::string file() const { return (folder / results_file).string(); }
 };
 
-/// The plan and the number of a shard.
-std::pair<CampaignPlan, std::uint64_t> read_shard(const fs::path& folder) {
+/// The plan and the number of a shard; nothing of a file in which nothing is yet.
+std::optional<std::pair<CampaignPlan, std::uint64_t>> read_shard(const fs::path& folder) {
     const fs::path file = folder / results_file;
     std::error_code unknown;
     if (!fs::exists(file, unknown)) {
@@ -38,6 +40,9 @@ std::pair<CampaignPlan, std::uint64_t> read_shard(const fs::path& folder) {
                             folder.string() + "` made");
     }
     const Database database(file);
+    if (is_new(database)) {
+        return std::nullopt;
+    }
     require_layout(database, file);
     CampaignPlan plan = read_plan(database, file);
     if (!plan.shards) {
@@ -45,7 +50,7 @@ std::pair<CampaignPlan, std::uint64_t> read_shard(const fs::path& folder) {
                             " holds no shard but a whole campaign: expected results of `downwash bench run CAMPAIGN "
                             "--shard I/N`");
     }
-    return {std::move(plan), shard_number(database).value_or(0)};
+    return std::pair(std::move(plan), shard_number(database).value_or(0));
 }
 
 /// The lines in which the settings of a shard differ from those of the first one.
@@ -81,7 +86,11 @@ Shards read_shards(const std::vector<fs::path>& folders) {
     std::string errors;
     int wrong = 0;
     for (const fs::path& folder : folders) {
-        auto [plan, number] = read_shard(folder);
+        auto read = read_shard(folder);
+        if (!read) {
+            continue;
+        }
+        auto& [plan, number] = *read;
         shards.all.push_back({number, folder});
         if (shards.all.size() == 1) {
             shards.plan = std::move(plan);
@@ -91,6 +100,9 @@ Shards read_shards(const std::vector<fs::path>& folders) {
             !lines.empty() && ++wrong <= max_lines) {
             errors += lines;
         }
+    }
+    if (shards.all.empty()) {
+        throw CampaignError("none of the folders has results yet: run the shards first");
     }
     if (wrong > 0) {
         throw CampaignError(errors +
@@ -278,7 +290,8 @@ MergedCampaign merge_shards(const fs::path& out, const std::vector<fs::path>& fo
     }
     const Shards shards = read_shards(folders);
     const CampaignLock lock(out);
-    const PartFile part(file.string() + ".part");
+    // The lock may hold on this machine only.
+    const PartFile part(file.string() + "." + host_name() + ".part");
     MergedCampaign merged;
     {
         Merge merge(shards, part.path());

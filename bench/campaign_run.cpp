@@ -299,7 +299,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     const CampaignPlan plan = plan_of(read, options.shard);
     const auto shard = options.shard ? std::optional(options.shard->number) : std::nullopt;
     SavedCopy saved(options.out, options.saved);
-    saved.restore();
+    saved.restore(options.resumes);
     CampaignStore store(options.out, plan, options.resumes, shard);
     std::vector<Task> tasks = runs_of(plan, shard);
     const std::size_t planned = tasks.size();
@@ -377,7 +377,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     try {
         run_parallel(tasks.size(), jobs, do_task, on_progress);
     } catch (...) {
-        saved.save();
+        saved.save_if_possible();
         throw;
     }
     saved.save();

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include <cerrno>
+#include <chrono>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -133,6 +134,7 @@ CampaignStore::CampaignStore(const std::filesystem::path& folder, const Campaign
       database_(file_, true),
       identity_(identity_of(file_)),
       writer_(database_) {
+    database_.wait_for_others(std::chrono::hours(1));  // a report of a large campaign takes its time
     if (is_new(database_)) {
         Transaction all(database_);
         write_plan(database_, plan, shard);

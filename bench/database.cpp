@@ -85,6 +85,10 @@ Database::Database(const std::filesystem::path& file, bool creates)
     execute("PRAGMA foreign_keys = ON");
 }
 
+void Database::wait_for_others(std::chrono::milliseconds at_most) const {
+    sqlite3_busy_timeout(database_.get(), static_cast<int>(at_most.count()));
+}
+
 /// Whatever the file contains: see the class.
 void Database::protect() {
     constexpr std::uint64_t page_bytes = 4096;  // of the files that we make

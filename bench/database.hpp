@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +39,9 @@ class Database {
     /// Opens a file. @throws DatabaseError when it does not exist, unless it is to be created, or is no database or too
     /// large
     explicit Database(const std::filesystem::path& file, bool creates = false);
+
+    /// How long a statement waits for other programs that read or write the file: ten seconds unless told.
+    void wait_for_others(std::chrono::milliseconds at_most) const;
 
     /// Runs one statement; the values are those of its question marks.
     template <class... Values>

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -82,18 +84,55 @@ fs::path part_of(const fs::path& place) {
     return place.string() + "." + host_name() + "." + std::to_string(getpid()) + ".part";
 }
 
-/// How many runs a file of results says that it has; 0 without one that can be read.
-std::uint64_t finished_runs(const fs::path& folder) {
-    std::error_code unknown;
-    if (!fs::exists(folder / results_file, unknown)) {
-        return 0;
+/// What a file of results says of itself.
+struct Stored {
+    std::string settings;  ///< their checksum
+    std::optional<std::uint64_t> shard;
+    std::uint64_t runs = 0;
+
+    [[nodiscard]] bool is_of_the_same(const Stored& other) const {
+        return settings == other.settings && shard == other.shard;
     }
+};
+
+/// Nothing where there are no results yet. @throws CampaignError, DatabaseError of what cannot be read
+std::optional<Stored> stored_in(const fs::path& folder) {
+    const fs::path file = folder / results_file;
+    std::error_code unknown;
+    if (!fs::exists(file, unknown)) {
+        return std::nullopt;
+    }
+    const Database database(file);
+    if (is_new(database)) {
+        return std::nullopt;
+    }
+    require_layout(database, file);
+    require_present_layout(database, file);
+    Stored stored;
+    database.for_each<std::string, std::uint64_t>("SELECT checksum, finished_runs FROM campaign_checksum",
+                                                  [&](const std::string& settings, std::uint64_t runs) {
+                                                      stored.settings = settings;
+                                                      stored.runs = runs;
+                                                  });
+    stored.shard = shard_number(database);
+    return stored;
+}
+
+/// Nothing as well where they cannot be read: a copy may take their place.
+std::optional<Stored> readable_in(const fs::path& folder) {
     try {
-        const Database database(folder / results_file);
-        require_layout(database, folder / results_file);
-        return database.number("SELECT finished_runs FROM campaign_checksum");
-    } catch (const std::runtime_error&) {  // whoever opens it to go on says what is wrong
-        return 0;
+        return stored_in(folder);
+    } catch (const std::runtime_error&) {
+        return std::nullopt;
+    }
+}
+
+void require_the_same(const std::optional<Stored>& results, const fs::path& of_results,
+                      const std::optional<Stored>& copy, const fs::path& of_copy) {
+    if (results && copy && !results->is_of_the_same(*copy)) {
+        throw CampaignError((of_copy / results_file).string() +
+                            " holds runs of another campaign, or of another shard, than " +
+                            (of_results / results_file).string() + ": choose another folder for the copy");
     }
 }
 
@@ -136,8 +175,17 @@ SavedCopy::SavedCopy(fs::path results, fs::path saved) : results_(std::move(resu
     }
 }
 
-void SavedCopy::restore() const {
-    if (!saved_.empty() && finished_runs(saved_) > finished_runs(results_)) {
+void SavedCopy::restore(bool resumes) const {
+    if (saved_.empty()) {
+        return;
+    }
+    const std::optional<Stored> copy = stored_in(saved_);
+    if (copy && copy->runs > 0 && !resumes) {
+        throw CampaignError((saved_ / results_file).string() + " holds runs already; --resume continues with them");
+    }
+    const std::optional<Stored> results = readable_in(results_);
+    require_the_same(results, results_, copy, saved_);
+    if (copy && (!results || copy->runs > results->runs)) {
         const CampaignLock lock(results_);
         std::error_code ignored;  // a journal would be that of another file then
         fs::remove(results_ / (std::string(results_file) + "-journal"), ignored);
@@ -146,16 +194,29 @@ void SavedCopy::restore() const {
 }
 
 void SavedCopy::save() {
-    if (!saved_.empty() && finished_runs(saved_) <= finished_runs(results_)) {
+    last_ = Clock::now();
+    if (saved_.empty()) {
+        return;
+    }
+    const std::optional<Stored> results = stored_in(results_);
+    const std::optional<Stored> copy = stored_in(saved_);
+    require_the_same(results, results_, copy, saved_);
+    if (results && (!copy || copy->runs <= results->runs)) {
         copy_whole(results_ / results_file, saved_ / results_file);
     }
-    last_ = Clock::now();
 }
 
 void SavedCopy::save_now_and_then() {
     constexpr std::chrono::minutes period{2};
     if (!saved_.empty() && Clock::now() - last_ > period) {
+        save_if_possible();
+    }
+}
+
+void SavedCopy::save_if_possible() {
+    try {
         save();
+    } catch (const std::runtime_error&) {  // the disk of the copy may come back
     }
 }
 

@@ -20,14 +20,20 @@ class SavedCopy {
     SavedCopy(std::filesystem::path results, std::filesystem::path saved);
 
     /// Begins the results with the copy if they have fewer runs or are not there. To be called before anything opens
-    /// them. @throws CampaignError, DatabaseError
-    void restore() const;
+    /// them. @param resumes whether runs may be there already
+    /// @throws CampaignError, DatabaseError: a copy that cannot be read, that is of another campaign or shard, or that
+    /// has runs although nothing is resumed
+    void restore(bool resumes) const;
 
-    /// Saves the results, unless the copy has more runs. Nobody may be writing them. @throws CampaignError
+    /// Saves the results, unless the copy has more runs. Nobody may be writing them.
+    /// @throws CampaignError, DatabaseError, also where the copy has become that of another campaign or shard
     void save();
 
-    /// The same, at most every few minutes.
+    /// The same, at most every few minutes. If it fails, it tries again later.
     void save_now_and_then();
+
+    /// The same, where the error that ends the campaign is another one.
+    void save_if_possible();
 
  private:
     using Clock = std::chrono::steady_clock;

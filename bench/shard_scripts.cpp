@@ -41,23 +41,36 @@ run() {
 
 /// Results on the disk of the node, and a copy on the disk that all nodes see.
 constexpr std::string_view scratch_setup =
-    R"sh(scratch=${DOWNWASH_SCRATCH:-${SLURM_TMPDIR:-${TMPDIR:-/tmp}}}/downwash-$(id -u)-@DIGEST@
-here=$scratch/$(basename "$kept"))sh";
+    R"sh(limit_s=@WALL_LIMIT_S@ # then what is finished is kept, before Slurm ends the task
+scratch=${DOWNWASH_SCRATCH:-${SLURM_TMPDIR:-${TMPDIR:-/tmp}}}/downwash-$(id -u)-@DIGEST@
+here=$scratch/$(basename "$kept")
+
+# Whether results may be written there: nobody else has made the folder, and its disk is not full.
+can_use_scratch() {
+    mkdir -p -m 700 "$scratch" 2>/dev/null && [[ -O $scratch && ! -L $scratch ]] &&
+        head -c 4194304 /dev/zero >"$here.probe" 2>/dev/null
+    local code=$?
+    rm -f "$here.probe"
+    return "$code"
+})sh";
 
 constexpr std::string_view scratch_run = R"sh(code=2
-if mkdir -p "$scratch" && exec 9>"$here.lock"; then
+if can_use_scratch && exec 9>>"$here.lock"; then
     flock --nonblock 9 || { echo "shard $shard is running on this machine already" >&2; exit 75; }
     run --out "$here" --save "$kept"
     code=$?
     # The copy has everything then; the lock goes with the last program that holds it.
     ((code != 0)) || rm -rf "$here" "$here.lock"
 fi
-if ((code == 2)); then
+if ((code == 2)) && ! can_use_scratch; then
     echo "shard $shard: $scratch cannot be used on $(hostname), going on in $kept" >&2
     run --out "$kept"
     code=$?
 fi
 exit "$code")sh";
+
+/// What is left of the task's time for the program.
+constexpr std::string_view time_limit = " --wall-limit $((SECONDS + 1 < limit_s ? limit_s - SECONDS : 1))";
 
 constexpr std::string_view shard_batch = R"sh(#!/usr/bin/env bash
 #SBATCH --job-name=downwash-@CAMPAIGN@
@@ -66,13 +79,15 @@ constexpr std::string_view shard_batch = R"sh(#!/usr/bin/env bash
 #SBATCH --cpus-per-task=@JOBS@
 #SBATCH --time=@MINUTES@
 #SBATCH --requeue
-# One task of the array: submit.sh submits it. A task whose time is over puts itself into the queue again.
+# One task of an array: submit.sh submits it, with the number of shards before those of the array. A task whose time is
+# over puts itself into the queue again.
 set -uo pipefail
 
-shard=$((SLURM_ARRAY_TASK_ID + ${DOWNWASH_OFFSET:-0}))
+shard=$((SLURM_ARRAY_TASK_ID + ${1:-0}))
 restarts=${SLURM_RESTART_COUNT:-0}
 child=
-trap '[[ -z $child ]] || kill -TERM "$child"' TERM
+told=
+trap 'told=1; [[ -z $child ]] || kill -TERM "$child"' TERM
 bash @FOLDER@/shard.sh "$shard" &
 child=$!
 code=0
@@ -81,6 +96,8 @@ if ((code > 128)) && kill -0 "$child" 2>/dev/null; then # the signal has ended `
     code=0
     wait "$child" || code=$?
 fi
+# Told to end before its time: by scancel, or by Slurm, which itself requeues what it preempts.
+[[ -z $told ]] || ((SECONDS >= @WALL_LIMIT_S@)) || exit "$code"
 case $code in
     0) exit 0 ;;
     1) most=1000 ;; # its time is over
@@ -102,17 +119,15 @@ constexpr std::string_view merge_script = R"sh(#!/usr/bin/env bash
 # them and the commands that make them.
 set -euo pipefail
 
-folders=()
-for file in @FOLDER@/shards/shard-*/campaign.db; do
-    [[ ! -e $file ]] || folders+=("${file%/*}")
-done
-exec @PROGRAM@ bench merge @FOLDER@/merged --force "${folders[@]}"
+for file in @FOLDER@/shards/shard-*-of-@COUNT@/campaign.db; do
+    [[ ! -e $file ]] || echo "${file%/*}"
+done | @PROGRAM@ bench merge @FOLDER@/merged --force -
 )sh";
 
 constexpr std::string_view merge_batch = R"sh(#!/usr/bin/env bash
 #SBATCH --job-name=downwash-@CAMPAIGN@-merge
 #SBATCH --output=@FOLDER@/logs/merge-%j.log
-#SBATCH --time=60
+#SBATCH --time=@MERGE_MINUTES@
 #SBATCH --requeue
 exec bash @FOLDER@/merge.sh
 )sh";
@@ -130,7 +145,7 @@ mkdir -p @FOLDER@/logs
 jobs=()
 for ((offset = 0; offset < shards; offset += size)); do
     last=$((shards - offset < size ? shards - offset : size))
-    job=$(sbatch --parsable --array="1-$last" --export="ALL,DOWNWASH_OFFSET=$offset" "$@" @FOLDER@/shard.sbatch)
+    job=$(sbatch --parsable --array="1-$last" "$@" @FOLDER@/shard.sbatch "$offset")
     jobs+=("${job%%;*}")
 done
 merge=$(sbatch --parsable --dependency="afterany:$(IFS=:; echo "${jobs[*]}")" "$@" @FOLDER@/merge.sbatch)
@@ -167,31 +182,38 @@ std::string filled(std::string_view from, const Values& values) {
 }
 
 Values values_of(const ShardScripts& of) {
-    constexpr std::uint64_t reserve_s = 60;  // to keep what is finished
-    constexpr std::uint64_t s_per_minute = 60;
     const std::size_t digits = std::max<std::size_t>(4, std::to_string(of.shards).size());
-    const std::uint64_t task_s = of.task_minutes * s_per_minute;
+    constexpr std::uint64_t max_merge_minutes = 60;
+    const std::string count = std::to_string(of.shards);
     return {{"CAMPAIGN", of.campaign},
             {"PROGRAM", of.program.string()},
             {"FILE", of.file.string()},
             {"FOLDER", of.folder.string()},
             {"PILOT", of.pilot.empty() ? "" : " --pilot " + of.pilot.string()},
-            {"SHARDS", std::to_string(of.shards)},
+            {"SHARDS", count},
+            {"COUNT", std::string(digits - count.size(), '0') + count},
             {"DIGITS", std::to_string(digits)},
             {"JOBS", std::to_string(of.jobs)},
             {"MINUTES", std::to_string(of.task_minutes)},
+            {"MERGE_MINUTES", std::to_string(std::min(max_merge_minutes, of.task_minutes))},
             {"AT_ONCE", std::to_string(of.at_once)},
-            {"WALL_LIMIT_S", std::to_string(task_s - std::min(reserve_s, task_s / 2))},
+            {"WALL_LIMIT_S", std::to_string(wall_limit_s(of.task_minutes))},
             // Campaigns of one name in different folders do not share a scratch folder.
             {"DIGEST", sha256_hex(of.folder.string()).substr(0, 12)}};
 }
 
 }  // namespace
 
+std::uint64_t wall_limit_s(std::uint64_t task_minutes) noexcept {
+    constexpr std::uint64_t reserve_s = 60;  // to keep what is finished
+    const std::uint64_t task_s = 60 * task_minutes;
+    return task_s - std::min(reserve_s, task_s / 2);
+}
+
 Scripts slurm_scripts(const ShardScripts& of) {
     Values values = values_of(of);
     values.emplace_back("SCRATCH", filled(scratch_setup, values));
-    values.emplace_back("LIMIT", filled(" --wall-limit @WALL_LIMIT_S@", values));
+    values.emplace_back("LIMIT", time_limit);
     values.emplace_back("RUN", scratch_run);
     return {{"shard.sh", filled(shard_script, values)},
             {"shard.sbatch", filled(shard_batch, values)},

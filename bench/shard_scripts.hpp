@@ -24,6 +24,9 @@ struct ShardScripts {
 /// Names and contents of scripts.
 using Scripts = std::vector<std::pair<std::string, std::string>>;
 
+/// How long the searches of a task go on [s]: up to a minute before Slurm ends it, or half of its time.
+[[nodiscard]] std::uint64_t wall_limit_s(std::uint64_t task_minutes) noexcept;
+
 /// Scripts for Slurm: submit.sh starts shard.sbatch as an array, and merge.sbatch when all tasks have ended.
 /// @pre paths need no quotes in a shell or after #SBATCH
 [[nodiscard]] Scripts slurm_scripts(const ShardScripts& of);

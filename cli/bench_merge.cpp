@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/usage_error.hpp"
 #include "downwash/report/campaign_page.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -49,7 +51,16 @@ std::string text_of(const bench::MergedCampaign& merged) {
 }
 
 ExitCode run(const BenchMergeArguments& given) {
-    const std::vector<std::filesystem::path> shards(given.shards.begin(), given.shards.end());
+    std::vector<std::filesystem::path> shards(given.shards.begin(), given.shards.end());
+    if (given.shards == std::vector<std::string>{"-"}) {  // more of them than a command line can hold
+        shards.clear();
+        for (std::string line; std::getline(std::cin, line);) {
+            shards.emplace_back(line);
+        }
+        if (shards.empty()) {
+            throw UsageError("standard input names no folder of a shard: expected one in each line");
+        }
+    }
     const std::filesystem::path out = given.out;
     const bench::MergedCampaign merged = bench::merge_shards(out, shards, given.replaces);
     if (has_pages() && merged.done > 0) {
@@ -74,7 +85,10 @@ void add_bench_merge(CLI::App& bench, Action& action) {
         bench, action, "merge",
         "Join the shards of a campaign into one folder; exit code 1 if runs are missing, which it then names", run);
     command.add_option("OUT", given.out, "folder for the merged results")->required();
-    command.add_option("SHARD", given.shards, "folders that `bench run --shard` wrote to")->required();
+    command
+        .add_option("SHARD", given.shards,
+                    "folders that `bench run --shard` wrote to; `-`: standard input names them, one in each line")
+        ->required();
     command.add_flag("--force", given.replaces, "replace what is in the folder");
 }
 

@@ -69,6 +69,13 @@ ExitCode write(const bench::Scripts& scripts, const fs::path& folder) {
 
 ExitCode run_slurm(const ScriptArguments& given) {
     const bench::ShardScripts scripts = scripts_of(given);
+    const std::optional<double> search_s = read_campaign(given.campaign, nullptr, nullptr).campaign.time_limit_s;
+    if (search_s && *search_s >= static_cast<double>(bench::wall_limit_s(given.task_minutes))) {
+        throw UsageError(
+            "--task-time is {} min, of which searches have {} s, but one of the campaign takes {} s: "
+            "expected more time",
+            given.task_minutes, bench::wall_limit_s(given.task_minutes), *search_s);
+    }
     return write(bench::slurm_scripts(scripts), scripts.folder);
 }
 

@@ -158,6 +158,18 @@ TEST_CASE("a merge names what is missing, and where it belongs") {
     CHECK(read_results(folder / "merged").runs.size() == 4);
 }
 
+TEST_CASE("a shard in which nothing was written yet has no runs for a merge") {
+    const ScratchFolder folder;
+    auto shards = run_shards(folder, quick_campaign(), 2);
+    std::filesystem::resize_file(shards[1] / results_file, 0);
+    const MergedCampaign merged = merge_shards(folder / "merged", shards, false);
+    CHECK(merged.done == 3);
+    REQUIRE(merged.missing.size() == 1);
+    CHECK(merged.missing[0].shard == 2);
+    shards.erase(shards.begin());
+    CHECK_THROWS_WITH(merge_shards(folder / "merged", shards, true), Contains("none of the folders has results yet"));
+}
+
 TEST_CASE("a merge rejects what does not belong together, and leaves nothing behind") {
     const ScratchFolder folder;
     const ReadCampaign read = quick_campaign();
@@ -229,6 +241,20 @@ TEST_CASE("a copy of the results brings back what a node has lost, and nothing r
         return stop.get_token();
     }();
     CHECK(run_campaign(read, options).done == 3);
+    CHECK(answer_in(folder / "kept", "SELECT group_concat(time) FROM runs") == times);
+
+    options.stop = {};
+    options.resumes = false;
+    options.out = folder / "new";
+    CHECK_THROWS_WITH(run_campaign(read, options), Contains("holds runs already; --resume continues"));
+    CHECK_FALSE(std::filesystem::exists(folder / "new" / results_file));
+    options.resumes = true;
+    options.out = folder / "other";
+    options.shard = ShardRequest{2, 2, {}};
+    options.saved.clear();
+    CHECK(run_campaign(read, options).done == 3);
+    options.saved = folder / "kept";
+    CHECK_THROWS_WITH(run_campaign(read, options), Contains("holds runs of another campaign, or of another shard"));
     CHECK(answer_in(folder / "kept", "SELECT group_concat(time) FROM runs") == times);
 
     std::ofstream(folder / "file") << "in the way";

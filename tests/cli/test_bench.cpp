@@ -146,6 +146,10 @@ TEST_CASE("Shards are run one by one and merged, and the merge names runs that a
               .out == "6 of 6 runs are in merged\n");
     CHECK(work.json("bench report merged").at("runs_done") == 6);
     CHECK(work.text("merged/report.html").empty() != has_pages);
+    // Standard input may name more shards than a command line can hold.
+    const std::string named = folder + "1-of-0003\n" + folder + "2-of-0003\n" + folder + "3-of-0003\n";
+    CHECK(work.run_in({}, named, words("bench merge again -")).out == "6 of 6 runs are in again\n");
+    check_rejected(work.run_in({}, "", words("bench merge none -")), "standard input names no folder of a shard");
 }
 
 TEST_CASE("A campaign ends with its wall time, and --resume continues") {

@@ -94,6 +94,23 @@ TEST_CASE("A plan is validated by an independent flight") {
         std::filesystem::copy(work.in_run("run"), work.in_run("a run"));
         const Result told = work.run("validate run/uncertain.yaml --plan", std::string("a run"), "--runs 2 --seed 9");
         CHECK_THAT(told.out, Contains("downwash validate run/uncertain.yaml --plan 'a run' --seed 9 --world "));
+        // A certificate that promises more than the flights keep is contradicted.
+        auto promising = solved;
+        promising["certificate"] = {{"given", true}, {"max_failure_probability", 1e-6}};
+        write_file(work.in_run("promising.json"), promising.dump());
+        const Words judged = words("validate run/uncertain.yaml --quiet --json --plan promising.json");
+        REQUIRE(found.at("failures") >= 2);
+        const Result broken = work.run(judged, "--runs 12");
+        CHECK(broken.code == 3);
+        CHECK(broken.json().at("disagreements").back().at("what") == "certificate: failure probability at most");
+        promising["certificate"]["max_failure_probability"] = 0.99;
+        write_file(work.in_run("promising.json"), promising.dump());
+        CHECK(work.run(judged, "--runs 12").code == 0);
+        // Worlds are those of the plan's seed.
+        promising["seed"] = 9;
+        write_file(work.in_run("promising.json"), promising.dump());
+        CHECK(work.run(judged, "--runs 12").json().at("worst") ==
+              work.run(uncertain, "--runs 12 --seed 9").json().at("worst"));
         // What `execute` flew in a world is judged in that world.
         const int code =
             work.run("execute run/uncertain.yaml --plan run/solution.json --out there --world", index).code;

@@ -151,3 +151,11 @@ TEST_CASE("Every objective is derived anew") {
     CHECK(flight.cost(Objective::time) == Approx(15));  // 10 s and a hover of 5 s
     CHECK(flight.length_m == Approx(4).margin(0.2));    // the way, and a little more for the tracking error
 }
+
+TEST_CASE("A plan begins with the reference that the vehicle follows, wherever the vehicle is") {
+    Case good;
+    good.problem.start.x_m += 0.03;
+    CHECK(good.in_plan() == Names{"plan.reference[0].x_m"});
+    good.problem.start.reference = good.claims.plan.reference.front().point;
+    CHECK(good.in_plan().empty());
+}

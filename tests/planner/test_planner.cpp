@@ -231,3 +231,79 @@ TEST_CASE("another thread sees the answers as they come") {
     watcher.join();
     CHECK(planner.latest());
 }
+
+TEST_CASE("in worlds a plan with a certificate replaces one that was kept, flown in worlds that no search has seen") {
+    Problem problem = long_flight();
+    problem.uncertainty.emplace();
+    problem.uncertainty->mass_scale = Spread::of_sd(0.01);
+    problem.planner.worlds = 3;
+    problem.planner.max_failure_probability = 0.2;
+    Planner planner(problem);
+    const Solution first = planner.solve();
+    REQUIRE(first.status == Status::solved);
+    std::int64_t tick = 0;
+    const Start here = midway(planner, tick);
+    std::vector<Advice> advice;
+    ReplanOptions options = iterations(300);
+    options.on_answer = [&](const Answer& answer) { advice.push_back(answer.advice); };
+    const Answer answer = planner.replan(here, tick, {}, options);
+    REQUIRE(std::find(advice.begin(), advice.end(), Advice::keep) != advice.end());
+    REQUIRE(answer.advice == Advice::follow);
+    REQUIRE(answer.solution);
+    CHECK(answer.solution->certificate->is_given);
+    CHECK(answer.solution->seed != first.seed);
+    CHECK(planner.replan(here, 0, {}, iterations(300)).solution->seed != answer.solution->seed);
+}
+
+TEST_CASE("an energy budget is for the first plan: replanning does not know what is left of it") {
+    Problem problem = long_flight();
+    problem.targets = {problem.goal, test::configuration_goal(-1, 2.5)};
+    problem.goal = {};
+    problem.planner.max_iterations = 600;
+    problem.energy_budget_j = 1e6;
+    Planner planner(problem);
+    REQUIRE(planner.solve().status == Status::solved);
+    std::int64_t tick = 0;
+    const Start here = midway(planner, tick);
+    SceneChange change;
+    change.put.push_back(test::box("pebble", {0.1, 0.1, 0.1}, {0, 3, 0.05}));
+    const Answer answer = planner.replan(here, tick, change, iterations(100));
+    CHECK((answer.advice == Advice::keep || answer.advice == Advice::follow));
+    CHECK(flown(planner, answer).outcome == Outcome::ok);
+}
+
+TEST_CASE("obstacles without a name come beside all others, and none is named by nothing") {
+    Problem problem = long_flight();
+    problem.obstacles.push_back(test::box("", {0.1, 0.1, 0.1}, {-5, 3, 0.05}));
+    Planner planner(problem);
+    SceneChange change;
+    change.put.push_back(test::box("", {0.1, 0.1, 0.1}, {0, 3, 0.05}));
+    change.put.push_back(test::box("", {0.1, 0.1, 0.1}, {1, 3, 0.05}));
+    static_cast<void>(planner.replan(problem.start, 0, change, iterations(1)));
+    CHECK(planner.problem().obstacles.size() == problem.obstacles.size() + 2);
+    SceneChange none;
+    none.removed.emplace_back();
+    CHECK_THROWS_AS(planner.replan(problem.start, 0, none, iterations(1)), InputError);
+    SceneChange twice;
+    twice.put.push_back(test::box("stone", {0.1, 0.1, 0.1}, {2, 3, 0.05}));
+    twice.put.push_back(test::box("stone", {0.1, 0.1, 0.1}, {3, 3, 0.05}));
+    CHECK_THROWS_AS(planner.replan(problem.start, 0, twice, iterations(1)), InputError);
+    CHECK(planner.problem().obstacles.size() == problem.obstacles.size() + 2);
+}
+
+TEST_CASE("limits of replanning have those of a search, and a stop ends it once it is known how to stop") {
+    Planner planner(long_flight());
+    const Start start = planner.problem().start;
+    ReplanOptions options;
+    options.time_limit_s = 2e6;
+    CHECK_THROWS_AS(planner.replan(start, 0, {}, options), InputError);
+    options.time_limit_s = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_AS(planner.replan(start, 0, {}, options), InputError);
+    CHECK_THROWS_AS(planner.replan(start, 0, {}, iterations(2'000'000'000'000'000)), InputError);
+    std::stop_source stop;
+    stop.request_stop();
+    ReplanOptions stopped = iterations(100);
+    stopped.stop = stop.get_token();
+    CHECK(planner.replan(start, 0, {}, stopped).advice == Advice::stop);
+    CHECK(planner.map() == nullptr);
+}

@@ -112,6 +112,23 @@ def test_one_world_and_none_are_flown_alone(planned, bridge):
     assert downwash.validate(bridge, planned, world=2).record["energy_j"] != undisturbed.record["energy_j"]
 
 
+def test_a_plan_of_another_problem_is_not_flown(planned, bridge):
+    quick = bridge.replace({"robot.controller.rate_hz": 200})
+    elsewhere = bridge.replace({"start.x_m": bridge["start.x_m"] + 0.5})
+    for problem, message in [(quick, "control ticks"), (elsewhere, "begins elsewhere")]:
+        with pytest.raises(downwash.InputError, match=message):
+            downwash.execute(problem, planned)
+        with pytest.raises(downwash.InputError, match=message):
+            downwash.validate(problem, planned)
+
+
+def test_worlds_are_those_of_the_seed_of_the_solution(bridge):
+    planned = downwash.solve(bridge, seed=7, max_iterations=60)
+    drawn = [downwash.validate(bridge, planned, world=2, **seed).record["energy_j"] for seed in ({}, {"seed": 7})]
+    assert drawn[0] == drawn[1]
+    assert drawn[0] != downwash.validate(bridge, planned, world=2, seed=1).record["energy_j"]
+
+
 def test_a_solution_without_a_plan_cannot_be_flown(bridge):
     far = downwash.solve(bridge, max_iterations=1)
     if far.plan is None:

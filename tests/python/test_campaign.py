@@ -1,5 +1,6 @@
 """Campaigns as frames."""
 
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -27,6 +28,12 @@ def test_frames_hold_what_the_report_counts(results, json_of):
     machines = campaign.machines()
     assert len(machines) == 4 and (machines["host"] != "").all() and (machines["load"] >= 0).all()
     assert (campaign.rejections()["edges"] >= 0).all()
+
+
+def test_a_folder_may_have_any_name(results, tmp_path):
+    odd = tmp_path / "run #2 100%41?"
+    shutil.copytree(results, odd)
+    assert len(downwash.Campaign(odd).runs()) == 4
 
 
 def test_other_folders_are_no_campaign(tmp_path):

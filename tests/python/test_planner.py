@@ -97,6 +97,7 @@ def test_a_change_that_is_wrong_raises_and_changes_nothing(planner):
         ({"goal": [{"configuration": {"x_m": 1}}, {"configuration": {"x_m": 2}}]}, "one goal"),
         ({"goal": {"configuration": {"x_m": 1e9}}}, "goal.configuration.x_m"),
         ({"time_limit_s": 0}, "time_limit_s"),
+        ({"time_limit_s": float("inf")}, "time_limit_s"),
         ({"max_iterations": 0}, "max_iterations"),
     ]
     for change, message in wrong:
@@ -111,6 +112,27 @@ def test_a_change_that_is_wrong_raises_and_changes_nothing(planner):
     assert same(plan, planner.plan)
     assert planner.problem.sha256 == sha256
     assert planner.latest() is None
+
+
+def test_obstacles_without_a_name_come_beside_each_other(planner):
+    start, tick = midway(planner)
+    before = len(planner.problem["environment.obstacles"])
+    pebbles = [{"box": {"size_m": [0.1, 0.1, 0.1], "center_m": [x_m, 3, 0.05]}} for x_m in (0, 1)]
+    planner.replan(start, tick, put=pebbles, max_iterations=1)
+    assert len(planner.problem["environment.obstacles"]) == before + 2
+    with pytest.raises(downwash.InputError, match="no obstacle ''"):
+        planner.replan(start, tick, removed=[""], max_iterations=1)
+
+
+def test_targets_in_any_order_are_those_of_the_solution(problem, tmp_path):
+    places = [{"configuration": {"x_m": x_m, "z_m": 6}, "hold_s": 1} for x_m in (-5, -8)]
+    several = problem.replace({"goal": {"in_any_order": places}}).replace({"planner.max_iterations": 300})
+    solution = downwash.Planner(several).solve()
+    assert solution.status == "solved"
+    assert solution.problem.sha256 == several.sha256
+    solution.write(tmp_path / "run")
+    read = downwash.read_solution(tmp_path / "run", downwash.read_problem(tmp_path / "run" / "effective.yaml"))
+    assert read.record["order"] == solution.record["order"]
 
 
 def test_a_plan_that_is_none_is_refused(planner):

@@ -24,6 +24,12 @@ def test_values_are_read_by_key_in_the_units_of_the_file(bridge):
         bridge["planner.sed"]
 
 
+def test_what_a_key_gives_is_a_copy(bridge):
+    goal = bridge["goal"]
+    goal["hold_s"] = 99
+    assert bridge["goal"]["hold_s"] == bridge["goal.hold_s"] != 99
+
+
 def test_a_replaced_value_changes_nothing_else(bridge):
     faster = bridge.replace({"planner.seed": 7, "start.arm_deg": 60, "environment.obstacles[0].name": "floor"})
     expected = bridge.to_dict()

@@ -228,7 +228,7 @@ def long_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Pat
         campaign = Campaign(cluster, program, problems, seeds=1000, shards=16)
         campaign.write_scripts()
         campaign.change_script("scratch=${DOWNWASH_SCRATCH", f"DOWNWASH_SCRATCH={folder}/scratch.$SLURMD_NODENAME\nscratch=${{DOWNWASH_SCRATCH")
-        campaign.change_script("--wall-limit 30", "--wall-limit 2")
+        campaign.change_script("limit_s=30", "limit_s=2")
         clock = None
         if FAKE_TIME is not None:
             clock = folder / "clock"
