@@ -45,24 +45,26 @@ constexpr std::string_view scratch_setup =
 scratch=${DOWNWASH_SCRATCH:-${SLURM_TMPDIR:-${TMPDIR:-/tmp}}}/downwash-$(id -u)-@DIGEST@
 here=$scratch/$(basename "$kept")
 
-# Whether results may be written there: nobody else has made the folder, and its disk is not full.
-can_use_scratch() {
-    mkdir -p -m 700 "$scratch" 2>/dev/null && [[ -O $scratch && ! -L $scratch ]] &&
-        head -c 4194304 /dev/zero >"$here.probe" 2>/dev/null
+# Nobody else may have made the folder, as in /tmp.
+own_scratch() { mkdir -p -m 700 "$scratch" 2>/dev/null && [[ -O $scratch && ! -L $scratch ]]; }
+
+# Whether 4 MB can still be written there.
+scratch_has_room() {
+    head -c 4000000 /dev/zero 2>/dev/null >"$here.probe"
     local code=$?
     rm -f "$here.probe"
     return "$code"
 })sh";
 
 constexpr std::string_view scratch_run = R"sh(code=2
-if can_use_scratch && exec 9>>"$here.lock"; then
+if own_scratch && exec 9>>"$here.lock"; then
     flock --nonblock 9 || { echo "shard $shard is running on this machine already" >&2; exit 75; }
     run --out "$here" --save "$kept"
     code=$?
     # The copy has everything then; the lock goes with the last program that holds it.
     ((code != 0)) || rm -rf "$here" "$here.lock"
 fi
-if ((code == 2)) && ! can_use_scratch; then
+if ((code == 2)) && ! { own_scratch && scratch_has_room; }; then
     echo "shard $shard: $scratch cannot be used on $(hostname), going on in $kept" >&2
     run --out "$kept"
     code=$?
@@ -96,8 +98,11 @@ if ((code > 128)) && kill -0 "$child" 2>/dev/null; then # the signal has ended `
     code=0
     wait "$child" || code=$?
 fi
-# Told to end before its time: by scancel, or by Slurm, which itself requeues what it preempts.
-[[ -z $told ]] || ((SECONDS >= @WALL_LIMIT_S@)) || exit "$code"
+task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
+if [[ -n $told ]]; then # by scancel, if not for its time
+    job=$(scontrol show job "$task" 2>/dev/null)
+    [[ $job != *JobState=* || $job == *Reason=TimeLimit* ]] || exit "$code"
+fi
 case $code in
     0) exit 0 ;;
     1) most=1000 ;; # its time is over
@@ -107,7 +112,7 @@ esac
 if ((restarts < most)); then
     echo "shard $shard ended with $code: it is put into the queue again" >&2
     for ((try = 0; try < 20; ++try)); do # the controller may be away
-        scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID" && exit 0
+        scontrol requeue "$task" && exit 0
         sleep 15
     done
 fi

@@ -53,15 +53,16 @@ def kept(row: sqlite3.Row) -> tuple:
 
 
 class Campaign:
-    def __init__(self, cluster: Cluster, program: pathlib.Path, problems: pathlib.Path, seeds: int, shards: int):
+    def __init__(self, cluster: Cluster, program: pathlib.Path, problems: pathlib.Path, seeds: int, shards: int,
+                 name: str = "trial", search: str = "max_iterations: 5\nstop_at_first_solution: true"):
         self.cluster = cluster
         self.program = program
         self.shards = shards
-        self.folder = cluster.folder / "campaign"
-        self.file = cluster.folder / "trial.yaml"
+        self.folder = cluster.folder / name
+        self.file = cluster.folder / f"{name}.yaml"
         self.file.write_text(
-            f"schema: downwash/campaign/v1\nname: trial\nproblems: [{problems}/open_air.yaml]\nvariants: [mp-arm, mp-arm-da]\n"
-            f"seeds: {{first: 1, count: {seeds}}}\nmax_iterations: 5\nas_believed: true\nstop_at_first_solution: true\njobs: 1\n")
+            f"schema: downwash/campaign/v1\nname: {name}\nproblems: [{problems}/open_air.yaml]\nvariants: [mp-arm, mp-arm-da]\n"
+            f"seeds: {{first: 1, count: {seeds}}}\n{search}\nas_believed: true\njobs: 1\n")
 
     def run(self, *arguments, codes=(0,)) -> subprocess.CompletedProcess:
         result = subprocess.run([self.program, "bench", *map(str, arguments)], capture_output=True, text=True,
@@ -145,6 +146,7 @@ class Faults:
                     os.kill(process, signal.SIGKILL)
                     print(f"killed a process of `{word}` after {self.campaign.finished_runs()} runs", flush=True)
                     return
+            self.cluster.release_held()
             time.sleep(0.2)
         raise TimeoutError(f"no process of `{word}`")
 
@@ -200,9 +202,23 @@ def short_form(folder: pathlib.Path, program: pathlib.Path, problems: pathlib.Pa
             assert "is put into the queue again" in campaign.log("shards-*"), "the killed task was not started again"
             campaign.check_equal(folder / "alone")
             check_parallel(campaign, folder)
+            check_cancelled(cluster, program, problems)
         except BaseException:
             campaign.report_failure()
             raise
+
+
+def check_cancelled(cluster: Cluster, program: pathlib.Path, problems: pathlib.Path):
+    """Tasks that are cancelled do not put themselves into the queue again."""
+    campaign = Campaign(cluster, program, problems, seeds=1, shards=1, name="cancelled", search="time_limit_s: 25")
+    campaign.write_scripts()
+    campaign.submit()
+    cluster.wait_until(lambda: campaign.processes("bench run"), "a task runs")
+    cluster.run("scancel", *cluster.ask("squeue", "-h", "-o", "%A").split())
+    cluster.wait_until(lambda: not campaign.processes("bench run"), "the task has ended")
+    cluster.wait_until(lambda: not cluster.ask("squeue", "-h", "-o", "%i"), "no job waits or runs")
+    assert "is put into the queue again" not in campaign.log("shards-*"), "a cancelled task was started again"
+    print("a cancelled task stays cancelled")
 
 
 def check_parallel(campaign: Campaign, folder: pathlib.Path):
