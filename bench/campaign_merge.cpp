@@ -29,8 +29,22 @@ struct Shard {
     [[nodiscard]] std::string file() const { return (folder / results_file).string(); }
 };
 
-/// The plan and the number of a shard; nothing of a file in which nothing is yet.
-std::optional<std::pair<CampaignPlan, std::uint64_t>> read_shard(const fs::path& folder) {
+/// Shards in the order of their numbers, and the plan that all of them have.
+struct Shards {
+    CampaignPlan plan;
+    std::string checksum;  ///< of the plan in the first file
+    std::vector<Shard> all;
+};
+
+/// What says what a file is of.
+struct ShardHead {
+    std::uint64_t number = 0;
+    std::string checksum;              ///< of its plan
+    std::optional<CampaignPlan> plan;  ///< empty where it is the known one
+};
+
+/// Nothing of a file in which nothing is yet.
+std::optional<ShardHead> read_head(const fs::path& folder, const Shards& known) {
     const fs::path file = folder / results_file;
     std::error_code unknown;
     if (!fs::exists(file, unknown)) {
@@ -44,13 +58,17 @@ std::optional<std::pair<CampaignPlan, std::uint64_t>> read_shard(const fs::path&
         return std::nullopt;
     }
     require_layout(database, file);
-    CampaignPlan plan = read_plan(database, file);
-    if (!plan.shards) {
+    ShardHead head{shard_number(database).value_or(0), stored_plan_checksum(database), {}};
+    if (!known.all.empty() && head.checksum == known.checksum) {
+        return head;
+    }
+    head.plan = read_plan(database, file);
+    if (!head.plan->shards) {
         throw CampaignError(file.string() +
                             " holds no shard but a whole campaign: expected results of `downwash bench run CAMPAIGN "
                             "--shard I/N`");
     }
-    return std::pair(std::move(plan), shard_number(database).value_or(0));
+    return head;
 }
 
 /// The lines in which the settings of a shard differ from those of the first one.
@@ -75,28 +93,25 @@ std::string differences(const CampaignPlan& first, const Shard& of_first, const 
     return lines;
 }
 
-/// Shards in the order of their numbers, and the plan that all of them have.
-struct Shards {
-    CampaignPlan plan;
-    std::vector<Shard> all;
-};
-
 Shards read_shards(const std::vector<fs::path>& folders) {
     Shards shards;
     std::string errors;
     int wrong = 0;
     for (const fs::path& folder : folders) {
-        auto read = read_shard(folder);
-        if (!read) {
+        std::optional<ShardHead> head = read_head(folder, shards);
+        if (!head) {
             continue;
         }
-        auto& [plan, number] = *read;
-        shards.all.push_back({number, folder});
+        shards.all.push_back({head->number, folder});
+        if (!head->plan) {
+            continue;
+        }
         if (shards.all.size() == 1) {
-            shards.plan = std::move(plan);
+            shards.plan = std::move(*head->plan);
+            shards.checksum = head->checksum;
             continue;
         }
-        if (const std::string lines = differences(shards.plan, shards.all.front(), plan, shards.all.back());
+        if (const std::string lines = differences(shards.plan, shards.all.front(), *head->plan, shards.all.back());
             !lines.empty() && ++wrong <= max_lines) {
             errors += lines;
         }
@@ -191,16 +206,14 @@ class Merge {
         write_plan(database_, shards_.plan, std::nullopt);
         Duplicates duplicates;
         for (std::uint32_t i = 0; i < shards_.all.size(); ++i) {
-            read_runs(
-                shards_.all[i].folder, [](const CampaignPlan&) {},
-                [&](Run&& run) {
-                    if (const std::uint32_t other = origins_.add(run, i); other != Origins::none) {
-                        duplicates.add(shards_.plan, run, shards_.all[other], shards_.all[i]);
-                        return;
-                    }
-                    writer_.add(std::move(run));
-                    ++done_;
-                });
+            read_runs_of(shards_.plan, shards_.checksum, shards_.all[i].folder, [&](Run&& run) {
+                if (const std::uint32_t other = origins_.add(run, i); other != Origins::none) {
+                    duplicates.add(shards_.plan, run, shards_.all[other], shards_.all[i]);
+                    return;
+                }
+                writer_.add(std::move(run));
+                ++done_;
+            });
         }
         duplicates.require_none();
         writer_.count();

@@ -247,6 +247,13 @@ void write_plan(const Database& database, const CampaignPlan& plan, std::optiona
     database.insert("campaign_checksum", checksum_of(plan), std::uint64_t{0});
 }
 
+std::string stored_plan_checksum(const Database& database) {
+    std::string checksum;
+    database.for_each<std::string>("SELECT checksum FROM campaign_checksum",
+                                   [&](const std::string& found) { checksum = found; });
+    return checksum;
+}
+
 CampaignPlan read_plan(const Database& database, const std::filesystem::path& file) {
     using Text = std::string;
     using OptionalNumber = std::optional<double>;
@@ -291,9 +298,7 @@ CampaignPlan read_plan(const Database& database, const std::filesystem::path& fi
     if (database.number("PRAGMA user_version") != layout_without_machines) {
         read_shards(database, plan);
     }
-    std::string checksum;
-    database.for_each<Text>("SELECT checksum FROM campaign_checksum", [&](const Text& found) { checksum = found; });
-    if (checksum != checksum_of(plan)) {
+    if (stored_plan_checksum(database) != checksum_of(plan)) {
         throw CampaignError(file.string() +
                             ": what says which runs belong to the campaign is damaged (settings, problems, planners, "
                             "seeds or targets). Restore the file from a copy, or run the campaign again into another "

@@ -38,6 +38,9 @@ void write_plan(const Database& database, const CampaignPlan& plan, std::optiona
 /// @pre require_layout()
 [[nodiscard]] std::optional<std::uint64_t> shard_number(const Database& database);
 
+/// The checksum that a file has of its plan, which tells equal plans sooner than reading them. @pre require_layout()
+[[nodiscard]] std::string stored_plan_checksum(const Database& database);
+
 /// @throws CampaignError when what is read is not what was written
 [[nodiscard]] CampaignPlan read_plan(const Database& database, const std::filesystem::path& file);
 

@@ -97,6 +97,18 @@ class DamageReport {
     int damaged_ = 0, more_ = 0;
 };
 
+/// The runs that are what was written, then what is wrong with the others. @throws CampaignError
+void take_all(const Database& database, const CampaignPlan& plan, const std::filesystem::path& folder,
+              const std::function<void(Run&&)>& take) {
+    DamageReport damage(plan, folder);
+    for_each_run(database, [&](StoredRun&& each) {
+        if (damage.is_whole(each)) {
+            take(std::move(each.run));
+        }
+    });
+    damage.require_none(database);
+}
+
 /// The identity of a file; of none if there is none.
 FileIdentity identity_of(const std::filesystem::path& file) {
     struct stat found {};
@@ -186,14 +198,18 @@ CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<
     require_layout(database, file);
     CampaignPlan plan = read_plan(database, file);
     begin(plan);
-    DamageReport damage(plan, folder);
-    for_each_run(database, [&](StoredRun&& each) {
-        if (damage.is_whole(each)) {
-            take(std::move(each.run));
-        }
-    });
-    damage.require_none(database);
+    take_all(database, plan, folder, take);
     return plan;
+}
+
+void read_runs_of(const CampaignPlan& plan, const std::string& checksum, const std::filesystem::path& folder,
+                  const std::function<void(Run&&)>& take) {
+    const std::filesystem::path file = folder / results_file;
+    const Database database(file);
+    const Transaction all(database, Transaction::Kind::reading);
+    require_layout(database, file);
+    const bool is_known = stored_plan_checksum(database) == checksum;
+    take_all(database, is_known ? plan : read_plan(database, file), folder, take);
 }
 
 CampaignResults read_results(const std::filesystem::path& folder) {

@@ -71,6 +71,11 @@ class CampaignStore {
 CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<void(const CampaignPlan&)>& begin,
                        const std::function<void(Run&&)>& take);
 
+/// The same of one of many files of one plan, which is read only where the file's is another.
+/// @param checksum stored_plan_checksum() of a file that has the plan
+void read_runs_of(const CampaignPlan& plan, const std::string& checksum, const std::filesystem::path& folder,
+                  const std::function<void(Run&&)>& take);
+
 /// Reads what a campaign has left in a folder, finished or not.
 /// @throws CampaignError, DatabaseError: no such file, another layout, a file that was changed or damaged; the message
 /// names every run that is not what was written, and says what to do
