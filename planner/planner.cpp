@@ -40,7 +40,7 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
 }
 
 /// The same limits as in PlannerSettings. No time at all is one, too: then there is only the stop.
-void throw_if_unlimited(const ReplanOptions& options) {
+void throw_if_out_of_range(const ReplanOptions& options) {
     constexpr double most_s = 1e6;
     constexpr std::uint64_t most_iterations = 1'000'000'000'000'000;
     if (options.time_limit_s && !(*options.time_limit_s <= most_s)) {
@@ -269,7 +269,7 @@ std::shared_ptr<const AeroMap> Planner::map_around(const Bounds& places) const {
 
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
     Call call{options, {}, {}};
-    throw_if_unlimited(options);
+    throw_if_out_of_range(options);
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
     if (!is_finite(start)) {
         throw_input_error("has a number that is not finite: expected finite ones", "start");

@@ -65,12 +65,12 @@ CoreSolution read(const std::string& file, const std::shared_ptr<CoreProblem>& p
     return {problem, read_solution(file, problem->problem())};
 }
 
-}  // namespace
-
 /// Files hold all digits, those of angles in degrees.
 bool is_near(double a, double b) {
     return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});
 }
+
+}  // namespace
 
 Problem as_visited(const Problem& problem, const Solution& solution) {
     const auto fits = [&problem](const Visit& visit) {
