@@ -174,8 +174,9 @@ class Document {
             "collided, "
             "left the flyable area, became unstable or missed the goal,\nhovering there included. `discarded`: plans "
             "of "
-            "the aware planner that failed in the same way or came nearer than the margin, and were not\nreported. The "
-            "minimum clearance is over the flights of all solved seeds.\n\n");
+            "the aware planner that failed in the same way, came nearer than the margin or were being\nexecuted when "
+            "the time was over, and were not reported. The minimum clearance is over the flights of all solved "
+            "seeds.\n\n");
         heads({"problem", "planner", "solved", "failed flight", "solved and held", "failures by cause",
                "minimum clearance", "discarded"});
         for (const CellFigures& cell : report_.cells) {
