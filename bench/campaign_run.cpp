@@ -299,7 +299,7 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     const CampaignPlan plan = plan_of(read, options.shard);
     const auto shard = options.shard ? std::optional(options.shard->number) : std::nullopt;
     SavedCopy saved(options.out, options.saved);
-    saved.restore(options.resumes);
+    saved.restore(plan, shard, options.resumes);
     CampaignStore store(options.out, plan, options.resumes, shard);
     std::vector<Task> tasks = runs_of(plan, shard);
     const std::size_t planned = tasks.size();

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "downwash/bench/campaign_checksums.hpp"
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/bench/machine.hpp"
 
@@ -89,13 +90,9 @@ struct Stored {
     std::string settings;  ///< their checksum
     std::optional<std::uint64_t> shard;
     std::uint64_t runs = 0;
-
-    [[nodiscard]] bool is_of_the_same(const Stored& other) const {
-        return settings == other.settings && shard == other.shard;
-    }
 };
 
-/// Nothing where there are no results yet. @throws CampaignError, DatabaseError of what cannot be read
+/// Nothing where there are no runs yet. @throws CampaignError, DatabaseError of what cannot be read
 std::optional<Stored> stored_in(const fs::path& folder) {
     const fs::path file = folder / results_file;
     std::error_code unknown;
@@ -107,32 +104,20 @@ std::optional<Stored> stored_in(const fs::path& folder) {
         return std::nullopt;
     }
     require_layout(database, file);
-    require_present_layout(database, file);
-    Stored stored;
-    database.for_each<std::string, std::uint64_t>("SELECT checksum, finished_runs FROM campaign_checksum",
-                                                  [&](const std::string& settings, std::uint64_t runs) {
-                                                      stored.settings = settings;
-                                                      stored.runs = runs;
-                                                  });
-    stored.shard = shard_number(database);
-    return stored;
-}
-
-/// Nothing as well where they cannot be read: a copy may take their place.
-std::optional<Stored> readable_in(const fs::path& folder) {
-    try {
-        return stored_in(folder);
-    } catch (const std::runtime_error&) {
+    const std::uint64_t runs = database.number("SELECT finished_runs FROM campaign_checksum");
+    if (runs == 0) {
         return std::nullopt;
     }
+    require_present_layout(database, file);
+    return Stored{stored_plan_checksum(database), shard_number(database), runs};
 }
 
-void require_the_same(const std::optional<Stored>& results, const fs::path& of_results,
-                      const std::optional<Stored>& copy, const fs::path& of_copy) {
-    if (results && copy && !results->is_of_the_same(*copy)) {
-        throw CampaignError((of_copy / results_file).string() +
-                            " holds runs of another campaign, or of another shard, than " +
-                            (of_results / results_file).string() + ": choose another folder for the copy");
+void require_the_same(const Stored& copy, const fs::path& folder, const std::string& settings,
+                      const std::optional<std::uint64_t>& shard) {
+    if (copy.settings != settings || copy.shard != shard) {
+        throw CampaignError((folder / results_file).string() +
+                            " holds runs of another campaign, of other settings or of another shard: choose another "
+                            "folder with --save");
     }
 }
 
@@ -175,17 +160,21 @@ SavedCopy::SavedCopy(fs::path results, fs::path saved) : results_(std::move(resu
     }
 }
 
-void SavedCopy::restore(bool resumes) const {
-    if (saved_.empty()) {
+void SavedCopy::restore(const CampaignPlan& plan, std::optional<std::uint64_t> shard, bool resumes) const {
+    const std::optional<Stored> copy = saved_.empty() ? std::nullopt : stored_in(saved_);
+    if (!copy) {
         return;
     }
-    const std::optional<Stored> copy = stored_in(saved_);
-    if (copy && copy->runs > 0 && !resumes) {
+    if (!resumes) {
         throw CampaignError((saved_ / results_file).string() + " holds runs already; --resume continues with them");
     }
-    const std::optional<Stored> results = readable_in(results_);
-    require_the_same(results, results_, copy, saved_);
-    if (copy && (!results || copy->runs > results->runs)) {
+    require_the_same(*copy, saved_, checksum_of(plan), shard);
+    std::optional<Stored> results;
+    try {
+        results = stored_in(results_);
+    } catch (const DatabaseError&) {  // damaged: the copy takes their place
+    }
+    if (!results || copy->runs > results->runs) {
         const CampaignLock lock(results_);
         std::error_code ignored;  // a journal would be that of another file then
         fs::remove(results_ / (std::string(results_file) + "-journal"), ignored);
@@ -200,7 +189,9 @@ void SavedCopy::save() {
     }
     const std::optional<Stored> results = stored_in(results_);
     const std::optional<Stored> copy = stored_in(saved_);
-    require_the_same(results, results_, copy, saved_);
+    if (results && copy) {
+        require_the_same(*copy, saved_, results->settings, results->shard);
+    }
     if (results && (!copy || copy->runs <= results->runs)) {
         copy_whole(results_ / results_file, saved_ / results_file);
     }

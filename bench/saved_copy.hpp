@@ -1,7 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+
+#include "downwash/bench/campaign_data.hpp"
 
 namespace downwash::bench {
 
@@ -20,10 +24,10 @@ class SavedCopy {
     SavedCopy(std::filesystem::path results, std::filesystem::path saved);
 
     /// Begins the results with the copy if they have fewer runs or are not there. To be called before anything opens
-    /// them. @param resumes whether runs may be there already
+    /// them. @param plan,shard what is going to run   @param resumes whether runs may be there already
     /// @throws CampaignError, DatabaseError: a copy that cannot be read, that is of another campaign or shard, or that
     /// has runs although nothing is resumed
-    void restore(bool resumes) const;
+    void restore(const CampaignPlan& plan, std::optional<std::uint64_t> shard, bool resumes) const;
 
     /// Saves the results, unless the copy has more runs. Nobody may be writing them.
     /// @throws CampaignError, DatabaseError, also where the copy has become that of another campaign or shard

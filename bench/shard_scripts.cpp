@@ -188,7 +188,7 @@ std::string filled(std::string_view from, const Values& values) {
 
 Values values_of(const ShardScripts& of) {
     const std::size_t digits = std::max<std::size_t>(4, std::to_string(of.shards).size());
-    constexpr std::uint64_t max_merge_minutes = 60;
+    constexpr std::uint64_t min_merge_minutes = 10, max_merge_minutes = 60;
     const std::string count = std::to_string(of.shards);
     return {{"CAMPAIGN", of.campaign},
             {"PROGRAM", of.program.string()},
@@ -200,7 +200,7 @@ Values values_of(const ShardScripts& of) {
             {"DIGITS", std::to_string(digits)},
             {"JOBS", std::to_string(of.jobs)},
             {"MINUTES", std::to_string(of.task_minutes)},
-            {"MERGE_MINUTES", std::to_string(std::min(max_merge_minutes, of.task_minutes))},
+            {"MERGE_MINUTES", std::to_string(std::clamp(of.task_minutes, min_merge_minutes, max_merge_minutes))},
             {"AT_ONCE", std::to_string(of.at_once)},
             {"WALL_LIMIT_S", std::to_string(wall_limit_s(of.task_minutes))},
             // Campaigns of one name in different folders do not share a scratch folder.

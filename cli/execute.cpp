@@ -10,6 +10,7 @@
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/plan_origin.hpp"
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
@@ -66,26 +67,6 @@ fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
     return *given.out;
 }
 
-/// Whether a plan was made for another problem than that in which it is flown; planner settings do not count. A file
-/// without its run may be of the same problem with other settings, which nobody can tell. A plan written by hand is of
-/// no problem, so a certificate in its file is of another one.
-bool is_of_another_problem(const fs::path& plan, const Solution& solution, Problem problem) {
-    const std::string made_for_sha256 = problem_of_solution(plan).sha256;
-    if (made_for_sha256.empty()) {
-        return solution.certificate.has_value();
-    }
-    if (made_for_sha256 == problem_sha256(problem)) {
-        return false;
-    }
-    try {
-        const Problem made_for = read_problem((plan.parent_path() / "effective.yaml").string());
-        problem.planner = made_for.planner;
-        return problem_sha256(made_for) != made_for_sha256 || problem_sha256(problem) != made_for_sha256;
-    } catch (const std::runtime_error&) {  // there is none, or it cannot be read
-        return true;
-    }
-}
-
 std::uint64_t seed_of(const ExecuteArguments& given, const Problem& problem) {
     return given.seed.value_or(problem.planner.seed);
 }
@@ -135,7 +116,7 @@ ExitCode run(const ExecuteArguments& given) {
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
     RunFolder folder = claimed_folder(folder_for(given, read), read, given.problem, given.force);
-    const bool is_other = is_of_another_problem(plan_file(given.plan), solution, read);
+    const bool is_other = is_of_another_problem(plan_file(given.plan), solution.certificate.has_value(), read);
     if (is_other) {
         solution.certificate.reset();
         noting(warnings, given.is_quiet)(

@@ -126,7 +126,7 @@ Planner::~Planner() = default;
 const Solution& Planner::solve(std::stop_token stop) {
     SolveOptions options = options_;
     options.stop = std::move(stop);
-    options.map = map_;
+    options.map = unmapped_.empty() ? map_ : nullptr;  // a stopped replan() may have left the former one
     solution_ = downwash::solve(PlannableProblem{problem_, model_}, options);
     remember(solution_);
     if (solution_.status == Status::solved) {
@@ -140,6 +140,7 @@ void Planner::remember(const Solution& solution) {
     constexpr std::size_t most_places = 64;
     if (solution.map) {
         map_ = solution.map;
+        unmapped_.clear();
     }
     if (solution.status == Status::solved) {
         plan_ = solution.plan;

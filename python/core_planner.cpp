@@ -249,7 +249,12 @@ class CorePlanner {
     }
 
     [[nodiscard]] CoreAnswer with_problem(const Answer& answer) const {
-        return {answer, answer.solution ? problem_now() : nullptr};
+        if (!answer.solution) {
+            return {answer, nullptr};
+        }
+        const std::shared_ptr<CoreProblem> of = problem_now();
+        of->placed.plannable.problem.planner.seed = static_cast<std::uint32_t>(answer.solution->seed);
+        return {answer, of};
     }
 
     CoreProblem began_with_;

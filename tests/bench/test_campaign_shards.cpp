@@ -8,6 +8,7 @@
 #include "downwash/base/files.hpp"
 #include "downwash/bench/campaign_merge.hpp"
 #include "downwash/bench/campaign_report.hpp"
+#include "downwash/bench/saved_copy.hpp"
 #include "small_campaign.hpp"
 
 using namespace downwash;         // NOLINT(google-build-using-namespace): a test
@@ -234,7 +235,10 @@ TEST_CASE("a copy of the results brings back what a node has lost, and nothing r
     CHECK(answer_in(folder / "local", "SELECT group_concat(time) FROM runs") == times);
 
     // Results that have less do not replace the copy.
-    CHECK(answer_in(folder / "local", "DELETE FROM runs; UPDATE campaign_checksum SET finished_runs = 0").empty());
+    CHECK(answer_in(folder / "local", "DELETE FROM runs WHERE id > 1; UPDATE campaign_checksum SET finished_runs = 1")
+              .empty());
+    SavedCopy(options.out, options.saved).save();
+    CHECK(answer_in(folder / "kept", "SELECT group_concat(time) FROM runs") == times);
     options.stop = [] {
         std::stop_source stop;
         stop.request_stop();
@@ -254,7 +258,11 @@ TEST_CASE("a copy of the results brings back what a node has lost, and nothing r
     options.saved.clear();
     CHECK(run_campaign(read, options).done == 3);
     options.saved = folder / "kept";
-    CHECK_THROWS_WITH(run_campaign(read, options), Contains("holds runs of another campaign, or of another shard"));
+    CHECK_THROWS_WITH(run_campaign(read, options), Contains("or of another shard: choose another folder with --save"));
+    CHECK_THROWS_WITH(SavedCopy(options.out, options.saved).save(), Contains("or of another shard"));
+    options.out = folder / "fresh";
+    CHECK_THROWS_WITH(run_campaign(read, options), Contains("or of another shard"));
+    CHECK_FALSE(std::filesystem::exists(folder / "fresh" / results_file));
     CHECK(answer_in(folder / "kept", "SELECT group_concat(time) FROM runs") == times);
 
     std::ofstream(folder / "file") << "in the way";

@@ -95,15 +95,23 @@ TEST_CASE("A plan is validated by an independent flight") {
         const Result told = work.run("validate run/uncertain.yaml --plan", std::string("a run"), "--runs 2 --seed 9");
         CHECK_THAT(told.out, Contains("downwash validate run/uncertain.yaml --plan 'a run' --seed 9 --world "));
         // A certificate that promises more than the flights keep is contradicted.
-        auto promising = solved;
-        promising["certificate"] = {{"given", true}, {"max_failure_probability", 1e-6}};
-        write_file(work.in_run("promising.json"), promising.dump());
         write_file(work.in_run("run/blind.yaml"), replaced(work.text("run/effective.yaml"), "uncertainty: none",
                                                            "uncertainty: {sensing: {position_bias_m: {sd: 1}}}"));
+        auto promising = solved;
+        promising["certificate"] = {{"given", true}, {"max_failure_probability", 1e-6}};
+        promising["problem"]["sha256"] =
+            work.run("execute run/blind.yaml --plan run --out blind --json").json().at("problem").at("sha256");
+        write_file(work.in_run("promising.json"), promising.dump());
         const Words judged = words("validate run/blind.yaml --quiet --json --plan promising.json");
         const Result broken = work.run(judged, "--runs 12");
         CHECK(broken.code == 3);
         CHECK(broken.json().at("disagreements").back().at("what") == "certificate: failure probability at most");
+        CHECK(work.run(judged, "--runs 12").out == broken.out);
+        promising["problem"]["sha256"] = solved.at("problem").at("sha256");  // of another problem: it says nothing here
+        write_file(work.in_run("promising.json"), promising.dump());
+        CHECK(work.run(judged, "--runs 12").code == 0);
+        promising["problem"]["sha256"] =
+            work.run("execute run/blind.yaml --plan run --out blind --json --force").json().at("problem").at("sha256");
         promising["certificate"]["max_failure_probability"] = 0.99;
         write_file(work.in_run("promising.json"), promising.dump());
         CHECK(work.run(judged, "--runs 12").code == 0);

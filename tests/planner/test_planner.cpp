@@ -306,4 +306,11 @@ TEST_CASE("limits of replanning have those of a search, and a stop ends it once 
     stopped.stop = stop.get_token();
     CHECK(planner.replan(start, 0, {}, stopped).advice == Advice::stop);
     CHECK(planner.map() == nullptr);
+    // With a map of the scene before, a stopped call leaves the new one to the next.
+    REQUIRE(planner.solve().status == Status::solved);
+    SceneChange change;
+    change.put.push_back(test::box("block", {0.5, 3, 3}, {2.2, 0, 1.5}));
+    CHECK(planner.replan(start, 0, change, stopped).advice == Advice::stop);
+    CHECK(planner.solve().status == Status::solved);
+    CHECK(planner.model().is_mine(*planner.map(), planner.problem().bounds));
 }
