@@ -81,6 +81,20 @@ share_in_worlds() { # PLANNER: of the flights in other worlds that fail, in %
 }
 quotes README.md "$(share_in_worlds mp-arm-ada) % of the flights of these MP-ARM-ADA plans fail, $(share_in_worlds mp-arm-da) % of those of MP-ARM-DA and $(share_in_worlds mp-arm) % of those of MP-ARM"
 
+campaign=bench/results/certified.md
+certified() { # N: a cell of the row of all problems
+    awk -F'|' -v n="$1" '$2 == " all " { gsub(/^ +| +$/, "", $(n + 1)); print $(n + 1); exit }' "$campaign"
+}
+given=$(certified 5)
+given=${given%% *}
+failures=$(certified 4)
+failures=${failures%%/*}
+flights=$(certified 4 | awk -F'[/ ]' '{ printf "%.0f,000", $2 / 1000 }')
+quotes README.md "[${given%%/*} of ${given##*/}](bench/results/certified.md) came to a plan with a certificate"
+quotes README.md "$failures of $flights flights of these plans failed"
+quotes docs/robustness.md "${given%%/*} of ${given##*/} searches have a certified plan"
+quotes docs/robustness.md "In $flights flights in fresh worlds the certified plans failed $failures times"
+
 safe=$(sed -n 's/^\*\*mp-arm rrt-star\*\*: safe on all problems from a margin of \([0-9.]* m\) on.*/\1/p' bench/results/margins.md)
 
 # goals TEXT: how many rows of MP-ARM's table of inflated obstacles match it.
