@@ -10,13 +10,22 @@ namespace {
 using problems::JsonReader;
 using problems::Node;
 
-void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
-    const auto node = JsonReader::member(root, "execution");
+/// What may be missing or null.
+std::optional<Node> group(JsonReader& reader, const Node& root, const char* name) {
+    const auto node = JsonReader::member(root, name);
     if (!node || node->json->is_null()) {
-        return;
+        return std::nullopt;
     }
     if (!node->json->is_object()) {
         reader.report(*node, "expected a group of keys or null");
+        return std::nullopt;
+    }
+    return *node;
+}
+
+void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
+    const auto node = group(reader, root, "execution");
+    if (!node) {
         return;
     }
     FlightClaims& flight = into.emplace();
@@ -45,12 +54,8 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
 }
 
 void read_certificate(JsonReader& reader, const Node& root, std::optional<double>& certified_share) {
-    const auto node = JsonReader::member(root, "certificate");
-    if (!node || node->json->is_null()) {
-        return;
-    }
-    if (!node->json->is_object()) {
-        reader.report(*node, "expected a group of keys or null");
+    const auto node = group(reader, root, "certificate");
+    if (!node) {
         return;
     }
     bool is_given = false;
