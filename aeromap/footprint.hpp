@@ -73,7 +73,10 @@ class Footprints {
     [[nodiscard]] std::span<const Footprint> of_primitives() const noexcept { return primitives_; }
 
     /// Whether these are all parts, and so few that each is asked sooner than those near a place are found.
-    [[nodiscard]] bool are_few_primitives() const noexcept { return primitives_.size() <= 16 && others_.empty(); }
+    [[nodiscard]] bool are_few_primitives() const noexcept {
+        constexpr std::size_t few = 16;
+        return primitives_.size() <= few && others_.empty();
+    }
 
     /// Of a part that is no primitive. Kept for later while there is room, else put into `spare`.
     [[nodiscard]] const Footprint& of_other(std::size_t part, std::list<Footprint>& spare) const;

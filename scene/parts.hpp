@@ -20,7 +20,7 @@ struct OctreeBox {
     std::uint32_t turned;  ///< which of Parts::octree_placements
 };
 
-/// Lists of parts, numbered through: first primitives, then boxes of octrees, then triangles. Primitives are few and
+/// Lists of parts, numbered through: first primitives, then boxes of octrees, then triangles. Primitives
 /// keep what queries need; what the others need is worked out from the little that is kept of them.
 struct Parts {
     std::vector<Primitive> primitives;
