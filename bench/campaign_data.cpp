@@ -37,16 +37,23 @@ std::string_view name_of(RunStatus status) {
     return names[static_cast<std::size_t>(status)];
 }
 
+std::vector<SeedRange> ranges_of(const std::vector<std::uint32_t>& seeds) {
+    std::vector<SeedRange> ranges;
+    for (const std::uint32_t seed : seeds) {
+        if (!ranges.empty() && seed != 0 && seed - 1 == ranges.back().last) {
+            ranges.back().last = seed;
+        } else {
+            ranges.push_back({seed, seed});
+        }
+    }
+    return ranges;
+}
+
 std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
     std::string text;
-    for (std::size_t i = 0; i < seeds.size();) {
-        std::size_t end = i + 1;
-        while (end < seeds.size() && seeds[end] == seeds[end - 1] + 1 && seeds[end] != 0) {
-            ++end;
-        }
-        text += (text.empty() ? "" : " ") + std::to_string(seeds[i]);
-        text += end - i > 1 ? "-" + std::to_string(seeds[end - 1]) : "";
-        i = end;
+    for (const auto& [first, last] : ranges_of(seeds)) {
+        text += (text.empty() ? "" : " ") + std::to_string(first);
+        text += last != first ? "-" + std::to_string(last) : "";
     }
     return text;
 }

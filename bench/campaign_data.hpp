@@ -168,6 +168,14 @@ struct CampaignResults {
     std::vector<Run> runs;
 };
 
+/// Consecutive seeds, both ends included.
+struct SeedRange {
+    std::uint32_t first = 0, last = 0;
+};
+
+/// The same seeds in the same order.
+[[nodiscard]] std::vector<SeedRange> ranges_of(const std::vector<std::uint32_t>& seeds);
+
 /// "1-200 300": consecutive seeds as one range.
 [[nodiscard]] std::string seeds_text(const std::vector<std::uint32_t>& seeds);
 

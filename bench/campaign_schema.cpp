@@ -1,6 +1,7 @@
 #include "downwash/bench/campaign_schema.hpp"
 
 #include <array>
+#include <map>
 
 #include "downwash/base/version.hpp"
 #include "downwash/bench/campaign_checksums.hpp"
@@ -11,7 +12,9 @@ namespace {
 
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
-constexpr std::uint64_t layout_version = 7;
+constexpr std::uint64_t layout_version = 8;
+/// Has a row for each seed. It can be read, but not continued.
+constexpr std::uint64_t layout_of_single_seeds = 7;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -67,7 +70,6 @@ CREATE TABLE campaign_checksum (checksum TEXT NOT NULL, finished_runs INTEGER NO
 CREATE TABLE campaign (place INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
 CREATE TABLE campaign_limits (
   time_limit_s REAL, stop_at_first_solution INTEGER NOT NULL, evaluation_worlds INTEGER NOT NULL);
-CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE);
 CREATE TABLE left_out (place INTEGER PRIMARY KEY, what TEXT NOT NULL);
 CREATE TABLE expectations (
   place INTEGER PRIMARY KEY, variant TEXT NOT NULL, algorithm TEXT, solved_ratio REAL, failed_flights INTEGER,
@@ -76,7 +78,12 @@ CREATE TABLE expectations (
   first_certified_median_s REAL);
 )";
 
-/// What layout 7 has in addition.
+constexpr const char* table_of_seeds =
+    "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL);";
+constexpr const char* table_of_single_seeds =
+    "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE);";
+
+/// From layout 7 on.
 constexpr const char* layout_of_machines = R"(
 CREATE TABLE machines (
   id INTEGER PRIMARY KEY, host TEXT NOT NULL, processor TEXT NOT NULL, instruction_set TEXT NOT NULL,
@@ -142,18 +149,41 @@ Schema schema_of(const Database& database) {
     return schema;
 }
 
-/// The same as we make it.
-const Schema& our_schema(bool has_machines) {
-    const auto make = [](bool with_machines) {
-        const Database ours(":memory:", true);
-        ours.execute(layout);
-        if (with_machines) {
-            ours.execute(layout_of_machines);
+void make_tables(const Database& database, std::uint64_t version) {
+    database.execute(layout);
+    database.execute(version == layout_version ? table_of_seeds : table_of_single_seeds);
+    if (version != layout_without_machines) {
+        database.execute(layout_of_machines);
+    }
+}
+
+/// The same as a layout that this version reads makes it.
+const Schema& our_schema(std::uint64_t version) {
+    static const std::map<std::uint64_t, Schema> schemas = [] {
+        std::map<std::uint64_t, Schema> made;
+        for (const std::uint64_t number : {layout_without_machines, layout_of_single_seeds, layout_version}) {
+            const Database ours(":memory:", true);
+            make_tables(ours, number);
+            made[number] = schema_of(ours);
         }
-        return schema_of(ours);
-    };
-    static const Schema former = make(false), present = make(true);
-    return has_machines ? present : former;
+        return made;
+    }();
+    return schemas.at(version);
+}
+
+std::vector<std::uint32_t> read_seeds(const Database& database) {
+    std::vector<std::uint32_t> seeds;
+    const bool single = database.number("PRAGMA user_version") != layout_version;
+    database.for_each<std::uint64_t, std::uint64_t>(
+        single ? "SELECT seed, seed FROM campaign_seeds ORDER BY place"
+               : "SELECT first, last FROM campaign_seeds ORDER BY place",
+        [&](std::uint64_t first, std::uint64_t last) {
+            // The checksum tells whether a range is damaged, if it makes no more seeds than memory has room for.
+            for (std::uint64_t seed = first; seed <= last && seeds.size() <= max_campaign_runs; ++seed) {
+                seeds.push_back(static_cast<std::uint32_t>(seed));
+            }
+        });
+    return seeds;
 }
 
 void write_shards(const Database& database, const ShardPlan& shards, std::optional<std::uint64_t> number) {
@@ -183,16 +213,15 @@ void require_layout(const Database& database, const std::filesystem::path& file)
     if (database.number("PRAGMA application_id") != application_id) {
         throw CampaignError(file.string() + " holds no results of a campaign; choose another folder");
     }
-    if (const std::uint64_t found = database.number("PRAGMA user_version");
-        found != layout_version && found != layout_without_machines) {
+    const std::uint64_t version = database.number("PRAGMA user_version");
+    if (version != layout_version && version != layout_of_single_seeds && version != layout_without_machines) {
         throw CampaignError(file.string() + " holds no results that this version can read: its layout is number " +
-                            std::to_string(found) + ", not " + std::to_string(layout_version) +
+                            std::to_string(version) + ", not " + std::to_string(layout_version) +
                             ". Report it with the version of downwash that wrote it, or run the campaign again into "
                             "another folder");
     }
     // A table may be a view that never ends, or have triggers that change what we read.
-    const bool has_machines = database.number("PRAGMA user_version") != layout_without_machines;
-    if (schema_of(database) != our_schema(has_machines)) {
+    if (schema_of(database) != our_schema(version)) {
         throw CampaignError(file.string() +
                             " has other tables than `downwash bench run` makes: it is damaged, or another program "
                             "wrote into it. Restore it from a copy, or run the campaign again into another folder");
@@ -202,15 +231,14 @@ void require_layout(const Database& database, const std::filesystem::path& file)
 void require_present_layout(const Database& database, const std::filesystem::path& file) {
     if (database.number("PRAGMA user_version") != layout_version) {
         throw CampaignError(file.string() +
-                            " was begun by an earlier version of downwash, which did not record the machine of each "
-                            "run. `downwash bench report` reads it; to add runs, run the campaign again into another "
-                            "folder");
+                            " was begun by an earlier version of downwash and has other tables. `downwash bench report` "
+                            "reads it; to add runs, run the campaign again into another folder");
     }
 }
 
 std::optional<std::uint64_t> shard_number(const Database& database) {
     std::optional<std::uint64_t> number;
-    if (database.number("PRAGMA user_version") == layout_version) {
+    if (database.number("PRAGMA user_version") != layout_without_machines) {
         database.for_each<std::optional<std::uint64_t>>("SELECT number FROM shard",
                                                         [&](const auto& found) { number = found; });
     }
@@ -220,8 +248,7 @@ std::optional<std::uint64_t> shard_number(const Database& database) {
 void write_plan(const Database& database, const CampaignPlan& plan, std::optional<std::uint64_t> shard) {
     database.execute("PRAGMA application_id = " + std::to_string(application_id));
     database.execute("PRAGMA user_version = " + std::to_string(layout_version));
-    database.execute(layout);
-    database.execute(layout_of_machines);
+    make_tables(database, layout_version);
     write_what_runs(database, plan);
     if (plan.shards) {
         write_shards(database, *plan.shards, shard);
@@ -236,8 +263,8 @@ void write_plan(const Database& database, const CampaignPlan& plan, std::optiona
     for (const auto& [name, value] : plan.settings) {
         database.insert("campaign (name, value)", name, value);
     }
-    for (const std::uint32_t seed : plan.seeds) {
-        database.insert("campaign_seeds (seed)", std::uint64_t{seed});
+    for (const auto& [first, last] : ranges_of(plan.seeds)) {
+        database.insert("campaign_seeds (first, last)", std::uint64_t{first}, std::uint64_t{last});
     }
     for (const std::string& what : plan.left_out) {
         database.insert("left_out (what)", what);
@@ -276,9 +303,7 @@ CampaignPlan read_plan(const Database& database, const std::filesystem::path& fi
                                                            plan.planners[planner - 1].parameters[name] = value;
                                                        }
                                                    });
-    database.for_each<std::uint64_t>("SELECT seed FROM campaign_seeds ORDER BY place", [&](std::uint64_t seed) {
-        plan.seeds.push_back(static_cast<std::uint32_t>(seed));
-    });
+    plan.seeds = read_seeds(database);
     database.for_each<Text, std::optional<Text>, OptionalNumber, std::optional<std::uint64_t>, OptionalNumber,
                       OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber, std::optional<Text>,
                       OptionalNumber, OptionalNumber, OptionalNumber, OptionalNumber>(

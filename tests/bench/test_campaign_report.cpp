@@ -359,6 +359,7 @@ TEST_CASE("seeds that follow each other are told as a range") {
     CHECK(seeds_text({1, 2, 3, 7}) == "1-3 7");
     CHECK(seeds_text({5}) == "5");
     CHECK(seeds_text({4294967295U, 0}) == "4294967295 0");
+    CHECK(seeds_text({3, 2, 1, 2}) == "3 2 1-2");
 }
 
 TEST_CASE("flights in worlds are pooled over the seeds, with the interval of Clopper and Pearson") {

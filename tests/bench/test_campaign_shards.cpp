@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "downwash/base/files.hpp"
@@ -282,23 +283,41 @@ TEST_CASE("a file of results that is taken away is noticed before a run is lost"
     CHECK(read_results(folder / "elsewhere").runs.size() == 1);
 }
 
-TEST_CASE("results of the layout before machines are reported, and not continued") {
+TEST_CASE("results of former layouts are reported, and not continued") {
+    const std::string single_seeds =
+        "DROP TABLE campaign_seeds; "
+        "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE); "
+        "INSERT INTO campaign_seeds (seed) VALUES (1), (2), (3); ";
+    const std::string change =
+        single_seeds + GENERATE("PRAGMA user_version = 7",
+                                "DROP TABLE run_machines; DROP TABLE machines; DROP TABLE shard; "
+                                "DROP TABLE shard_costs; PRAGMA user_version = 6");
+    CAPTURE(change);
     const ScratchFolder folder;
-    const ReadCampaign read = quick_campaign(1);
+    const ReadCampaign read = quick_campaign(3);
     {
         CampaignStore store(folder / "results", plan_of(read), false);
         Run run;
         run.seed = 1;
         store.add(run);
     }
-    CHECK(answer(folder,
-                 "DROP TABLE run_machines; DROP TABLE machines; DROP TABLE shard; DROP TABLE shard_costs; "
-                 "PRAGMA user_version = 6")
-              .empty());
+    CHECK(answer(folder, change).empty());
     const CampaignReport report = read_report(folder / "results");
     CHECK(report.done == 1);
+    CHECK(report.plan.seeds == std::vector<std::uint32_t>{1, 2, 3});
     CHECK(report.processor_models() == 0);
     CHECK_THROWS_WITH(run_into(folder, read, true), Contains("was begun by an earlier version"));
+}
+
+TEST_CASE("a shard of a campaign with very many seeds has a small file") {
+    const ScratchFolder folder;
+    CampaignPlan plan = plan_of(quick_campaign(2));
+    plan.seeds.resize(max_campaign_runs / 2);
+    std::iota(plan.seeds.begin(), plan.seeds.end(), 7U);
+    plan.seeds.push_back(3);
+    { const CampaignStore store(folder / "results", plan, false); }
+    CHECK(std::filesystem::file_size(folder / "results" / results_file) < 200000);
+    CHECK((read_report(folder / "results").plan.seeds == plan.seeds));
 }
 
 TEST_CASE("a report that pools times of several models of processors says so") {
