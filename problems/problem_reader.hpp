@@ -14,7 +14,7 @@
 namespace downwash {
 
 /// Larger problem and robot files are refused unread [bytes].
-inline constexpr std::size_t largest_document = 4 * 1024 * 1024;
+inline constexpr std::size_t largest_document = 32UL * 1024 * 1024;
 
 /// Something wrong, or outdated, in a problem or robot file.
 struct LocatedError {

@@ -14,6 +14,7 @@
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/text_checks.hpp"
 
 namespace downwash {
 namespace {
@@ -200,11 +201,17 @@ void require_readable_again(const Problem& problem, const std::filesystem::path&
                                              "it: rename that file or folder"});
                        }
                    });
-    if (const std::size_t size = effective_yaml(problem, folder).size(); size > largest_document) {
-        errors.push_back({"environment.obstacles",
-                          "has " + std::to_string(size / 1024) + " KiB with every default filled in: expected " +
-                              std::to_string(largest_document / 1024) + " KiB or less; obstacles may stand in a mesh"});
-    }
+    const std::string text = effective_yaml(problem, folder);
+    const auto refuse = [&](std::size_t found, std::size_t most, const std::string& what) {
+        if (found > most) {
+            errors.push_back({"environment.obstacles", "has " + std::to_string(found) + what +
+                                                           " with every default filled in: expected " +
+                                                           std::to_string(most) + what +
+                                                           " or less; obstacles may stand in a mesh"});
+        }
+    };
+    refuse((text.size() + 1023) / 1024, largest_document / 1024, " KiB");
+    refuse(problems::separators_in(text), problems::most_separators, " line breaks, commas, colons and brackets");
     throw_if_any(std::move(errors));
 }
 

@@ -1,5 +1,6 @@
 #include "downwash/problems/text_checks.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "downwash/base/text.hpp"
@@ -9,16 +10,28 @@
 namespace downwash::problems {
 namespace {
 
+constexpr bool is_separator(char c) {
+    return c == '\n' || c == ',' || c == ':' || c == '[' || c == '{';
+}
+
 bool is_control(char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
 }
 
 }  // namespace
 
+std::size_t separators_in(std::string_view text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_separator));
+}
+
 void check_text(std::string_view text) {
     if (text.size() > largest_document) {
         throw YamlError(
             {}, "is larger than " + std::to_string(largest_document / 1024) + " KiB: expected a problem or robot file");
+    }
+    if (separators_in(text) > most_separators) {
+        throw YamlError({}, "has more than " + std::to_string(most_separators) +
+                                " line breaks, commas, colons and brackets: expected a problem or robot file");
     }
     Mark here;
     bool is_indentation = true;

@@ -189,7 +189,14 @@ TEST_CASE("a document that could not be read again is an error before it is writ
 
     problem = folder.read();
     CHECK_NOTHROW(require_readable_again(problem, folder / "run"));
-    problem.obstacles.resize(60000, {"", Box{{1, 1, 1}}, {0, 30, 0}, {}});
+    const Obstacle box{"a box", Box{{1.25, 2.25, 3.25}}, {-10.125, 30.125, 10.125}, {}};
+    problem.obstacles.resize(100000, box);
+    CHECK_NOTHROW(require_readable_again(problem, folder / "run"));
+    problem.obstacles.resize(150000, box);
     CHECK_THAT(error_of([&] { require_readable_again(problem, folder / "run"); }),
-               Catch::StartsWith("environment.obstacles: has ") && Catch::Contains("expected 4096 KiB or less"));
+               Catch::StartsWith("environment.obstacles: has ") &&
+                   Catch::Contains("expected 2500000 line breaks, commas, colons and brackets or less"));
+    problem.obstacles.assign(1000, {std::string(40000, 'x'), Box{{1, 1, 1}}, {0, 30, 0}, {}});
+    CHECK_THAT(error_of([&] { require_readable_again(problem, folder / "run"); }),
+               Catch::StartsWith("environment.obstacles: has ") && Catch::Contains("expected 32768 KiB or less"));
 }

@@ -60,9 +60,13 @@ TEST_CASE("files that cannot be read are errors") {
     folder.write("problem.yaml", edited(good_problem, "robot.yaml", "folder.yaml"));
     CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:3:8: robot 'folder.yaml' cannot be read: it is a directory, expected a file");
-    folder.write("large.yaml", std::string(4300000, ' '));
+    folder.write("large.yaml", std::string(largest_document + 1, ' '));
     CHECK(folder.errors_of("large.yaml") ==
-          "large.yaml:1:1: is larger than 4096 KiB: expected a problem or robot file");
+          "large.yaml:1:1: is larger than 32768 KiB: expected a problem or robot file");
+    folder.write("crowded.yaml", "[" + repeated("1,", 2600000) + "1]");
+    CHECK(folder.errors_of("crowded.yaml") ==
+          "crowded.yaml:1:1: has more than 2500000 line breaks, commas, colons and brackets: expected a problem or "
+          "robot file");
     CHECK_THROWS_AS(read_problem("/dev/zero"), ProblemFileError);
 }
 
