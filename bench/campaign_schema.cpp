@@ -230,9 +230,10 @@ void require_layout(const Database& database, const std::filesystem::path& file)
 
 void require_present_layout(const Database& database, const std::filesystem::path& file) {
     if (database.number("PRAGMA user_version") != layout_version) {
-        throw CampaignError(file.string() +
-                            " was begun by an earlier version of downwash and has other tables. `downwash bench report` "
-                            "reads it; to add runs, run the campaign again into another folder");
+        throw CampaignError(
+            file.string() +
+            " was begun by an earlier version of downwash and has other tables. `downwash bench report` "
+            "reads it; to add runs, run the campaign again into another folder");
     }
 }
 

@@ -204,10 +204,9 @@ void require_readable_again(const Problem& problem, const std::filesystem::path&
     const std::string text = effective_yaml(problem, folder);
     const auto refuse = [&](std::size_t found, std::size_t most, const std::string& what) {
         if (found > most) {
-            errors.push_back({"environment.obstacles", "has " + std::to_string(found) + what +
-                                                           " with every default filled in: expected " +
-                                                           std::to_string(most) + what +
-                                                           " or less; obstacles may stand in a mesh"});
+            errors.push_back({"environment.obstacles",
+                              "has " + std::to_string(found) + what + " with every default filled in: expected " +
+                                  std::to_string(most) + what + " or less; obstacles may stand in a mesh"});
         }
     };
     refuse((text.size() + 1023) / 1024, largest_document / 1024, " KiB");

@@ -55,12 +55,11 @@ TEST_CASE("a run that was changed in the file of results is named, and run again
 }
 
 TEST_CASE("settings that were changed in the file of results are an error, not believed") {
-    const std::string change = GENERATE("UPDATE plannerConfigs SET variant = 'x'", "DELETE FROM campaign_seeds",
-                                        "UPDATE campaign_seeds SET last = 9223372036854775807",
-                                        "UPDATE campaign_seeds SET first = -1",
-                                        "UPDATE campaign SET value = 'other' WHERE name = 'host'",
-                                        "UPDATE campaign_limits SET evaluation_worlds = -1",
-                                        "INSERT INTO planner_parameters VALUES (2, 'goal_bias', 0.5)");
+    const std::string change = GENERATE(
+        "UPDATE plannerConfigs SET variant = 'x'", "DELETE FROM campaign_seeds",
+        "UPDATE campaign_seeds SET last = 9223372036854775807", "UPDATE campaign_seeds SET first = -1",
+        "UPDATE campaign SET value = 'other' WHERE name = 'host'", "UPDATE campaign_limits SET evaluation_worlds = -1",
+        "INSERT INTO planner_parameters VALUES (2, 'goal_bias', 0.5)");
     const ScratchFolder folder;
     run_into(folder, small_campaign(1));
     CHECK(answer(folder, change).empty());
