@@ -51,7 +51,7 @@ World world_of(const Problem& problem, std::uint64_t seed, std::uint64_t index) 
 }
 
 /// Compares what the file says about its flight with the same flight of the judge.
-/// @param nominal the undisturbed flight with surface effects, if it was flown already
+/// @param nominal the nominal flight with surface effects, if it was flown already
 std::vector<judge::Disagreement> compare_flight(const judge::PlanJudge& judge, const Claims& claims,
                                                 const judge::JudgedFlight* nominal) {
     const FlightClaims& said = *claims.flight;
@@ -151,7 +151,7 @@ void add_validate(CLI::App& program, Action& action) {
     add_plan(command, given.plan);
     add_value(command, "--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
     add_value(command, "--world I", given.world,
-              "world I of the problem's uncertainty to fly in; default: the undisturbed one");
+              "world I of the problem's uncertainty to fly in; default: the nominal one");
     add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
     add_out(command, "DIR", given.out,
             "folder for validation.json, what --json prints, and the page validation.html; default: no files");

@@ -279,12 +279,12 @@ void add_planner(Rows& rows) {
         "planner.variant", "what the planner knows of the physics", variants,
         [](auto& p) -> auto& { return p.planner.variant; }));
     rows.push_back(parameters::choice<Problem>(
-        "planner.algorithm", "how it searches; not each plans for every variant, see `downwash planners`",
+        "planner.algorithm", "how it searches; some plan for some variants only, see `downwash planners`",
         algorithm_names(), [](auto& p) -> auto& { return p.planner.algorithm; }));
     add_objective(rows);
     rows.push_back(positive(
         "planner.time_limit_s",
-        "wall time of the search, map and last flight apart; null: 10 s, or none where max_iterations is set", 1e6,
+        "wall time of the search, without aero map and last flight; null: 10 s, or none where max_iterations is set", 1e6,
         [](auto& p) -> auto& { return p.planner.time_limit_s; }));
     rows.push_back(parameters::integer<Problem>(
                        "planner.max_iterations", "limit for a run that is repeatable bit for bit",
@@ -293,7 +293,7 @@ void add_planner(Rows& rows) {
                        .at_most(1e15));
     rows.push_back(
         parameters::integer<Problem>(
-            "planner.seed", "of every random number of the search", [](auto& p) -> auto& { return p.planner.seed; })
+            "planner.seed", "seed of every random number of the search", [](auto& p) -> auto& { return p.planner.seed; })
             .at_least(0)
             .at_most(4294967295.0));
     rows.push_back(number(

@@ -14,7 +14,7 @@ from .problem import Path
 __all__ = ["Campaign"]
 
 _APPLICATION_ID = 0x446F776E  # "Down" in ASCII
-_LAYOUTS = (6, 7)  # 7 has the machine of each run
+_LAYOUTS = (6, 7, 8)  # from 7 on with the machine of each run
 _NAMES = """runs.id AS run, experiments.problem, experiments.objective, plannerConfigs.variant,
     plannerConfigs.algorithm, plannerConfigs.margin_m, runs.seed"""
 _OF_RUNS = """runs JOIN experiments ON runs.experimentid = experiments.id
