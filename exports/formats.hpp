@@ -9,7 +9,16 @@
 
 namespace downwash {
 
-/// The plan's set-points at the rate asked for, hold included. @throws InputError without a plan
+/// The plan of a run that another autopilot can fly. @throws InputError without a plan, or where a touch follows it
+[[nodiscard]] const Plan& plan_to_be_flown(const RunRecord& run);
+
+/// When the hover at the last goal ends [s].
+[[nodiscard]] double end_of_hover_s(const RunRecord& run);
+
+/// The reference of a plan at a time [s]: between two knots, or held after the last.
+[[nodiscard]] ReferencePoint reference_at(const Plan& plan, double t_s);
+
+/// The plan's set-points at the rate asked for, hold included. @throws InputError as plan_to_be_flown()
 [[nodiscard]] std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings);
 
 [[nodiscard]] std::string setpoint_csv(const RunRecord& run, const ExportSettings& settings);

@@ -1,4 +1,5 @@
 #include <GeographicLib/LocalCartesian.hpp>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -65,29 +66,72 @@ void check(const GeodeticOrigin& origin) {
     }
 }
 
-/// A corner of the plan, and for how long it is held.
+/// A corner of the mission, and for how long it is held.
 struct Corner {
     Configuration at;
     double hold_s = 0;
 };
 
-/// A plan holds at a goal between two knots at the same corner, and at the last one until the flight ends.
-std::vector<Corner> corners_of(const RunRecord& run) {
-    const Plan& plan = *run.plan;
-    std::vector<Corner> corners;
-    for (std::size_t i = 0; i < plan.reference.size(); ++i) {
-        const Configuration at = configuration_of(plan.reference[i].point);
-        if (i > 0 && at.x_m == corners.back().at.x_m && at.z_m == corners.back().at.z_m) {
-            corners.back().hold_s +=
-                static_cast<double>(plan.reference[i].tick - plan.reference[i - 1].tick) * plan.tick_s;
+/// A mission flies straight from corner to corner: the corners that keep it on the plan's curves.
+class Corners {
+ public:
+    explicit Corners(const Plan& plan) : plan_(plan) {}
+
+    /// The way of the plan from one time to another, both of which are corners, without the first.
+    void add_way(double from_s, double to_s) {
+        if (to_s - from_s > 2 * plan_.tick_s && bulge_m(from_s, to_s) > most_bulge_m) {
+            const double middle_s = (from_s + to_s) / 2;
+            add_way(from_s, middle_s);
+            add_way(middle_s, to_s);
         } else {
-            corners.push_back({at});
+            corners.push_back({at(to_s)});
         }
     }
-    const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
-    const Problem flown = in_order(run.problem, run.order);
-    corners.back().hold_s += end_s > plan.duration_s() ? end_s - plan.duration_s() : flown.goal.hold_s;
-    return corners;
+
+    std::vector<Corner> corners;
+
+ private:
+    static constexpr double most_bulge_m = 0.02;
+
+    [[nodiscard]] Configuration at(double t_s) const { return configuration_of(reference_at(plan_, t_s)); }
+
+    /// How far the plan is from the straight line between its places at two times [m].
+    [[nodiscard]] double bulge_m(double from_s, double to_s) const {
+        constexpr int samples = 16;
+        const Configuration from = at(from_s), to = at(to_s);
+        const double along_x = to.x_m - from.x_m, along_z = to.z_m - from.z_m;
+        const double length_2 = along_x * along_x + along_z * along_z;
+        double most_m = 0;
+        for (int i = 1; i < samples; ++i) {
+            const Configuration here = at(from_s + (to_s - from_s) * i / samples);
+            const double dx = here.x_m - from.x_m, dz = here.z_m - from.z_m;
+            const double share = length_2 > 0 ? std::clamp((dx * along_x + dz * along_z) / length_2, 0., 1.) : 0;
+            most_m = std::max(most_m, std::hypot(dx - share * along_x, dz - share * along_z));
+        }
+        return most_m;
+    }
+
+    const Plan& plan_;
+};
+
+/// A plan holds at a goal between two knots at the same place, and at the last one until the flight ends.
+std::vector<Corner> corners_of(const RunRecord& run) {
+    const Plan& plan = plan_to_be_flown(run);
+    Corners way(plan);
+    way.corners.push_back({configuration_of(plan.reference.front().point)});
+    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
+        const ReferenceKnot &from = plan.reference[i - 1], &to = plan.reference[i];
+        const Configuration begin = configuration_of(from.point), end = configuration_of(to.point);
+        const double from_s = static_cast<double>(from.tick) * plan.tick_s;
+        const double to_s = static_cast<double>(to.tick) * plan.tick_s;
+        if (begin.x_m == end.x_m && begin.z_m == end.z_m) {
+            way.corners.back().hold_s += to_s - from_s;
+        } else {
+            way.add_way(from_s, to_s);
+        }
+    }
+    way.corners.back().hold_s += end_of_hover_s(run) - plan.duration_s();
+    return way.corners;
 }
 
 }  // namespace
@@ -97,27 +141,26 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
         throw_input_error("a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE");
     }
     check(*settings.origin);
-    if (!run.plan) {
-        throw_input_error("this run found no plan, so there is nothing to fly");
-    }
+    const std::vector<Corner> corners = corners_of(run);
     const OnEarth earth(*settings.origin);
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
     Json items = Json::array();
-    for (const Corner& corner : corners_of(run)) {
+    for (const Corner& corner : corners) {
         const Vector3 world_m = run.problem.plane.to_world(corner.at.x_m, 0, corner.at.z_m);
         const Geodetic place = earth.at(world_m);
+        const double above_home_m = place.altitude_m - settings.origin->altitude_m;
         const auto add = [&](int command, double hold_s, double acceptance_radius_m) {
-            items.push_back(
-                {{"AMSLAltAboveTerrain", nullptr},
-                 {"Altitude", world_m[2]},
-                 {"AltitudeMode", relative_altitude_mode},
-                 {"autoContinue", true},
-                 {"command", command},
-                 {"doJumpId", items.size() + 1},
-                 {"frame", relative_altitude_frame},
-                 {"params",
-                  {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg, world_m[2]}},
-                 {"type", "SimpleItem"}});
+            items.push_back({{"AMSLAltAboveTerrain", nullptr},
+                             {"Altitude", above_home_m},
+                             {"AltitudeMode", relative_altitude_mode},
+                             {"autoContinue", true},
+                             {"command", command},
+                             {"doJumpId", items.size() + 1},
+                             {"frame", relative_altitude_frame},
+                             {"params",
+                              {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg,
+                               above_home_m}},
+                             {"type", "SimpleItem"}});
         };
         const bool is_first = items.empty();
         if (is_first) {

@@ -18,12 +18,26 @@ void append(std::string& row, const Vector3& vector) {
 
 }  // namespace
 
-std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings) {
+const Plan& plan_to_be_flown(const RunRecord& run) {
     if (!run.plan) {
         throw_input_error("this run found no plan, so there is nothing to fly");
     }
+    if (run.problem.goal.contact) {
+        throw_input_error(
+            "the flight ends with a touch (goal.contact), which follows the measured force: set-points and missions "
+            "cannot say that. The formats vtp and glb have the whole flight");
+    }
+    return *run.plan;
+}
+
+double end_of_hover_s(const RunRecord& run) {
+    const double plan_s = run.plan->duration_s();
     const double end_s = run.flight.rows() > 0 ? run.flight.find("t_s")->back() : 0;
-    return setpoints(*run.plan, run.problem.plane, end_s,
+    return end_s > plan_s ? end_s : plan_s + in_order(run.problem, run.order).goal.hold_s;
+}
+
+std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings) {
+    return setpoints(plan_to_be_flown(run), run.problem.plane, end_of_hover_s(run),
                      settings.rate_hz.value_or(run.problem.robot.controller.rate_hz));
 }
 

@@ -6,6 +6,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/quintic.hpp"
+#include "downwash/exports/formats.hpp"
 
 namespace downwash {
 namespace {
@@ -13,7 +14,12 @@ namespace {
 constexpr double max_setpoints = 1e6;
 constexpr double max_rate_hz = 10000;
 
-/// The reference at a time between two knots, or held after the last.
+Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
+    return {vector[0] * plane.cos_heading(), vector[0] * plane.sin_heading(), vector[1]};
+}
+
+}  // namespace
+
 ReferencePoint reference_at(const Plan& plan, double t_s) {
     const auto begin_s = [&](const ReferenceKnot& knot) { return static_cast<double>(knot.tick) * plan.tick_s; };
     const auto to = std::upper_bound(plan.reference.begin() + 1, plan.reference.end(), t_s,
@@ -37,12 +43,6 @@ ReferencePoint reference_at(const Plan& plan, double t_s) {
     }
     return point;
 }
-
-Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
-    return {vector[0] * plane.cos_heading(), vector[0] * plane.sin_heading(), vector[1]};
-}
-
-}  // namespace
 
 std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, double end_s, double rate_hz) {
     if (!(rate_hz > 0 && rate_hz <= max_rate_hz)) {

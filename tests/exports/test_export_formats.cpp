@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -48,6 +50,15 @@ ExportSettings at(double latitude_deg, double longitude_deg, double bearing_deg)
     return settings;
 }
 
+/// The run with a plan that rests at every knot, so that its legs are straight.
+RunRecord resting_record() {
+    RunRecord run = record();
+    for (ReferenceKnot& knot : run.plan->reference) {
+        knot.point = at_rest(configuration_of(knot.point));
+    }
+    return run;
+}
+
 /// To the north from 47 degrees north.
 json mission_of(const RunRecord& run) {
     return json::parse(written("qgc", run, at(47, 8, 0)))["mission"];
@@ -90,26 +101,29 @@ TEST_CASE("ROS messages hold the set-points of vehicle and arm at the same times
 }
 
 TEST_CASE("a mission lies where the scene does") {
+    const RunRecord run = resting_record();
     // A degree of latitude and of longitude at 47 degrees north on WGS 84 [m], from its series.
     constexpr double latitude_m = 111169.3, longitude_m = 76055.9;
     const double bearing_deg = GENERATE(0., 90., 210.);
-    const json plan = json::parse(written("qgc", record(), at(47, 8, bearing_deg)));
+    const json plan = json::parse(written("qgc", run, at(47, 8, bearing_deg)));
     CHECK(plan["fileType"] == "Plan");
     const json& items = plan["mission"]["items"];
-    REQUIRE(items.size() == record().plan->reference.size());
+    REQUIRE(items.size() == run.plan->reference.size());
     CHECK(items[0]["command"] == 22);
+    constexpr double earth_radius_m = 6.37e6;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const Configuration corner = configuration_of(record().plan->reference[i].point);
+        const Configuration corner = configuration_of(run.plan->reference[i].point);
         const json& params = items[i]["params"];
         const double angle_rad = bearing_deg / 57.295779513082320877;
         CHECK((params[4].get<double>() - 47) * latitude_m == Approx(corner.x_m * std::cos(angle_rad)).margin(0.01));
         CHECK((params[5].get<double>() - 8) * longitude_m == Approx(corner.x_m * std::sin(angle_rad)).margin(0.01));
-        CHECK(params[6] == corner.z_m);
+        const double sagitta_m = corner.x_m * corner.x_m / (2 * earth_radius_m);
+        CHECK(params[6].get<double>() == Approx(corner.z_m + sagitta_m).margin(1e-7));
+        CHECK(items[i]["Altitude"] == params[6]);
         CHECK(params[3].get<double>() == Approx(bearing_deg).margin(1e-9));
         CHECK(items[i]["doJumpId"] == i + 1);
     }
-    CHECK(items.back()["params"][0].get<double>() ==
-          Approx(record().flight.find("t_s")->back() - record().plan->duration_s()));
+    CHECK(items.back()["params"][0].get<double>() == Approx(run.flight.find("t_s")->back() - run.plan->duration_s()));
     CHECK(plan["mission"]["plannedHomePosition"] == json({47., 8., 100.}));
     // Without a sound origin there is none.
     CHECK_THROWS_AS(written("qgc"), InputError);
@@ -118,7 +132,7 @@ TEST_CASE("a mission lies where the scene does") {
 }
 
 TEST_CASE("a mission climbs straight up where the plan does, and holds where the plan does, at its start too") {
-    RunRecord run = record();
+    RunRecord run = resting_record();
     ReferenceKnot held = run.plan->reference[1];
     held.tick += 700;
     for (std::size_t i = 2; i < run.plan->reference.size(); ++i) {
@@ -126,7 +140,7 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
     }
     run.plan->reference.insert(run.plan->reference.begin() + 2, held);
     const json held_on_its_way = mission_of(run)["items"];
-    REQUIRE(held_on_its_way.size() == record().plan->reference.size());
+    REQUIRE(held_on_its_way.size() == run.plan->reference.size() - 1);
     CHECK(held_on_its_way[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
 
     run.plan->tick_s = 0.01;
@@ -140,7 +154,7 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
     const double heights_m[] = {2, 2, 3.5, 3.5};
     for (std::size_t i = 0; i < 4; ++i) {
         CHECK(items[i]["command"] == commands[i]);
-        CHECK(items[i]["params"][6] == heights_m[i]);
+        CHECK(items[i]["params"][6].get<double>() == Approx(heights_m[i]).margin(2e-6));
         CHECK(items[i]["doJumpId"] == i + 1);
     }
     CHECK(items[0]["params"][0] == 0);
@@ -149,6 +163,49 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
     const auto north_m = [&](std::size_t i) { return (items[i]["params"][4].get<double>() - 47) * 111169.3; };
     CHECK(north_m(2) == Approx(north_m(0)).margin(0.001));
     CHECK(north_m(3) == Approx(north_m(0) + 5).margin(0.01));
+}
+
+TEST_CASE("a mission keeps to the curves of a plan that passes its knots at speed") {
+    RunRecord run = record();
+    run.plan->tick_s = 0.01;
+    ReferencePoint passing = at_rest({1, 3, 0});
+    passing.velocity[0] = 1;
+    passing.velocity[1] = 1;
+    run.plan->reference = {{0, at_rest({-4, 3, 0})}, {500, passing}, {1000, at_rest({1, 8, 0})}};
+    const json items = mission_of(run)["items"];
+    REQUIRE(items.size() > 6);
+    CHECK(items.size() < 100);
+    std::vector<std::array<double, 2>> corners;
+    for (const json& item : items) {
+        corners.push_back({(item["params"][4].get<double>() - 47) * 111169.3, item["params"][6].get<double>()});
+    }
+    double from_knot_m = 1;
+    for (const Setpoint& point : setpoints(*run.plan, {}, 0, 50)) {
+        double nearest_m = 1e9;
+        for (std::size_t i = 1; i < corners.size(); ++i) {
+            const auto [x0, z0] = corners[i - 1];
+            const auto [x1, z1] = corners[i];
+            const double length_2 = (x1 - x0) * (x1 - x0) + (z1 - z0) * (z1 - z0);
+            const double dx = point.position_m[0] - x0, dz = point.position_m[2] - z0;
+            const double share = length_2 > 0 ? std::clamp((dx * (x1 - x0) + dz * (z1 - z0)) / length_2, 0., 1.) : 0;
+            nearest_m = std::min(nearest_m, std::hypot(dx - share * (x1 - x0), dz - share * (z1 - z0)));
+        }
+        CHECK(nearest_m < 0.021);
+    }
+    for (const auto& [x_m, z_m] : corners) {
+        from_knot_m = std::min(from_knot_m, std::hypot(x_m - 1, z_m - 3));
+    }
+    CHECK(from_knot_m < 0.001);
+}
+
+TEST_CASE("a run that touches something has no set-points and no mission") {
+    RunRecord run = record();
+    run.problem.goal.contact = ContactGoal{};
+    for (const char* format : {"csv", "ros"}) {
+        CHECK_THROWS_WITH(written(format, run), Catch::Contains("follows the measured force"));
+    }
+    CHECK_THROWS_WITH(written("qgc", run, at(47, 8, 0)), Catch::Contains("follows the measured force"));
+    CHECK_FALSE(written("vtp", run).empty());
 }
 
 TEST_CASE("VTK's flight holds every column at every point of both ways") {
