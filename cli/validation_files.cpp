@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/report/run_page.hpp"
@@ -61,7 +62,8 @@ PlayableFlight playable(const judge::JudgedFlight& flight, const Problem& proble
 }
 
 std::string command_of(const Validation& validation, const ValidationSource& source) {
-    std::string command = fmt::format("downwash validate {} --plan {}", source.problem_file, source.plan);
+    std::string command =
+        fmt::format("downwash validate {} --plan {}", shell_word(source.problem_file), shell_word(source.plan));
     if (validation.worlds) {
         command += fmt::format(" --runs {} --seed {}", validation.worlds->runs.size(), source.seed);
     } else if (validation.world) {

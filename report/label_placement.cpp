@@ -27,17 +27,6 @@ Bounds around(const PlanePoint& middle, double width_m, double height_m) {
     return {middle.x_m - width_m / 2, middle.x_m + width_m / 2, middle.z_m - height_m / 2, middle.z_m + height_m / 2};
 }
 
-Bounds box_of(const std::vector<Ring>& lines) {
-    Bounds box{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-    for (const Ring& line : lines) {
-        for (const PlanePoint& p : line) {
-            box = {std::min(box.x_low_m, p.x_m), std::max(box.x_high_m, p.x_m), std::min(box.z_low_m, p.z_m),
-                   std::max(box.z_high_m, p.z_m)};
-        }
-    }
-    return box;
-}
-
 /// Whether a point is in the area of rings; holes are rings, too.
 bool is_inside(const std::vector<Ring>& rings, const PlanePoint& p) {
     bool inside = false;
@@ -110,7 +99,8 @@ class Placement {
             for (std::size_t i = 0; i < shapes_.size(); ++i) {
                 const bool is_placed = std::any_of(labels_.begin(), labels_.end(),
                                                    [i](const PlacedLabel& label) { return label.shape == i; });
-                if (!is_placed && !(shapes_[i].fill.empty() && shapes_[i].edges.empty())) {
+                if (!is_placed && shapes_[i].name_width_m > 0 &&
+                    !(shapes_[i].fill.empty() && shapes_[i].edges.empty())) {
                     (this->*find)(i);
                 }
             }

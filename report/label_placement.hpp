@@ -15,7 +15,7 @@ namespace downwash {
 
 /// Something with a name, as far as it can be seen.
 struct NamedShape {
-    double name_width_m = 0;
+    double name_width_m = 0;  ///< 0: it gets no name
     std::vector<Ring> fill;   ///< its area; empty: it has only lines
     std::vector<Ring> edges;  ///< its lines
 };

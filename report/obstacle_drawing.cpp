@@ -165,6 +165,25 @@ Ring square_around(const PlanePoint& at, bool has_label, double px_per_m) {
             {at.x_m - half_m, at.z_m - half_m}};
 }
 
+/// Which outlines get a name: the largest, since every name is compared with every outline.
+std::vector<bool> are_named(const std::vector<VisibleOutline>& outlines) {
+    constexpr std::size_t most_names = 300;
+    const auto size_m = [](const VisibleOutline& visible) {
+        const Bounds box = box_of(visible.edges);
+        return visible.edges.empty() ? 0 : std::hypot(box.x_high_m - box.x_low_m, box.z_high_m - box.z_low_m);
+    };
+    std::vector<std::pair<double, std::size_t>> by_size;
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        by_size.emplace_back(-size_m(outlines[i]), i);
+    }
+    std::sort(by_size.begin(), by_size.end());
+    std::vector<bool> named(outlines.size(), false);
+    for (std::size_t i = 0; i < std::min(most_names, by_size.size()); ++i) {
+        named[by_size[i].second] = true;
+    }
+    return named;
+}
+
 /// The names of obstacles, then the labels of points: as placed_names() numbers them.
 std::vector<std::string> names_of(const FieldFigure& figure, const std::vector<VisibleOutline>& outlines) {
     std::vector<std::string> names;
@@ -185,9 +204,10 @@ std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vect
     const Bounds& extent = figure.extent;
     const double px_per_m = layout.width() / (extent.x_high_m - extent.x_low_m);
     std::vector<NamedShape> shapes;
-    for (const VisibleOutline& visible : outlines) {
-        const double name_width_px = text_width_px(shown_name(visible.outline.name), font_px) + 6;
-        shapes.push_back({name_width_px / px_per_m, visible.fill, visible.edges});
+    const std::vector<bool> named = are_named(outlines);
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        const double name_width_px = text_width_px(shown_name(outlines[i].outline.name), font_px) + 6;
+        shapes.push_back({named[i] ? name_width_px / px_per_m : 0, outlines[i].fill, outlines[i].edges});
     }
     for (const FigurePoints& points : figure.points) {
         for (std::size_t i = 0; i < points.labels.size(); ++i) {

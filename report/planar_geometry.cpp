@@ -178,6 +178,17 @@ std::vector<Ring> clipped_line(const Ring& line, bool is_closed, const Bounds& e
 }
 
 // Andrew's monotone chain.
+Bounds box_of(const std::vector<Ring>& lines) {
+    Bounds box{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    for (const Ring& line : lines) {
+        for (const PlanePoint& p : line) {
+            box = {std::min(box.x_low_m, p.x_m), std::max(box.x_high_m, p.x_m), std::min(box.z_low_m, p.z_m),
+                   std::max(box.z_high_m, p.z_m)};
+        }
+    }
+    return box;
+}
+
 Ring convex_hull(std::vector<PlanePoint> points) {
     const auto is_before = [](const PlanePoint& a, const PlanePoint& b) {
         return a.x_m < b.x_m || (a.x_m == b.x_m && a.z_m < b.z_m);

@@ -18,6 +18,9 @@ namespace downwash {
     return (b.x_m - a.x_m) * (c.z_m - a.z_m) - (b.z_m - a.z_m) * (c.x_m - a.x_m);
 }
 
+/// The least box around lines; its low sides are above its high ones where there are none.
+[[nodiscard]] Bounds box_of(const std::vector<Ring>& lines);
+
 /// The corners of the convex hull, counter-clockwise; fewer than three when the points lie on a line.
 [[nodiscard]] Ring convex_hull(std::vector<PlanePoint> points);
 

@@ -10,6 +10,7 @@
 #include "downwash/report/page_flight.hpp"
 #include "downwash/report/page_scene.hpp"
 #include "downwash/report/page_template.hpp"
+#include "downwash/simulation/pose.hpp"
 
 namespace downwash {
 namespace {
@@ -35,9 +36,16 @@ Json tree_json(const NumberTable& tree) {
 
 /// The command that repeats the run in its folder: to the byte, unless several goals in turn shared a time limit.
 std::string command_of(const Problem& problem, const Json& solution) {
-    const Json::json_pointer aero("/execution/aero"), iterations("/planning/iterations");
-    if (solution.contains(aero) && solution[aero] == false) {
-        return "downwash execute effective.yaml --plan solution.json --aero off --out again";
+    const Json::json_pointer aero("/execution/aero"), world("/execution/world"), iterations("/planning/iterations");
+    const bool is_without_aero = solution.contains(aero) && solution[aero] == false;
+    const bool is_in_world = solution.contains(world) && solution[world].is_object();
+    if (is_without_aero || is_in_world) {
+        std::string command = "downwash execute effective.yaml --plan solution.json";
+        command += is_without_aero ? " --aero off" : "";
+        command += is_in_world ? " --world " + solution[world].at("index").dump() + " --seed " +
+                                     solution[world].at("seed").dump()
+                               : "";
+        return command + " --out again";
     }
     std::string command = "downwash solve effective.yaml";
     const bool is_split_by_time = goals_of(problem).size() > 1 && !problem.planner.max_iterations;
@@ -46,6 +54,16 @@ std::string command_of(const Problem& problem, const Json& solution) {
         command += " --max-iterations " + solution[iterations].dump();
     }
     return command;
+}
+
+/// Of the places from which a surface could be touched, the one that the plan chose; other goals as they are.
+Problem with_chosen_place(const RunRecord& run, const FlightModel& model) {
+    Problem problem = run.problem;
+    if (problem.goal.contact && run.plan) {
+        const PlanarPose end = level_at(configuration_of(run.plan->reference.back().point));
+        problem.goal = Goal(nearest_goal(problem.goal, model.tick().plant, end));
+    }
+    return problem;
 }
 
 }  // namespace
@@ -65,7 +83,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, int th
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)},
               {"tree", tree_json(run.tree)}};
-    add_problem(page, problem, run.order, model, threads);
+    add_problem(page, with_chosen_place(run, model), run.order, model, threads);
     return page_data(page);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "../support/random.hpp"
 #include "../support/solved_run.hpp"
@@ -116,6 +117,33 @@ TEST_CASE("names never overlap and stay within the area, however many there are"
             }
         }
     }
+}
+
+TEST_CASE("of very many obstacles the largest have names, and goals have theirs") {
+    FieldFigure figure;
+    figure.extent = {0, 100, 0, 50};
+    figure.value = [](double, double) { return 1.; };
+    figure.scale = factor_scale("K", {0.9, 1.1});
+    figure.points.push_back({});
+    figure.points.back().points = {{95, 45}};
+    figure.points.back().labels = {"goal"};
+    std::vector<VisibleOutline> outlines;
+    constexpr std::size_t count = 20000, large = 7777;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x_m = 0.4 * static_cast<double>(i % 200), z_m = 0.4 * static_cast<double>(i / 200);
+        const Ring ring = i == large ? rectangle(90, 92, 20, 22) : rectangle(x_m, x_m + 0.1, z_m, z_m + 0.1);
+        outlines.push_back({{}, {ring}, {ring}});
+        outlines.back().outline.name = "n";
+    }
+    std::set<std::size_t> named;
+    FieldLayout layout{};
+    layout.right = 1000;
+    for (const PlacedLabel& label : placed_names(figure, outlines, layout)) {
+        named.insert(label.shape);
+    }
+    CHECK(named.size() <= 301);
+    CHECK(named.count(large) == 1);
+    CHECK(named.count(count) == 1);
 }
 
 TEST_CASE("in pictures of every shipped problem no name covers vehicle, paths, goal, other obstacles or bands of K") {

@@ -72,6 +72,22 @@ Number number_at(const std::string& bytes, std::size_t index) {
 
 }  // namespace
 
+TEST_CASE("the command of a page repeats an execution in another world or in free air") {
+    const SolvedRun run;
+    RunRecord record = read_run(run.folder());
+    const auto command_with = [&](const json& execution) {
+        json solution = json::parse(record.solution_text);
+        solution["execution"].update(execution);
+        RunRecord other = record;
+        other.solution_text = solution.dump();
+        return json::parse(run_page_data(other, *make_flight_model(run.problem)))["command"].get<std::string>();
+    };
+    CHECK(command_with({{"world", {{"index", 17}, {"seed", 3}}}}) ==
+          "downwash execute effective.yaml --plan solution.json --world 17 --seed 3 --out again");
+    CHECK(command_with({{"aero", false}}) ==
+          "downwash execute effective.yaml --plan solution.json --aero off --out again");
+}
+
 TEST_CASE("a page carries the flight to the last bit, each column once, the solution, the command and the tree") {
     const SolvedRun run;
     const RunRecord record = read_run(run.folder());
