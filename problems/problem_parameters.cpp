@@ -284,18 +284,18 @@ void add_planner(Rows& rows) {
     add_objective(rows);
     rows.push_back(positive(
         "planner.time_limit_s",
-        "wall time of the search, without aero map and last flight; null: 10 s, or none where max_iterations is set", 1e6,
+        "for the search alone, without aero map and last flight; null: 10 s, or none where max_iterations is set", 1e6,
         [](auto& p) -> auto& { return p.planner.time_limit_s; }));
     rows.push_back(parameters::integer<Problem>(
                        "planner.max_iterations", "limit for a run that is repeatable bit for bit",
                        [](auto& p) -> auto& { return p.planner.max_iterations; })
                        .at_least(1)
                        .at_most(1e15));
-    rows.push_back(
-        parameters::integer<Problem>(
-            "planner.seed", "seed of every random number of the search", [](auto& p) -> auto& { return p.planner.seed; })
-            .at_least(0)
-            .at_most(4294967295.0));
+    rows.push_back(parameters::integer<Problem>(
+                       "planner.seed", "every random number of the search follows from it",
+                       [](auto& p) -> auto& { return p.planner.seed; })
+                       .at_least(0)
+                       .at_most(4294967295.0));
     rows.push_back(number(
                        "planner.safety_margin_m", "least clearance while planning",
                        [](auto& p) -> auto& { return p.planner.safety_margin_m; })
