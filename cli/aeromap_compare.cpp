@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/measured_data.hpp"
@@ -212,6 +213,21 @@ void print_scatter(const std::vector<EffectScatter>& scatters, bool as_markdown)
     fmt::print("\n");
 }
 
+/// @throws InputError with every line that has a surface of no model
+void require_known_surfaces(const Measurements& measurements, const std::string& file) {
+    const auto surface = measurements.index("surface");
+    if (!surface) {
+        return;
+    }
+    LineErrors errors(file);
+    for (const Measurement& point : measurements.points) {
+        if (const auto error = surface_error(point.cells[*surface])) {
+            errors.add(point.line, *error);
+        }
+    }
+    errors.throw_any();
+}
+
 ExitCode run(const CompareArguments& given) {
     if (given.as_json && given.as_markdown) {
         throw UsageError("--json and --markdown: expected at most one of them");
@@ -221,6 +237,7 @@ ExitCode run(const CompareArguments& given) {
         MeasuredData of_file = given.data;
         of_file.file = file;
         data.push_back(of_file.read());
+        require_known_surfaces(data.back(), file);
     }
     const RotorNeighbours neighbours = given.data.neighbours();
     const std::vector<DataSetComparison> comparisons = compare_effects(data, neighbours, max_factor);

@@ -73,13 +73,15 @@ Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vec
             {"residuals", std::move(residuals)}};
 }
 
+constexpr char outside_remark[] = "  at the end of its range: the data ask for a value outside";
+
 /// A remark to print after the value of a parameter.
 std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
     if (parameter.is_fixed) {
         return "  fixed";
     }
     if (parameter.is_at_bound) {
-        return "  at the end of its range: the data ask for a value outside";
+        return outside_remark;
     }
     for (const std::string_view name : fit.undetermined) {
         if (name == parameter.name) {
@@ -87,8 +89,11 @@ std::string remark_on(const FittedParameter& parameter, const EffectFit& fit) {
                    "  not determined: other values fit as well";
         }
     }
-    return parameter.standard_error ? " +- " + to_text(*parameter.standard_error, 3)
-                                    : "  no standard error: as many parameters as measurements";
+    if (parameter.standard_error) {
+        return " +- " + to_text(*parameter.standard_error, 3);
+    }
+    return fit.undetermined.empty() ? "  no standard error: as many parameters as measurements"
+                                    : "  no standard error: another parameter is not determined";
 }
 
 /// The lines of a problem file for the fitted model, ready to be pasted.
@@ -191,13 +196,19 @@ std::array<CurveFigure, 2> figures_of(const EffectModelInfo& model, const Effect
 }
 
 Json score_json(const TiltScore& score) {
-    return {{"tilt_loss", score.tilt_loss}, {"rmse", score.rmse}, {"max_error", score.max_error}, {"n", score.points}};
+    return {{"tilt_loss", score.tilt_loss},
+            {"at_bound", score.is_at_bound},
+            {"rmse", score.rmse},
+            {"max_error", score.max_error},
+            {"n", score.points}};
 }
 
 /// Refuses what goes with a model only.
 void expect_no_model(const FitArguments& given, std::string_view instead) {
-    if (!given.model.empty() || !given.fixed.empty() || given.is_weighted || !given.picture.empty()) {
-        throw UsageError("{} fits no model: expected neither --model nor --fix, --weighted or --out", instead);
+    if (!given.model.empty() || !given.fixed.empty() || given.is_weighted || !given.picture.empty() ||
+        given.data.rotor_spacing) {
+        throw UsageError("{} fits no model: expected neither --model nor --fix, --weighted, --rotor-spacing or --out",
+                         instead);
     }
 }
 
@@ -219,10 +230,13 @@ ExitCode fit_tilt(const FitArguments& given) {
         return fmt::format("RMSE {:.4f}, largest error {:.4f}", score.rmse, score.max_error);
     };
     fmt::print("tilt_loss = {}{}\n{} of {} measurements with tilt\nas level: {}\n", to_text(fit.fitted.tilt_loss, 3),
-               fit.standard_error ? " +- " + to_text(*fit.standard_error, 2) : "", errors(fit.fitted),
-               fit.fitted.points, errors(fit.as_level));
+               fit.fitted.is_at_bound ? outside_remark
+               : fit.standard_error   ? " +- " + to_text(*fit.standard_error, 2)
+                                      : "",
+               errors(fit.fitted), fit.fitted.points, errors(fit.as_level));
     for (const auto& [source, score] : fit.left_out) {
-        fmt::print("{}, fitted to the others: tilt_loss {}, {}\n", source, to_text(score.tilt_loss, 3), errors(score));
+        fmt::print("{}, fitted to the others: tilt_loss {}{}, {}\n", source, to_text(score.tilt_loss, 3),
+                   score.is_at_bound ? " (at a bound)" : "", errors(score));
     }
     return ExitCode::done;
 }
@@ -243,12 +257,13 @@ Json wall_json(const WallShares& fit) {
 ExitCode fit_wall(const FitArguments& given) {
     expect_no_model(given, "--walls");
     const MeasuredData& data = given.data;
-    if (given.of_tilt || !data.surface.empty() || !data.source.empty() || data.from || data.to || data.rotor_spacing) {
+    if (given.of_tilt || !data.surface.empty() || !data.source.empty() || data.from || data.to) {
         throw UsageError("--walls takes all of DATA: expected neither --tilt-loss nor a selection");
     }
     const WallFit fit = fit_walls(read_wall_measurements(given.data.file));
     if (given.as_json) {
         Json json = wall_json(fit);
+        json["at_bound"] = fit.is_decay_at_bound;
         json["by_facility"] = Json::object();
         for (const auto& [facility, own] : fit.by_facility) {
             json["by_facility"][facility] = wall_json(own);
@@ -260,7 +275,8 @@ ExitCode fit_wall(const FitArguments& given) {
         return fmt::format("{:+.4f}{}, RMSE {:.4f}, largest measured {:.4f}", of.value,
                            of.standard_error ? fmt::format(" +- {:.4f}", *of.standard_error) : "", of.rmse, of.largest);
     };
-    fmt::print("{} measurements beside a wall\ndecay_radii = {:.2f}\n", fit.points, fit.effect.decay_radii);
+    fmt::print("{} measurements beside a wall\ndecay_radii = {:.2f}{}\n", fit.points, fit.effect.decay_radii,
+               fit.is_decay_at_bound ? outside_remark : "");
     fmt::print("force  = {}\nmoment = {}\n", share(fit.force), share(fit.moment));
     for (const auto& [facility, own] : fit.by_facility) {
         fmt::print("{} alone: force {}; moment {}\n", facility, share(own.force), share(own.moment));

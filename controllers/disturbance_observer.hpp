@@ -11,7 +11,7 @@
 namespace downwash::controllers {
 
 /// The share of its error that an estimate loses in a tick, 1 - e^-x with x = L h. e^x is summed up to x^4 / 24: the
-/// time constant is 1 / L to 1 % while x < 1.6, and the share stays below 1 whatever the gain.
+/// time constant is 1 / L to 1 % while x < 1.38, and the share stays below 1 whatever the gain.
 [[nodiscard, gnu::always_inline]] inline double observed_share(double gain_1_s, double tick_s) {
     const double x = gain_1_s * tick_s;
     return 1 - 1 / (1 + x * (1 + x * (1.0 / 2 + x * (1.0 / 6 + x * (1.0 / 24)))));

@@ -101,15 +101,6 @@ DataSetComparison compare(const DataSet& set, const std::vector<Measurement>& ot
     return comparison;
 }
 
-/// @throws InputError for a surface that no model was made for
-void require_known_surface(const std::string& surface, std::size_t line) {
-    const std::vector<std::string_view> known{"ground", "ceiling"};
-    if (!surface.empty() && std::find(known.begin(), known.end(), surface) == known.end()) {
-        throw_input_error("line " + std::to_string(line) + " of the measurements has the surface '" + excerpt(surface) +
-                          "'; expected ground or ceiling" + did_you_mean(surface, known));
-    }
-}
-
 /// In the order of their first appearance.
 std::vector<DataSet> data_sets(const std::vector<Measurements>& data) {
     constexpr std::size_t max_sets = 100;
@@ -128,7 +119,9 @@ std::vector<DataSet> data_sets(const std::vector<Measurements>& data) {
                     throw_input_error("the measurements have more than " + std::to_string(max_sets) +
                                       " sources, surfaces and tilts; expected some of them");
                 }
-                require_known_surface(key.surface, point.line);
+                if (const auto error = surface_error(key.surface)) {
+                    throw_input_error("line " + std::to_string(point.line) + " of the measurements " + *error);
+                }
                 set = sets.insert(set, key);
             }
             set->points.push_back(point);
@@ -143,6 +136,14 @@ bool is_comparable(const EffectModelInfo& model, const std::string& surface, con
     const bool is_for_surface = surface.empty() || model.surface == "any" || model.surface == surface;
     return model.model != EffectModel::table && is_for_surface &&
            (!is_multirotor(model.model) || neighbours.rotors() > 1);
+}
+
+std::optional<std::string> surface_error(const std::string& surface) {
+    const std::vector<std::string_view> known{"ground", "ceiling"};
+    if (surface.empty() || std::find(known.begin(), known.end(), surface) != known.end()) {
+        return std::nullopt;
+    }
+    return "has the surface '" + excerpt(surface) + "'; expected ground or ceiling" + did_you_mean(surface, known);
 }
 
 std::vector<DataSetComparison> compare_effects(const std::vector<Measurements>& data, const RotorNeighbours& neighbours,

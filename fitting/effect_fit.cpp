@@ -157,7 +157,7 @@ double spread(std::size_t i, std::size_t base) {
     return result;
 }
 
-/// Starting points within the ranges, best first: the source's values and points of a Halton sequence, spread evenly
+/// Starting points within the ranges, best first, of the source's values and points of a Halton sequence, spread evenly
 /// over the decades from a thousandth to a thousand.
 std::vector<std::vector<double>> starts(const Residuals& residuals, const std::vector<double>& source_values) {
     constexpr std::size_t tried = 400;
@@ -278,24 +278,35 @@ void find_combinations(EffectFit& fit) {
 
 /// Fills in standard errors, covariance and what is undetermined, from the slopes at the minimum.
 void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, const FitOptions& options) {
+    // With columns of length one the normal matrix tells how far the parameters can be told apart.
+    constexpr double min_change =
+        1e-6;  // of K, which no one measures, when a parameter changes by one or by its own size
+    const auto free_count = static_cast<Eigen::Index>(residuals.free().size());
+    Eigen::MatrixXd scaled(static_cast<Eigen::Index>(residuals.count()), free_count);
+    Eigen::VectorXd scale(free_count);
     std::vector<std::size_t> inner;  // free parameters that no bound holds
     for (std::size_t i = 0; i < residuals.free().size(); ++i) {
         const Free& free = residuals.free()[i];
         FittedParameter& parameter = fit.parameters[free.index];
-        const double margin = 1e-9 * std::max(1.0, std::abs(minimum.values[i]));
-        parameter.is_at_bound = minimum.values[i] <= free.low + margin || minimum.values[i] >= free.high - margin;
+        const double value = minimum.values[i];
+        const double size = std::max(1.0, std::abs(value));
+        Eigen::VectorXd slopes = residuals.slopes(minimum.values.data(), i);
+        if (!slopes.allFinite()) {  // a pole is nearer than the step: the data say nothing of this parameter
+            slopes.setZero();
+        }
+        const double length = slopes.norm();
+        const bool is_felt = length * size > min_change;
+        // What the data do not feel may be anywhere: no bound holds it.
+        const double margin = 1e-9 * size;
+        parameter.is_at_bound = is_felt && (value <= free.low + margin || value >= free.high - margin);
         if (!parameter.is_at_bound) {
+            const auto j = static_cast<Eigen::Index>(inner.size());
+            scale[j] = is_felt ? 1 / length : 0;
+            scaled.col(j) = slopes * scale[j];
             inner.push_back(i);
         }
     }
     const auto p = static_cast<Eigen::Index>(inner.size());
-    Eigen::MatrixXd slopes(static_cast<Eigen::Index>(residuals.count()), p);
-    for (Eigen::Index j = 0; j < p; ++j) {
-        slopes.col(j) = residuals.slopes(minimum.values.data(), inner[static_cast<std::size_t>(j)]);
-        if (!slopes.col(j).allFinite()) {  // a pole is nearer than the step: the data say nothing of this parameter
-            slopes.col(j).setZero();
-        }
-    }
     const double degrees = static_cast<double>(residuals.count()) - static_cast<double>(inner.size());
     if (options.is_weighted && degrees > 0) {
         fit.reduced_chi_squared = minimum.sum_of_squares / degrees;
@@ -303,18 +314,8 @@ void judge(EffectFit& fit, const Residuals& residuals, const Minimum& minimum, c
     if (p == 0) {
         return;
     }
-
-    // With columns of length one the normal matrix tells how far the parameters can be told apart.
-    constexpr double min_change =
-        1e-6;  // of K, which no one measures, when a parameter changes by one or by its own size
-    Eigen::VectorXd scale(p);
-    for (Eigen::Index j = 0; j < p; ++j) {
-        const double size = std::max(1.0, std::abs(minimum.values[inner[static_cast<std::size_t>(j)]]));
-        const double length = slopes.col(j).norm();
-        scale[j] = length * size > min_change ? 1 / length : 0;
-    }
-    const Eigen::MatrixXd scaled = slopes * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> normal(scaled.transpose() * scaled);
+    const auto columns = scaled.leftCols(p);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> normal(columns.transpose() * columns);
     constexpr double min_distinct = 1e-10;  // of an eigenvalue; the differences are good to some 1e-9 themselves
     for (Eigen::Index k = 0; k < p; ++k) {
         for (Eigen::Index j = 0; j < p; ++j) {

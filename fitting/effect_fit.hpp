@@ -26,7 +26,7 @@ struct FittedParameter {
     double value = 0;
     std::optional<double> standard_error;  ///< empty if the data give none: fixed, at a bound, undetermined
     bool is_fixed = false;
-    bool is_at_bound = false;  ///< the best value is at or beyond the end of the allowed range
+    bool is_at_bound = false;  ///< the data ask for a value at or beyond the end of the allowed range
 };
 
 /// A model fitted to measurements by least squares, with statistics of its quality.
@@ -52,8 +52,8 @@ struct EffectFit {
 };
 
 /// Finds the parameters for which the model's formula, not clamped, is nearest to the measurements in the sense of
-/// least squares, within the ranges of info(model).parameters. The search starts from the source's values and from the
-/// best of some hundred others spread over the ranges, so that it does not depend on a lucky start; it is repeatable. A
+/// least squares, within the ranges of info(model).parameters. The search starts from the best of the source's values
+/// and some hundred others spread over the ranges, so that it does not depend on a lucky start; it is repeatable. A
 /// model without free parameters is only compared.
 /// @throws InputError when the model is `table`, a fixed parameter is unknown or out of range, there are fewer distinct
 /// distances than free parameters, no point at all, a sigma is missing, or a point lies within the formula's pole

@@ -1,15 +1,17 @@
 #include "downwash/fitting/tilt_fit.hpp"
 
 #include <algorithm>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "downwash/effects/sided_factor.hpp"
+#include "downwash/fitting/least_place.hpp"
 
 namespace downwash {
 namespace {
@@ -55,34 +57,20 @@ double sum_of_squares(const Points& points, double loss) {
     return sum;
 }
 
-double best_loss(const Points& points) {
-    // A coarse look first: Brent's method finds the minimum between three points.
-    double best = 0;
-    for (double loss = 0.001; loss < max_loss; loss *= 1.3) {
-        best = sum_of_squares(points, loss) < sum_of_squares(points, best) ? loss : best;
-    }
-    if (best == 0) {
-        return 0;
-    }
-    constexpr int bits = 24;
-    return boost::math::tools::brent_find_minima([&](double loss) { return sum_of_squares(points, loss); }, best / 1.3,
-                                                 best * 1.3, bits)
-        .first;
+LeastPlace best_loss(const Points& points) {
+    return least_place([&](double loss) { return sum_of_squares(points, loss); }, 0, max_loss);
 }
 
-TiltScore score_of(const Points& points, double loss) {
-    TiltScore score{loss, std::sqrt(sum_of_squares(points, loss) / static_cast<double>(points.size())), 0,
-                    points.size()};
+TiltScore score_of(const Points& points, const LeastPlace& loss) {
+    TiltScore score{loss.at, loss.is_at_bound,
+                    std::sqrt(sum_of_squares(points, loss.at) / static_cast<double>(points.size())), 0, points.size()};
     for (const TiltedPoint& point : points) {
-        score.max_error = std::max(score.max_error, std::abs(point.error(loss)));
+        score.max_error = std::max(score.max_error, std::abs(point.error(loss.at)));
     }
     return score;
 }
 
-std::optional<double> standard_error(const Points& points, double loss) {
-    if (points.size() < 2) {
-        return std::nullopt;
-    }
+double standard_error(const Points& points, double loss) {
     const double step = 1e-4 * std::max(loss, 1e-3);
     double slopes = 0;
     for (const TiltedPoint& point : points) {
@@ -92,14 +80,36 @@ std::optional<double> standard_error(const Points& points, double loss) {
     return std::sqrt(sum_of_squares(points, loss) / static_cast<double>(points.size() - 1) / slopes);
 }
 
+void require_one_surface(const Measurements& measurements) {
+    const std::vector<std::string> surfaces = measurements.entries("surface");
+    if (surfaces.size() > 1) {
+        const std::vector<std::string_view> names(surfaces.begin(), surfaces.end());
+        throw_input_error("a tilt loss is that of one surface: expected only measurements at " +
+                          excerpt(joined_names(names)));
+    }
+}
+
+/// @throws InputError for a tilted rotor nearer or farther than all level ones
+void require_level_beside(const Measurement& point, const EffectTable& level) {
+    const double nearest = level.z_over_r().front();
+    const double farthest = level.z_over_r().back();
+    if (point.z_over_r < nearest || point.z_over_r > farthest) {
+        throw_input_error("line " + std::to_string(point.line) + " has a tilted rotor at the z_over_r " +
+                          to_text(point.z_over_r) + ", and those without tilt are from " + to_text(nearest) + " to " +
+                          to_text(farthest) + "; expected tilted rotors within that range");
+    }
+}
+
 }  // namespace
 
 TiltFit fit_tilt_loss(const Measurements& measurements) {
+    require_one_surface(measurements);
     const EffectTable level = level_curve(measurements.points);
     const auto source = measurements.index("source");
     Points points;
     for (const Measurement& point : measurements.points) {
         if (point.tilt_deg != 0) {
+            require_level_beside(point, level);
             points.push_back({level.at()(point.z_over_r) - 1, std::sin(point.tilt_deg * std::numbers::pi / 180),
                               point.thrust_ratio, source ? point.cells[*source] : ""});
         }
@@ -108,11 +118,19 @@ TiltFit fit_tilt_loss(const Measurements& measurements) {
         throw_input_error(
             "a tilt loss needs measurements of tilted rotors: expected a column tilt_deg with some above 0");
     }
+    constexpr double min_change = 1e-6;  // of K, which no one measures
+    if (std::all_of(points.begin(), points.end(),
+                    [](const TiltedPoint& point) { return std::abs(point.level_change) < min_change; })) {
+        throw_input_error(
+            "a tilt loss needs an effect that fades: without tilt the thrust ratio is 1 at every tilted rotor");
+    }
     TiltFit fit;
-    const double loss = best_loss(points);
+    const LeastPlace loss = best_loss(points);
     fit.fitted = score_of(points, loss);
-    fit.standard_error = standard_error(points, loss);
-    fit.as_level = score_of(points, 0);
+    if (points.size() > 1 && !loss.is_at_bound) {
+        fit.standard_error = standard_error(points, loss.at);
+    }
+    fit.as_level = score_of(points, {});
     for (const std::string& name : measurements.entries("source")) {
         Points others;
         Points of_source;

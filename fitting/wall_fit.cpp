@@ -1,12 +1,12 @@
 #include "downwash/fitting/wall_fit.hpp"
 
 #include <algorithm>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <iterator>
 #include <set>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/fitting/least_place.hpp"
 
 namespace downwash {
 namespace {
@@ -14,14 +14,14 @@ namespace {
 using Points = std::vector<WallMeasurement>;
 using Component = double WallMeasurement::*;
 
-/// The range of aero.wall.decay_radii in which a fit looks.
+/// The range of aero.wall.decay_radii in a problem file.
 constexpr double min_decay_radii = 0.05, max_decay_radii = 20;
 
 double fading(const WallMeasurement& point, double decay_radii) {
     return std::exp(-(point.distance_over_r - 1) / decay_radii);
 }
 
-/// The share that fits best with a given decay: linear least squares.
+/// The share that fits best with a given decay: linear least squares. 0 where nothing is left of the wall's effect.
 WallShare share_of(const Points& points, Component component, double decay_radii) {
     double shapes = 0;
     double products = 0;
@@ -31,7 +31,8 @@ WallShare share_of(const Points& points, Component component, double decay_radii
         products += shape * point.*component;
     }
     WallShare share;
-    share.value = products / shapes;
+    const bool is_felt = std::isnormal(shapes);
+    share.value = is_felt ? products / shapes : 0;
     double squares = 0;
     for (const WallMeasurement& point : points) {
         const double error = share.value * fading(point, decay_radii) - point.*component;
@@ -40,8 +41,8 @@ WallShare share_of(const Points& points, Component component, double decay_radii
     }
     const auto count = static_cast<double>(points.size());
     share.rmse = std::sqrt(squares / count);
-    if (points.size() > 1) {
-        share.standard_error = std::sqrt(squares / (count - 1) / shapes);
+    if (points.size() > 1 && is_felt) {
+        share.standard_error = std::sqrt(squares / (count - 1)) / std::sqrt(shapes);
     }
     return share;
 }
@@ -55,18 +56,11 @@ WallShares fit_with_decay(const Points& points, double decay_radii) {
     return fit;
 }
 
-double best_decay_radii(const Points& points) {
-    const auto rmse = [&](double log_decay) {
-        return share_of(points, &WallMeasurement::moment_over_thrust_radius, std::exp(log_decay)).rmse;
+LeastPlace best_decay_radii(const Points& points) {
+    const auto rmse = [&](double decay_radii) {
+        return share_of(points, &WallMeasurement::moment_over_thrust_radius, decay_radii).rmse;
     };
-    // A coarse look first: Brent's method finds the minimum between three points.
-    constexpr double step = 0.1;
-    double best = std::log(min_decay_radii);
-    for (double log_decay = best; log_decay < std::log(max_decay_radii); log_decay += step) {
-        best = rmse(log_decay) < rmse(best) ? log_decay : best;
-    }
-    constexpr int bits = 24;
-    return std::exp(boost::math::tools::brent_find_minima(rmse, best - step, best + step, bits).first);
+    return least_place(rmse, min_decay_radii, max_decay_radii);
 }
 
 }  // namespace
@@ -82,7 +76,13 @@ WallFit fit_walls(const std::vector<WallMeasurement>& measurements) {
         throw_input_error("a wall effect needs measurements at two distances or more: these have " +
                           std::to_string(distances.size()));
     }
-    WallFit fit{fit_with_decay(measurements, best_decay_radii(measurements)), {}};
+    const LeastPlace decay_radii = best_decay_radii(measurements);
+    WallFit fit{fit_with_decay(measurements, decay_radii.at), decay_radii.is_at_bound, {}};
+    if (fit.moment.value == 0) {
+        throw_input_error(
+            "the moments tell no decay: they are 0, or nothing of the wall is left so far from it; expected "
+            "distances in rotor radii");
+    }
     for (const std::string& facility : facilities) {
         Points own;
         std::ranges::copy_if(measurements, std::back_inserter(own),

@@ -14,10 +14,11 @@ namespace downwash {
 
 /// A share of WallEffect beside measurements of it.
 struct WallShare {
-    double value = 0;                      ///< where a rotor touches the wall
-    std::optional<double> standard_error;  ///< of that, at the decay as fitted; empty with a single measurement
-    double rmse = 0;                       ///< of the measurements, over T or T R
-    double largest = 0;                    ///< the largest measured size
+    double value = 0;  ///< where a rotor touches the wall; 0 if all measurements are too far away to tell
+    /// Of the value, at the decay as fitted. Empty with a single measurement, or if all are too far away.
+    std::optional<double> standard_error;
+    double rmse = 0;     ///< of the measurements, over T or T R
+    double largest = 0;  ///< the largest measured size
 };
 
 /// Both shares of some measurements.
@@ -29,12 +30,13 @@ struct WallShares {
 
 /// Fitted walls.
 struct WallFit : WallShares {
+    bool is_decay_at_bound = false;  ///< at the end of the range of a problem file, 0.05 or 20
     /// The same of each facility alone, with the decay of all; empty with one facility.
     std::vector<std::pair<std::string, WallShares>> by_facility;
 };
 
-/// Fits the wall effect by least squares: the decay to the moments, both shares with that decay.
-/// @throws InputError when fewer than two distances were measured
+/// Fits the wall effect by least squares: the decay to the moments, from 0.05 to 20 radii, both shares with that decay.
+/// @throws InputError when fewer than two distances were measured, or the moments tell no decay
 [[nodiscard]] DOWNWASH_EXPORT WallFit fit_walls(const std::vector<WallMeasurement>& measurements);
 
 }  // namespace downwash

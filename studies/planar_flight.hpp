@@ -66,7 +66,6 @@ struct PlanarFlight {
 
 /// A ground model for every rotor by itself, as chapter 3's simulator has it: K over z/R, scaled with the share of the
 /// disc over the plate. The multirotor models see the vehicle's other rotors.
-/// @param parameters as in a problem file; empty: those of the model's source
 [[nodiscard]] DOWNWASH_EXPORT SurfaceEffect effect_on_each_rotor(const SurfaceEffect& model,
                                                                  const PlanarVehicle& vehicle);
 

@@ -52,6 +52,18 @@ TEST_CASE("A fit for people ends with the lines for a problem file, and tells wh
     REQUIRE(warned != std::string::npos);
     CHECK(warned < said.find("For a problem file"));
     CHECK_THAT(work.run(fit, "--fix b=2").out, !Contains("ot determined"));
+    // At a millionth of a radius no decay changes anything; three measurements are more than two parameters all the
+    // same.
+    write_file(work / "m.csv", "z_over_r,thrust_ratio\n1e-6,1.01\n2e-6,1.011\n3e-6,1.01\n");
+    CHECK_THAT(work.run(fit).out, Contains("a = 0.01033333  no standard error: another parameter is not determined\n"));
+    // Without a fountain its distance is nothing that the data could ask for.
+    const Words fountain =
+        words("aeromap fit", measured, "--model multirotor-body --rotor-spacing 2.5 --surface ground");
+    CHECK_THAT(work.run(fountain).out,
+               Contains("k_b = 0  at the end of its range: the data ask for a value outside\n") &&
+                   Contains("b_over_radius = 100  not determined: other values fit as well\n"));
+    CHECK(work.json(fountain).at("at_bound") == nlohmann::json::array({"k_b"}));
+    CHECK(work.json(fountain).at("undetermined") == nlohmann::json::array({"b_over_radius"}));
     const Result of_both = work.succeed("aeromap fit", measured, "--model cheeseman-bennett --json");
     CHECK(of_both.json().at("n") == 45);
     CHECK(of_both.json().at("parameters") == nlohmann::json::object());
@@ -109,6 +121,10 @@ TEST_CASE("Fits that cannot be made end with 2 and say why") {
              {"fit good.csv", "expected --model NAME, --tilt-loss or --walls"},
              {"fit good.csv --tilt-loss --model he", "--tilt-loss fits no model"},
              {"fit good.csv --tilt-loss --surface ground", "expected a column tilt_deg"},
+             {"fit good.csv --tilt-loss", "one surface: expected only measurements at ceiling or ground"},
+             {"fit good.csv --tilt-loss --rotor-spacing 2.5", "neither --model nor --fix, --weighted, --rotor-spacing"},
+             {"fit good.csv --walls --rotor-spacing 2.5", "--walls fits no model"},
+             {"fit good.csv --walls --from 1", "--walls takes all of DATA"},
          }) {
         CAPTURE(arguments);
         check_rejected(work.run("aeromap", arguments), reason);
@@ -165,8 +181,9 @@ TEST_CASE("A comparison without a column of surfaces takes all measurements at t
     CHECK_THAT(models_of("--surface ground"), !Contains("sanchez-cuevas"));
     check_rejected(work.run("aeromap compare", work / "m.csv", "--surface cieling"), "did you mean 'ceiling'?");
     write_file(work / "m.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,grond\n");
-    check_rejected(work.run("aeromap compare", work / "m.csv"), "line 2");
-    check_rejected(work.run("aeromap compare", work / "m.csv"), "did you mean 'ground'?");
+    write_file(work / "n.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,ground\n");
+    check_rejected(work.run("aeromap compare", work / "n.csv", work / "m.csv"),
+                   "m.csv:2: has the surface 'grond'; expected ground or ceiling; did you mean 'ground'?");
 }
 
 TEST_CASE(
@@ -180,6 +197,23 @@ TEST_CASE(
     const std::string text = work.run("aeromap fit", tilted, "--tilt-loss").out;
     CHECK_THAT(text, StartsWith("tilt_loss = 0.365 +- "));
     CHECK_THAT(read_file(DOWNWASH_AEROMAP_PAGE), Contains("<!-- tilt -->\n```\n" + text + "```\n<!-- /tilt -->\n"));
+}
+
+TEST_CASE("Fits of tilt and walls say where they end at a bound, and no standard error there") {
+    const Workspace work;
+    write_file(work / "m.csv", "z_over_r,thrust_ratio,tilt_deg\n1,1.1,0\n2,1.05,0\n1,1,10\n2,1,10\n");
+    const std::string outside = "  at the end of its range: the data ask for a value outside\n";
+    CHECK_THAT(work.run("aeromap fit", work / "m.csv", "--tilt-loss").out, StartsWith("tilt_loss = 100" + outside));
+    const auto tilt = work.json("aeromap fit", work / "m.csv", "--tilt-loss");
+    CHECK(tilt.at("at_bound") == true);
+    CHECK(tilt.at("standard_error").is_null());
+    CHECK(work.json("aeromap fit", tilted, "--tilt-loss").at("at_bound") == false);
+    const std::string header = "distance_over_r,force_over_thrust,moment_over_thrust_radius\n";
+    write_file(work / "w.csv", header + "1,0.01,0.03\n2,0.01,0.03\n");
+    CHECK_THAT(work.run("aeromap fit", work / "w.csv", "--walls").out, Contains("\ndecay_radii = 20.00" + outside));
+    CHECK(work.json("aeromap fit", work / "w.csv", "--walls").at("at_bound") == true);
+    write_file(work / "w.csv", header + "1,0.01,0\n2,0.01,0\n");
+    check_rejected(work.run("aeromap fit", work / "w.csv", "--walls"), "the moments tell no decay");
 }
 
 TEST_CASE("A comparison of several files says how far all of them scatter about each model") {

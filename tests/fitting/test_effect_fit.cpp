@@ -260,11 +260,12 @@ TEST_CASE("A model without parameters is only compared, a parameter that leaves 
 }
 
 TEST_CASE("What the data do not determine is named, parameters that go together and could be zero too") {
-    // No increment, so no decay of it.
+    // No increment, so no decay of it, wherever that ended.
     const EffectFit flat = fit_effect(EffectModel::he, points_of({{0.5, 1}, {1, 1}, {2, 1}}));
     for (const FittedParameter& parameter : flat.parameters) {
         const bool is_named = std::count(flat.undetermined.begin(), flat.undetermined.end(), parameter.name) == 1;
         CHECK(is_named != parameter.is_at_bound);
+        CHECK((is_named || parameter.name != "b"));
         CHECK_FALSE(parameter.standard_error);
     }
     CHECK(flat.rmse < 1e-9);
@@ -283,6 +284,16 @@ TEST_CASE("What the data do not determine is named, parameters that go together 
         CHECK(fit_effect(EffectModel::he, shipped(source, "ceiling")).undetermined.empty());
         CHECK(fit_effect(EffectModel::sanchez_cuevas, shipped(source, "ceiling")).undetermined.empty());
     }
+}
+
+TEST_CASE("A fountain that the data do not show is at its bound, and its distance is not determined") {
+    FitOptions options;
+    options.neighbours = square_quadrotor(2.5);
+    const EffectFit fit = fit_effect(EffectModel::multirotor_body, shipped("jirs2024", "ground"), options);
+    CHECK(fit.parameters[0].value == 0);
+    CHECK(fit.parameters[0].is_at_bound);
+    CHECK_FALSE(fit.parameters[1].is_at_bound);
+    CHECK(fit.undetermined == std::vector<std::string_view>{"b_over_radius"});
 }
 
 TEST_CASE("A weighted fit believes each point by its sigma") {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "downwash/base/key_error.hpp"
+#include "../support/error_of.hpp"
 #include "downwash/effects/sided_factor.hpp"
 
 using namespace downwash;
@@ -67,5 +67,48 @@ TEST_CASE("Effects that do not fade leave a tilt loss of 0") {
     const TiltFit fit = fit_tilt_loss(
         parse_measurements("z_over_r,thrust_ratio,tilt_deg\n1,1.1,0\n2,1.05,0\n1,1.11,20\n2,1.06,20\n", "m.csv"));
     CHECK(fit.fitted.tilt_loss == 0);
+    CHECK(fit.fitted.is_at_bound);
+    CHECK_FALSE(fit.standard_error);
     CHECK(fit.left_out.empty());
+}
+
+TEST_CASE("A tilt loss stays within the range of problem files, and says where it ends there") {
+    const auto fitted_to = [](const std::string& tilted) {
+        return fit_tilt_loss(parse_measurements(
+            "z_over_r,thrust_ratio,tilt_deg,source\n1,1.1,0,level\n2,1.05,0,level\n" + tilted, "m.csv"));
+    };
+    // Nothing is left at 10 degrees, as of a loss without end.
+    const TiltFit fit = fitted_to("1,1,10,one\n2,1,10,two\n");
+    CHECK(fit.fitted.tilt_loss == 100);
+    CHECK(fit.fitted.is_at_bound);
+    CHECK_FALSE(fit.standard_error);
+    CHECK_FALSE(fit.as_level.is_at_bound);
+    REQUIRE(fit.left_out.size() == 2);
+    CHECK(fit.left_out[0].second.is_at_bound);
+    // 0.1^2 / (0.1 + 99 sin^2 10 deg) and 0.05^2 / (0.05 + 99 sin^2 10 deg).
+    const TiltFit within = fitted_to("1,1.003240,10,one\n2,1.000823,10,two\n");
+    CHECK(within.fitted.tilt_loss == Approx(99).epsilon(1e-3));
+    CHECK_FALSE(within.fitted.is_at_bound);
+    CHECK(within.standard_error);
+}
+
+TEST_CASE(
+    "A tilt loss is that of one surface, within the distances of its level measurements, if they show an effect") {
+    const auto error_of_fit = [](const std::string& rows) {
+        return test::error_of([&] {
+            return fit_tilt_loss(parse_measurements("z_over_r,thrust_ratio,tilt_deg,surface\n" + rows, "m.csv"));
+        });
+    };
+    const std::string level = "0.6,1.2,0,ground\n2,1.03,0,ground\n";
+    CHECK(error_of_fit(level + "0.6,1.1,20,ground\n2,1.02,20,ground\n") == "none");
+    CHECK(error_of_fit(level + "1,1.05,20,ground\n1,1.2,20,ceiling\n") ==
+          "a tilt loss is that of one surface: expected only measurements at ground or ceiling");
+    CHECK(error_of_fit(level + "1,1.05,20,ground\n0.5,1.2,20,ground\n") ==
+          "line 5 has a tilted rotor at the z_over_r 0.5, and those without tilt are from 0.6 to 2; expected tilted "
+          "rotors within that range");
+    CHECK(error_of_fit(level + "2.1,1.01,20,ground\n") ==
+          "line 4 has a tilted rotor at the z_over_r 2.1, and those without tilt are from 0.6 to 2; expected tilted "
+          "rotors within that range");
+    CHECK(error_of_fit("1,1,0,ground\n2,1,0,ground\n1,1.01,20,ground\n") ==
+          "a tilt loss needs an effect that fades: without tilt the thrust ratio is 1 at every tilted rotor");
 }

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "downwash/base/key_error.hpp"
 
@@ -41,7 +43,49 @@ TEST_CASE("The default decay of walls is that of the shipped measurements, and w
     CHECK(fit.effect.moment > 4 * *fit.moment.standard_error);
 }
 
+TEST_CASE("A decay stays within the range of problem files, and says where it ends there") {
+    // The same at both distances, as of a decay without end.
+    const WallFit slow = fit_walls({{"", 1, 0.01, 0.03}, {"", 2, 0.01, 0.03}});
+    CHECK(slow.effect.decay_radii == 20);
+    CHECK(slow.is_decay_at_bound);
+    // Nothing is left after half a radius.
+    const WallFit quick = fit_walls({{"", 1, 0.01, 0.03}, {"", 1.5, 0, 0}});
+    CHECK(quick.effect.decay_radii == 0.05);
+    CHECK(quick.is_decay_at_bound);
+    CHECK(quick.effect.moment == Approx(0.03));
+    const WallFit within =
+        fit_walls({{"", 1, 0.01, 0.03}, {"", 2, 0.01 * std::exp(-1 / 19.), 0.03 * std::exp(-1 / 19.)}});
+    CHECK(within.effect.decay_radii == Approx(19).epsilon(1e-3));
+    CHECK_FALSE(within.is_decay_at_bound);
+}
+
+TEST_CASE("A wall is fitted by the decays that leave something of it, and shares of nothing are 0") {
+    // With 0.05 radii exp(-380) and less are left, squares of which are no numbers.
+    std::vector<WallMeasurement> points;
+    for (const double distance : {20.0, 24.0, 30.0}) {
+        points.push_back({"one", distance, 0.01 * std::exp((20 - distance) / 5), 0.03 * std::exp((20 - distance) / 5)});
+    }
+    const WallFit far = fit_walls(points);
+    CHECK(far.effect.decay_radii == Approx(5).epsilon(1e-4));
+    CHECK(far.effect.moment == Approx(0.03 * std::exp(19 / 5.)).epsilon(1e-3));
+    CHECK_FALSE(far.is_decay_at_bound);
+    // Of another facility so far away that nothing is left with the decay of all.
+    points.push_back({"two", 10000, 0.002, 0.004});
+    points.push_back({"two", 10001, 0.002, 0.004});
+    const WallFit both = fit_walls(points);
+    REQUIRE(both.by_facility.size() == 2);
+    const WallShare& nothing = both.by_facility[1].second.moment;
+    CHECK(nothing.value == 0);
+    CHECK_FALSE(nothing.standard_error);
+    CHECK(nothing.rmse == Approx(0.004));
+}
+
 TEST_CASE("Walls at one distance only, or without a share, are refused") {
+    const std::string no_decay =
+        "the moments tell no decay: they are 0, or nothing of the wall is left so far from it; expected distances in "
+        "rotor radii";
+    CHECK_THROWS_WITH(fit_walls({{"", 1, 0.1, 0}, {"", 2, 0.2, 0}}), no_decay);
+    CHECK_THROWS_WITH(fit_walls({{"", 10000, 0.1, 0.1}, {"", 20000, 0.2, 0.1}}), no_decay);
     CHECK_THROWS_WITH(fit_walls({{"", 2, 0.1, 0.1}, {"", 2, 0.2, 0.1}}), Catch::Contains("two distances"));
     CHECK_THROWS_WITH(parse_wall_measurements("distance_over_r,force_over_thrust\n2,0\n", "w.csv"),
                       Catch::Contains("w.csv:1: has no column moment_over_thrust_radius"));
