@@ -138,6 +138,18 @@ class Campaign(page_test.BrowserTest):
         dots = self.js("return document.querySelector('#margins .panel').querySelectorAll('.dot.series-2').length")
         self.assertEqual(dots, 4)
 
+    def test_a_sweep_with_several_sets_of_parameters_has_a_curve_for_each(self):
+        sets = ({"goal_bias": 0.05}, {"goal_bias": 0.2, "step_m": 1})
+        self.show(sample_campaign.campaign(margins=(0.05, 0.1, 0.2, 0.4), parameters=sets))
+        self.assertEqual(self.js("return document.querySelector('#margins .panel').querySelectorAll('.line').length"), 6)
+        styles = [f".dot.series-{i}" for i in range(6)]
+        dots = self.js("const panel = document.querySelector('#margins .panel');"
+                       "return arguments[0].map(style => panel.querySelectorAll(style).length)", styles)
+        self.assertEqual(dots, [4] * 6)
+        self.assertEqual(self.every("#margins .key-line .entry", "e.textContent")[4:],
+                         ["mp-arm rrt-star, goal_bias 0.05", "mp-arm rrt-star, goal_bias 0.2, step_m 1"])
+        self.assertIn("mp-arm rrt-star, goal_bias 0.2, step_m 1: no margin", self.one("#tables", "e.textContent"))
+
     def test_the_head_says_what_came_of_it(self):
         figures = sample_campaign.campaign()
         self.show(figures)
@@ -182,22 +194,39 @@ class Campaign(page_test.BrowserTest):
         for width in (360, 768):
             self.browser.resize(width, 800, mobile=width < 700)
             self.show(sample_campaign.campaign(margins=(0.05, 0.1)))
-            self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
-            self.browser.settle()
+            self.open_details()
             self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), width)
 
-    def test_a_figure_is_saved_with_the_colours_that_it_has(self):
-        self.show(sample_campaign.campaign())
-        saved = self.browser.driver.execute_async_script(
+    def saved(self):
+        return self.browser.driver.execute_async_script(
             "const done = arguments[0], make = URL.createObjectURL;"
-            "URL.createObjectURL = blob => { blob.text().then(done); return make(blob); };"
+            "URL.createObjectURL = blob => {"
+            "    URL.createObjectURL = make; blob.text().then(done); return make(blob); };"
             "document.querySelector('#success .panel button').click()")
-        root = xml.etree.ElementTree.fromstring(saved)
-        self.assertTrue(root.tag.endswith("svg"))
-        self.assertNotIn("var(", saved)
-        strokes = {e.get("stroke") for e in root.iter() if e.tag.endswith("path")}
-        self.assertIn("rgb(0, 96, 184)", strokes)
-        self.assertIn("time of the search [s]", saved)
+
+    def test_a_figure_is_saved_in_light_colours_whatever_the_theme(self):
+        for theme in ("light", "dark"):
+            self.browser.media(prefers_color_scheme=theme)
+            self.show(sample_campaign.campaign())
+            saved = self.saved()
+            root = xml.etree.ElementTree.fromstring(saved)
+            self.assertTrue(root.tag.endswith("svg"))
+            self.assertNotIn("var(", saved)
+            strokes = {e.get("stroke") for e in root.iter() if e.tag.endswith("path")}
+            self.assertIn("rgb(0, 96, 184)", strokes)
+            self.assertIn("time of the search [s]", saved)
+            self.assertEqual(self.js("return document.documentElement.dataset.theme"), theme)
+
+    def test_an_empty_figure_cannot_be_saved(self):
+        self.show(sample_campaign.campaign())
+        shown = "return document.querySelectorAll('#success .panel button:not([hidden])').length"
+        self.assertEqual(self.js(shown), 2)
+        self.js("document.querySelectorAll('.planner input').forEach(e => e.checked && e.click())")
+        self.assertEqual(self.js(shown), 0)
+        self.js("document.querySelector('.planner input').click()")
+        self.assertEqual(self.js(shown), 2)
+        self.js("document.querySelector('#success .panel svg').removeAttribute('viewBox')")
+        self.assertTrue(xml.etree.ElementTree.fromstring(self.saved()).tag.endswith("svg"))
 
     def test_a_page_without_a_campaign_says_so(self):
         self.assertFalse(self.browser.open(page_test.arguments.campaign_template))

@@ -27,6 +27,22 @@ class Certificate(page_test.BrowserTest):
         self.assertIn("Not certified: 4 of 37 worlds failed (collision 3, goal missed 1).", self.verdict())
         self.assertEqual(self.every(".certificate .bars .count", "e.textContent"), ["3", "1"])
 
+    def test_what_was_set_is_not_rounded(self):
+        self.open_changed("certified", lambda report: report["solution"]["certificate"].update(
+            confidence=0.9999, max_failure_probability=0.0124))
+        self.assertIn("the failure probability is at most 1.24 % with 99.99 % confidence.", self.verdict())
+        text = self.one(".probability", "e.textContent.replaceAll('\\u00a0', ' ')")
+        self.assertIn("99.99 % interval", text)
+        self.assertIn("allowed: 1.24 %", text)
+
+    def test_one_without_flights_is_no_estimate(self):
+        self.open_changed("uncertified", lambda report: report["solution"]["certificate"].update(
+            worlds=0, failures=0, failure_probability={"estimate": 0, "low": 0, "high": 1}, causes={}, worst=[],
+            clearance_m=dict.fromkeys(("p01", "p10", "p50"))))
+        self.assertIn("Not certified: the search ended before its first flights.", self.verdict())
+        self.assertEqual(self.one(".probability .figure", "e.textContent"), "–")
+        self.assertEqual(self.every(".probability-estimate", "1"), [])
+
     def test_the_bar_ends_where_the_interval_does(self):
         for case, low, high, kind in (("certified", 0.000025, 0.00547, "within"), ("uncertified", 0.03, 0.254, "beyond")):
             self.open(case)

@@ -62,8 +62,7 @@ class Looks(page_test.BrowserTest):
                 with self.subTest(case=case, width=width):
                     self.browser.resize(width, 800, mobile=width < 700)
                     self.open(case)
-                    self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
-                    self.browser.settle()
+                    self.open_details()
                     self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), width)
 
     def test_the_scene_stands_in_the_first_screen(self):
@@ -153,6 +152,7 @@ class Looks(page_test.BrowserTest):
 class Hostile(page_test.BrowserTest):
     def test_foreign_text_is_shown_and_does_nothing(self):
         self.open("hostile")
+        self.open_details()
         self.assertIsNone(self.js("return window.hacked ?? null"))
         self.assertEqual(self.js("return document.querySelectorAll('#page img, #page script').length"), 0)
         self.assertIn(sample_page.HOSTILE.strip(), self.js("return document.querySelector('h1').textContent"))
@@ -210,8 +210,7 @@ class Access(page_test.BrowserTest):
 class InThreeDimensions(page_test.BrowserTest):
     browser_arguments = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
-    def test_opens_on_demand_and_follows_the_slider(self):
-        columns = self.open("solids")
+    def open_3d(self):
         self.assertEqual(self.js("return document.querySelectorAll('canvas').length"), 0)
         self.js("document.querySelector('.open-3d').click()")
         for _ in range(100):
@@ -220,15 +219,47 @@ class InThreeDimensions(page_test.BrowserTest):
             time.sleep(0.1)
         self.assertEqual(self.js("return document.querySelector('.stage').dataset.state"), "open",
                          self.js("return document.querySelector('.view3d [role=status]').textContent"))
+
+    def shown_names(self):
+        time.sleep(0.3)
+        return [text.strip("\u2068\u2069") for text in
+                self.every(".name3d", "getComputedStyle(e).display === 'none' ? '' : e.textContent")]
+
+    def test_goals_are_where_and_as_large_as_in_the_scene(self):
+        def change(report):
+            report["goals"][0].update(x_m=None, name="target 7")
+        self.open_changed("solids", change)
+        self.open_3d()
+        free, flat, ball = self.js("return document.querySelector('.stage').view.goals()")
+        for body, low, high in ((free, (-12, 9), (12, 9.2)), (flat, (-1.2, 8.8), (-0.8, 9)), (ball, (2.75, 9.75), (2.95, 9.95))):
+            for corner, (x_m, z_m) in zip(body, (low, high)):
+                self.assertAlmostEqual(corner[0], x_m, delta=0.002)
+                self.assertAlmostEqual(corner[2], z_m, delta=0.002)
+        self.assertLess(free[1][1] - free[0][1], 0.05)
+        self.assertIn("target 7", self.shown_names())
+
+    def test_very_many_obstacles_are_drawn_without_names(self):
+        self.open_changed("solids", sample_page.add_very_many_obstacles)
+        self.open_3d()
+        names = self.shown_names()
+        self.assertIn("start", names)
+        self.assertNotIn("deck", names)
+        self.js("document.querySelector('.stage').scrollIntoView({block: 'center'})")
+        box = self.one(".stage", "e.getBoundingClientRect().toJSON()")
+        sides = tuple(int(box[side]) for side in ("left", "top", "right", "bottom"))
+        picture = Image.open(io.BytesIO(self.browser.screenshot())).crop(sides)
+        self.assertGreater(np.asarray(picture.convert("L")).std(), 8)
+
+    def test_opens_on_demand_and_follows_the_slider(self):
+        columns = self.open("solids")
+        self.open_3d()
         for seconds in (0, 6, 15):
             self.set_time(seconds)
             row = self.js("return downwash.row")
             tip = self.js("return document.querySelector('.stage').view.tip()")
             for drawn, wanted in zip(tip, (columns["ee_x_m"][row], 0, columns["ee_z_m"][row])):
                 self.assertAlmostEqual(drawn, wanted, places=5)
-        time.sleep(0.3)
-        names = [text.strip("\u2068\u2069") for text in
-                 self.every(".name3d", "getComputedStyle(e).display === 'none' ? '' : e.textContent")]
+        names = self.shown_names()
         for name in ("deck", "pier", "walkway", "goal 2", "start"):
             self.assertIn(name, names)
         self.assertIn("squares are 2\u00a0m wide", self.one(".view3d [role=status]", "e.textContent"))

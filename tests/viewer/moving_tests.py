@@ -34,6 +34,20 @@ class Moving(page_test.BrowserTest):
         self.assertAlmostEqual(after, up, places=6)  # equal axes
         self.assert_tip_is_where_the_flight_says(columns)
 
+    def test_zooming_out_never_zooms_in(self):
+        self.open_changed("solved", lambda report: report.update(
+            map=None, scene={**report["scene"], "bounds": {"x_m": [-300, 300], "z_m": [0, 300]}}))
+        widths = []
+        for button in ("All", "−", "−", "+"):
+            self.js("[...document.querySelectorAll('.zoom-tools button')]"
+                    ".find(b => b.textContent === arguments[0]).click()", button)
+            self.browser.settle()
+            widths.append(self.js("const [a] = downwash.pixels(0, 9), [b] = downwash.pixels(1, 9); return b - a"))
+        whole, out, farther, nearer = widths
+        self.assertAlmostEqual(out / whole, 0.9, places=6)
+        self.assertAlmostEqual(farther, out, places=9)
+        self.assertAlmostEqual(nearer / farther, 1.4, places=6)
+
     def mouse(self, kind, x, y, **more):
         self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
             "type": kind, "x": x, "y": y, "button": "none" if kind == "mouseWheel" else "left",
@@ -154,6 +168,21 @@ class Moving(page_test.BrowserTest):
         self.assertEqual(len(self.every("path.projection", "1")), 11)
         self.assertEqual(len(self.every("path.section", "1")), 9)  # without the two girders beside the plane
 
+    def test_very_many_obstacles_are_few_elements(self):
+        self.open_changed("solved", sample_page.add_very_many_obstacles)
+        self.assertEqual([len(self.every(f".obstacles path.{kind}", "1")) for kind in ("projection", "section", "section-line")],
+                         [1, 1, 1])
+        for kind, count in (("projection", 2507), ("section", 1255)):
+            self.assertEqual(self.one(f"path.{kind}", "e.getAttribute('d').split('M').length - 1"), count)
+            self.assertEqual(self.one(f"path.{kind}", "getComputedStyle(e).fillRule"), "nonzero")
+        names = [text.strip("\u2068\u2069") for text in self.every(".of-section, .of-projection", "e.firstChild.data")]
+        self.assertIn("deck", names)
+        self.assertLessEqual(len(names), 200)
+        self.assertEqual(self.every(".obstacle-table", "1"), [])
+        self.open_details()
+        self.assertEqual(len(self.every(".obstacle-table tbody tr", "1")), 1000)
+        self.assertEqual(self.one(".obstacle-table + p", "e.textContent.replaceAll('\\u202f', ' ')"), "and 1 507 more")
+
     def test_arrows_are_command_times_factor(self):
         columns = self.open("solved")
         self.set_time(10)
@@ -242,6 +271,27 @@ class Verdicts(page_test.BrowserTest):
         for case in ("solved", "certified"):  # files of former versions have no list of warnings
             self.open(case)
             self.assertEqual(self.js("return document.querySelectorAll('.warnings').length"), 0)
+
+    def test_targets_are_named_in_the_order_in_which_the_search_went_to_them(self):
+        # Without a plan the page has the goals as they stand in the problem.
+        def change(goal):
+            def change_report(report):
+                report["goals"] = [{**report["goals"][1], "x_m": 2.85 + i, "name": f"target {i + 1}"} for i in range(3)]
+                report["goal_order"] = "any_order"
+                report["solution"]["planning"]["goal"] = goal
+                report["solution"]["order"] = {
+                    "visits": [{"target": 3, "alternative": None}, {"target": 1, "alternative": 2}],
+                    "left_out": [{"target": 2, "reason": "no_flight", "energy_j": None}], "is_best": True, "legs": 7,
+                    "cost_of_legs": 812.5}
+            return change_report
+
+        for goal, name in ((1, "target 3"), (2, "target 1"), (3, "the place to return to")):
+            self.open_changed("unsolved", change(goal))
+            text = self.verdict().replace("\u00a0", " ")
+            self.assertIn(f"0.62 m from the region of {name}.", text)
+            self.assertIn(f"to the region of {name}", self.one(".figures", "e.textContent"))
+            self.assertIn("order of the targets: 3, 1 (alternative 2); no plan in that order was found", text)
+            self.assertNotIn("cheapest", text)
 
     def test_nothing_found_says_what_blocked_it_and_where(self):
         self.open("unsolved")

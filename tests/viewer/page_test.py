@@ -36,9 +36,24 @@ class BrowserTest(unittest.TestCase):
 
     def open(self, case):
         path, columns = page_of(case)
+        self.open_page(path)
+        return columns
+
+    def open_changed(self, case, change):
+        """The page of an invented run whose data `change` has changed."""
+        report = sample_page.CASES[case]()
+        change(report)
+        path = os.path.join(scratch.name, "changed.html")
+        sample_page.write(arguments.template, report, path)
+        self.open_page(path)
+
+    def open_page(self, path):
         self.assertTrue(self.browser.open(path), "the page shows an error")
         self.browser.settle()
-        return columns
+
+    def open_details(self):
+        self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+        self.browser.settle()
 
     def js(self, script, *values):
         return self.browser.js(script, *values)

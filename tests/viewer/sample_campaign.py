@@ -68,12 +68,16 @@ def comparison(experiment, first, second):
             "signed_rank_p": 0.5}
 
 
-def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
-    planners = [{"planner": variant + (f", margin {margin} m" if margin else ""), "variant": variant,
-                 "algorithm": "rrt-star", "margin_m": margin, "chance": chance, "scale": scale}
+def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,), parameters=({},)):
+    def name_of(variant, values, margin):
+        return ", ".join([variant, *(f"{name} {value}" for name, value in values.items()),
+                          *([f"margin {margin} m"] if margin else [])])
+
+    planners = [{"planner": name_of(variant, values, margin), "variant": variant, "algorithm": "rrt-star",
+                 "parameters": values, "margin_m": margin, "chance": chance, "scale": scale}
                 for variant, chance, scale in (("mp-arm-ada", 1, 1), ("mp-arm-da", 0.7, 0.7), ("mp-arm", 0.2, 0.1))
-                for margin in margins]
-    named = [{key: p[key] for key in ("planner", "variant", "algorithm", "margin_m")} for p in planners]
+                for values in parameters for margin in margins]
+    named = [{key: p[key] for key in ("planner", "variant", "algorithm", "parameters", "margin_m")} for p in planners]
     cells = [cell(problem, name, seeds, p["chance"], p["scale"])
              for problem in problems for p, name in zip(planners, named)]
     count = len(planners)
@@ -92,9 +96,10 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,)):
                  "nearest_approach_m": []}
                 for c in cells if c["failed_flights"]["hits"]]
     runs = seeds * len(cells)
-    sweep = [{"variant": "mp-arm", "algorithm": "rrt-star", "safe_margin_m": None,
+    sweep = [{"variant": "mp-arm", "algorithm": "rrt-star", "parameters": values, "safe_margin_m": None,
               "experiments": [{"experiment": f"{problem}, energy", "safe_margin_m": 0.2, "solved_when_safe": share(0, 20),
-                               "solved_when_safe_everywhere": None} for problem in problems]}]
+                               "solved_when_safe_everywhere": None} for problem in problems]}
+             for values in parameters]
     return {
         "schema": "downwash/campaign-report/v1",
         "settings": {"campaign": "invented", "description": "Two problems, made up.", "version": "0.0.0",

@@ -311,6 +311,12 @@ def crowded_report():
     return report
 
 
+def add_very_many_obstacles(report):
+    """2500 small ones that overlap, every other one beside the plane of motion."""
+    report["scene"]["obstacles"] += [box(f"brick_{i + 1}", [0.12, 0.3, 0.12], [-11 + 0.1 * (i % 50), i % 2, 1 + 0.1 * (i // 50)])
+                                     for i in range(2500)]
+
+
 def certificate_json(given, worlds, failures, interval, causes):
     worst = [{"world": 17 + 40 * i, "outcome": cause, "min_clearance_m": 0.0 if cause == "collision" else 0.041}
              for i, cause in enumerate(c for c, count in causes.items() for _ in range(count))]

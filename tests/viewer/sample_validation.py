@@ -24,9 +24,9 @@ def probability(hits, runs):
     return {"estimate": hits / runs, "low": max(0, hits / runs - spread), "high": min(1, hits / runs + spread)}
 
 
-def plain_report():
-    """The judge's flight alone."""
-    run = sample_page.solved_report()
+def plain_report(run=None):
+    """The judge's flight alone, of the plan of that run."""
+    run = run or sample_page.solved_report()
     columns = run["_columns"]
     findings = {"outcome": "ok", "min_clearance_m": 0.095, "energy_j": 10288.8, "duration_s": 19.58, "goal_error_m": 0.085,
                 "disagreements": []}
@@ -87,4 +87,9 @@ def open_air_report():
     return report, columns
 
 
-CASES = {"plain": plain_report, "worlds": worlds_report, "disputed": disputed_report, "open-air": open_air_report}
+def five_goals_report():
+    return plain_report(sample_page.five_goals_report())
+
+
+CASES = {"plain": plain_report, "worlds": worlds_report, "disputed": disputed_report, "open-air": open_air_report,
+         "five-goals": five_goals_report}

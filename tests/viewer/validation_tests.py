@@ -86,6 +86,10 @@ class Validation(page_test.BrowserTest):
         self.browser.driver.execute_async_script("setTimeout(arguments[0], 300)")
         self.assertEqual(self.js("return [downwash.flight, downwash.row]"), [0, 0])
 
+    def test_hovers_have_the_numbers_of_their_goals(self):
+        self.show("five-goals")
+        self.assertEqual(self.every(".mark.hover", "e.textContent"), ["1", "2", "3", "4", "5"])
+
     def test_obstacles_stand_where_the_world_has_them(self):
         self.show("worlds")
         before = self.one(".obstacles .section", "e.getAttribute('d')")
@@ -101,8 +105,7 @@ class Validation(page_test.BrowserTest):
                 with self.subTest(case=case, width=width):
                     self.browser.resize(width, 800, mobile=width < 700)
                     self.show(case)
-                    self.js("document.querySelectorAll('details').forEach(d => { d.open = true; })")
-                    self.browser.settle()
+                    self.open_details()
                     self.assertLessEqual(self.js("return document.documentElement.scrollWidth"), width)
 
     def test_a_page_without_a_validation_says_so(self):

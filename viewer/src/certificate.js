@@ -2,7 +2,7 @@
 
 import {h} from "./dom.js";
 import {meters, number} from "./format.js";
-import {make_probability_bar, percent} from "./probability_bar.js";
+import {given_percent, make_probability_bar} from "./probability_bar.js";
 import {outcome_name, outcome_text} from "./words.js";
 import {make_worst_worlds} from "./worst_worlds.js";
 
@@ -16,10 +16,13 @@ export function certificate_sentence({certificate}) {
     if (!certificate) {
         return null;
     }
-    const {given, max_failure_probability, confidence, failure_probability} = certificate;
+    const {given, worlds, max_failure_probability, confidence, failure_probability} = certificate;
     if (given) {
         return `Certified: ${worlds_text(certificate)}; the failure probability is at most ` +
-            `${percent(max_failure_probability)} with ${percent(confidence)} confidence.`;
+            `${given_percent(max_failure_probability)} with ${given_percent(confidence)} confidence.`;
+    }
+    if (worlds === 0) {
+        return "Not certified: the search ended before its first flights.";
     }
     const causes = causes_of(certificate).map(([cause, count]) => `${outcome_name(cause)} ${number(count, ",d")}`);
     const is_open = failure_probability.low <= max_failure_probability;
@@ -28,11 +31,12 @@ export function certificate_sentence({certificate}) {
 }
 
 function make_probability({certificate}) {
-    const {failure_probability, confidence, max_failure_probability, attempts} = certificate;
+    const {worlds, failure_probability, confidence, max_failure_probability, attempts} = certificate;
+    const probability = worlds > 0 ? failure_probability : {...failure_probability, estimate: NaN};
     return h(
         "div", {class: "card"}, h("h3", null, "Failure probability"),
         make_probability_bar(
-            failure_probability, "Failure probability", confidence, {name: "allowed", value: max_failure_probability}),
+            probability, "Failure probability", confidence, {name: "allowed", value: max_failure_probability}),
         attempts > 1 ? h("p", {class: "muted"},
                          `${number(attempts, ",d")} plans of this search asked for a certificate; they share the error.`) :
                        null);

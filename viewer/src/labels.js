@@ -7,6 +7,7 @@ import {goal_name} from "./words.js";
 
 const line_height = 14;
 const name_length = 26;
+const most_names = 200;
 
 const width_of = (text) => Math.min(220, 6.6 * [...text].length);
 
@@ -55,20 +56,29 @@ const word = (kind, x, y, text, title) =>
     s("text", {class: `word ${kind}`, x, y, dy: "0.35em", "text-anchor": "middle"}, text,
       title && title !== text ? s("title", null, title) : null);
 
-export function draw_obstacle_names(view, obstacles, placement) {
+/** The names of obstacles and the extents that they stand for; of very many obstacles, the largest ones only. */
+export function names_of(obstacles) {
+    const names = obstacles.filter(({name}) => name).map(({name, section, projection}) => {
+        const is_filled = section.length > 0;
+        return {name, is_filled, whole: extent_of(is_filled ? section : projection)};
+    });
+    const size_m = ({whole: {x_m, z_m}}) => x_m[1] - x_m[0] + z_m[1] - z_m[0];
+    return names.length > most_names ? names.sort((a, b) => size_m(b) - size_m(a)).slice(0, most_names) : names;
+}
+
+/** @param {ReturnType<typeof names_of>} names */
+export function draw_obstacle_names(view, names, placement) {
     const shown = view.shown;
     const marks = [];
-    for (const obstacle of obstacles) {
-        const is_filled = obstacle.section.length > 0;
-        const whole = extent_of(is_filled ? obstacle.section : obstacle.projection);
+    for (const {name, is_filled, whole} of names) {
         const seen = {
             x_m: [Math.max(whole.x_m[0], shown.x_m[0]), Math.min(whole.x_m[1], shown.x_m[1])],
             z_m: [Math.max(whole.z_m[0], shown.z_m[0]), Math.min(whole.z_m[1], shown.z_m[1])],
         };
-        if (!obstacle.name || seen.x_m[0] >= seen.x_m[1] || seen.z_m[0] >= seen.z_m[1]) {
+        if (seen.x_m[0] >= seen.x_m[1] || seen.z_m[0] >= seen.z_m[1]) {
             continue;
         }
-        const text = isolated(obstacle.name.replace(/\s+/g, " "), name_length);
+        const text = isolated(name.replace(/\s+/g, " "), name_length);
         const [left, top] = view.to_pixels(seen.x_m[0], seen.z_m[1]);
         const [right, bottom] = view.to_pixels(seen.x_m[1], seen.z_m[0]);
         const x = (left + right) / 2, y = (top + bottom) / 2, half = width_of(text) / 2 + 6;
@@ -85,7 +95,7 @@ export function draw_obstacle_names(view, obstacles, placement) {
             const is_inside = found[1] > top && found[1] < bottom && found[0] > left && found[0] < right;
             marks.push(word(
                 `${is_filled ? "of-section" : "of-projection"}${is_inside ? " inside" : ""}`, ...found, text,
-                text.endsWith("…\u2069") ? obstacle.name : null));
+                text.endsWith("…\u2069") ? name : null));
         }
     }
     return marks;

@@ -64,12 +64,13 @@ function draw_axes(drawing, frame, width, height) {
 export function make_panel(model, title, drawing_of) {
     const svg = s("svg", {class: "plot-svg panel-svg", role: "img"});
     const nothing = h("p", {class: "muted", hidden: true});
+    const save = make_save_button(svg, title);
     let last_width = 0;
     const draw = (width) => {
         last_width = width;
         const drawing = drawing_of();
         nothing.hidden = typeof drawing !== "string";
-        svg.toggleAttribute("hidden", !nothing.hidden);
+        [svg, save].forEach((element) => element.toggleAttribute("hidden", !nothing.hidden));
         if (!nothing.hidden) {
             nothing.textContent = drawing;
             return;
@@ -89,8 +90,7 @@ export function make_panel(model, title, drawing_of) {
     });
     const figure =
         h("figure", {class: "panel"},
-          h("figcaption", null, h("span", {class: "plot-title"}, foreign(title)), make_save_button(svg, title)), svg,
-          nothing);
+          h("figcaption", null, h("span", {class: "plot-title"}, foreign(title)), save), svg, nothing);
     keep_sized(figure, paper_width, draw);
     return figure;
 }

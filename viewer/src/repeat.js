@@ -2,32 +2,40 @@
 
 import {make_command} from "./command.js";
 import {foreign, h} from "./dom.js";
-import {place} from "./format.js";
+import {number, place} from "./format.js";
 import {extent_of} from "./numbers.js";
 import {is_cut} from "./surroundings.js";
 import {variants} from "./words.js";
 
 function range_text([low, high]) { return `${place(low)} to ${place(high)}`; }
 
-export function make_obstacle_table({scene}) {
-    if (scene.obstacles.length === 0) {
+function table_of(obstacles) {
+    const most = 1000, left_out = obstacles.length - most;
+    return h(
+        "div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Obstacles"},
+        h("table", {class: "numbers obstacle-table"},
+          h("thead", null,
+            h("tr", null,
+              ["name", "kind", "plane of motion", "x, whole", "z, whole"].map(
+                  (name) => h("th", {scope: "col"}, name)))),
+          h("tbody", null, obstacles.slice(0, most).map((obstacle) => {
+              const {x_m, z_m} = extent_of(obstacle.projection);
+              return h(
+                  "tr", null, h("th", {scope: "row", class: "foreign-name"}, foreign(obstacle.name)),
+                  h("td", null, obstacle.kind), h("td", null, is_cut(obstacle) ? "cuts it" : "beside it"),
+                  h("td", null, range_text(x_m)), h("td", null, range_text(z_m)));
+          }))),
+        left_out > 0 ? h("p", {class: "muted"}, `and ${number(left_out, ",d")} more`) : null);
+}
+
+/** The table is made when it is opened. */
+export function make_obstacle_table({scene: {obstacles}}) {
+    if (obstacles.length === 0) {
         return h("p", {class: "muted"}, "There are no obstacles.");
     }
-    return h(
-        "details", null, h("summary", null, `The ${scene.obstacles.length} obstacles as a table`),
-        h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Obstacles"},
-          h("table", {class: "numbers obstacle-table"},
-            h("thead", null,
-              h("tr", null,
-                ["name", "kind", "plane of motion", "x, whole", "z, whole"].map(
-                    (name) => h("th", {scope: "col"}, name)))),
-            h("tbody", null, scene.obstacles.map((obstacle) => {
-                const {x_m, z_m} = extent_of(obstacle.projection);
-                return h(
-                    "tr", null, h("th", {scope: "row", class: "foreign-name"}, foreign(obstacle.name)),
-                    h("td", null, obstacle.kind), h("td", null, is_cut(obstacle) ? "cuts it" : "beside it"),
-                    h("td", null, range_text(x_m)), h("td", null, range_text(z_m)));
-            })))));
+    const details = h("details", null, h("summary", null, `The ${obstacles.length} obstacles as a table`));
+    details.addEventListener("toggle", () => details.append(table_of(obstacles)), {once: true});
+    return details;
 }
 
 export function make_repeat(model) {

@@ -1,11 +1,22 @@
-// Saves a drawing as an SVG file of its own, with the colours that it has at the moment.
+// Saves a drawing as an SVG file of its own, in light colours: it has no ground, and paper is white.
 
-import {h} from "./dom.js";
+import {h, set_attributes} from "./dom.js";
 
 const carried = [
     "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "opacity", "font-family",
     "font-size", "font-weight", "paint-order"
 ];
+
+/** What `read` finds in the light theme; nothing is painted meanwhile. */
+function in_light(read) {
+    const {dataset} = document.documentElement, {theme} = dataset;
+    dataset.theme = "light";
+    try {
+        return read();
+    } finally {
+        dataset.theme = theme;
+    }
+}
 
 /** @param {SVGElement} svg */
 function standalone(svg) {
@@ -16,16 +27,19 @@ function standalone(svg) {
         carried.forEach((name) => element.setAttribute(name, style.getPropertyValue(name)));
         element.removeAttribute("class");
     });
-    const [, , width, height] = svg.getAttribute("viewBox").split(" ");
-    Object.entries({xmlns: "http://www.w3.org/2000/svg", width, height})
-        .forEach(([name, value]) => copy.setAttribute(name, value));
+    copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+    const box = svg.getAttribute("viewBox");
+    if (box) {
+        const [, , width, height] = box.split(" ");
+        set_attributes(copy, {width, height});
+    }
     copy.removeAttribute("class");
     return new XMLSerializer().serializeToString(copy);
 }
 
 export function make_save_button(svg, title) {
     const save = () => {
-        const address = URL.createObjectURL(new Blob([standalone(svg)], {type: "image/svg+xml"}));
+        const address = URL.createObjectURL(new Blob([in_light(() => standalone(svg))], {type: "image/svg+xml"}));
         const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_|_$/g, "").slice(0, 80);
         const link = h("a", {href: address, download: `${name || "figure"}.svg`});
         link.click();

@@ -4,7 +4,7 @@ import {h, s} from "./dom.js";
 import {opening_of, padded} from "./extents.js";
 import {forces_note, make_forces} from "./forces.js";
 import {point, quantity, seconds} from "./format.js";
-import {draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way, Placement} from "./labels.js";
+import {draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way, names_of, Placement} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
 import {extent_of} from "./numbers.js";
@@ -54,6 +54,7 @@ export function make_scene(model, clock, playback) {
     make_hatches(view);
     const rows = data ? snapshot_rows(model) : [];
     const obstruction = solution.planning?.obstruction ?? null;
+    const names = names_of(scene.obstacles);
 
     const surroundings = s("g", null, draw_bounds(scene.bounds), draw_obstacles(scene.obstacles));
     const current = s("g", {class: "current"});
@@ -149,7 +150,7 @@ export function make_scene(model, clock, playback) {
             marks.push(...draw_snapshot_times(view, model, rows, placement));
         }
         if (shown.names) {
-            groups.names.replaceChildren(...draw_obstacle_names(view, scene.obstacles, placement));
+            groups.names.replaceChildren(...draw_obstacle_names(view, names, placement));
         }
         words.replaceChildren(...marks, ...(groups.names ? [groups.names] : []));
         move_words();

@@ -25,13 +25,24 @@ const open_lines = (obstacle) =>
 
 export const is_cut = (obstacle) => obstacle.section.length > 0 || (obstacle.section_lines ?? []).length > 0;
 
+/** So many that a browser cannot move an element for each. */
+export const are_many = (obstacles) => obstacles.length > 2000;
+
+/** An element for each of the obstacles, or one for all of very many, in which those that overlap are no holes. */
 export function draw_obstacles(obstacles) {
-    const beside = obstacles.map(
-        (obstacle) => s("path", {class: "projection", "fill-rule": "evenodd", d: rings(obstacle.projection)}));
-    const cut = obstacles.filter(is_cut).map(
-        (obstacle) =>
-            s("g", null, s("path", {class: "section", "fill-rule": "evenodd", d: rings(obstacle.section)}),
-              s("path", {class: "section-line", d: open_lines(obstacle)})));
+    const is_one = are_many(obstacles), rule = is_one ? "nonzero" : "evenodd";
+    const drawn = (list, draw) => (is_one ? [list] : list.map((obstacle) => [obstacle])).map(draw);
+    const joined = (list, part) => list.map(part).join("");
+    const beside = drawn(
+        obstacles,
+        (list) => s(
+            "path", {class: "projection", "fill-rule": rule, d: joined(list, ({projection}) => rings(projection))}));
+    const cut = drawn(
+        obstacles.filter(is_cut),
+        (list) => s(
+            "g", null,
+            s("path", {class: "section", "fill-rule": rule, d: joined(list, ({section}) => rings(section))}),
+            s("path", {class: "section-line", d: joined(list, open_lines)})));
     return s("g", {class: "obstacles"}, beside, cut);
 }
 

@@ -3,7 +3,7 @@
 import {certificate_sentence} from "./certificate.js";
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
-import {cause_text, goal_name, knowledge, outcome_text, variants} from "./words.js";
+import {cause_text, knowledge, numbered_goal_name, outcome_text, variants} from "./words.js";
 
 /** How, where and when the flight of a plan fails. */
 function failure_lines(model, how) {
@@ -34,10 +34,11 @@ function failure_lines(model, how) {
 function world_text({world}) { return world ? `, in world ${world.index} of seed ${world.seed}` : ""; }
 
 /** What blocked a search without a plan. */
-function blocked_lines({solution, outcome, goals}) {
+function blocked_lines(model) {
+    const {solution, outcome} = model;
     const {certificate, execution, planning, status, interrupted} = solution;
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
-    const goal = planning?.goal ? goal_name({goals}, planning.goal - 1) : "the goal";
+    const goal = planning?.goal ? numbered_goal_name(model, planning.goal) : "the goal";
     const region = planning?.goal ? `the region of ${goal}` : "the goal region";
     const is_screened = stop?.cause === "certificate" && !certificate;  // a part of a way through several goals
     const lines = [];
@@ -152,7 +153,7 @@ function figures_of(model) {
     }
     if (Number.isFinite(planning?.nearest_approach_m)) {
         add("Nearest approach", meters(planning.nearest_approach_m),
-            planning.goal ? `to the region of ${goal_name(model, planning.goal - 1)}` : "to the goal region");
+            planning.goal ? `to the region of ${numbered_goal_name(model, planning.goal)}` : "to the goal region");
     }
     const first = planning?.first_solution_wall_s;
     add("First solution after", Number.isFinite(first) ? quantity(first, ".3f", "s") : "none",
@@ -186,8 +187,9 @@ function order_list({solution}) {
     const visited = order.visits.map(
         ({target, alternative}) => alternative ? `${target} (alternative ${alternative})` : `${target}`);
     const legs = `${order.legs} flown legs`;
-    const how = order.is_best ? `the cheapest by ${legs} and lower bounds of the others` :
-                                `the cheapest that was found by ${legs}`;
+    const how = !solution.plan ? "no plan in that order was found" :
+        order.is_best          ? `the cheapest by ${legs} and lower bounds of the others` :
+                                 `the cheapest that was found by ${legs}`;
     const why = ({energy_j}) => Number.isFinite(energy_j) ?
         `with it the flight takes about ${quantity(energy_j, ",.0f", "J")}, more than it may` :
         "no flight to it was found";
@@ -197,8 +199,8 @@ function order_list({solution}) {
         order.left_out.map((each) => h("li", null, `target ${each.target} is left out: ${why(each)}`)));
 }
 
-function goals_list({solution, goals}) {
-    const visits = solution.execution?.goals ?? [];
+function goals_list(model) {
+    const visits = model.solution.execution?.goals ?? [];
     if (visits.length < 2) {
         return null;
     }
@@ -207,7 +209,7 @@ function goals_list({solution, goals}) {
         visits.map(
             ({met, error_m}, i) =>
                 h("li", null,
-                  `${goal_name({goals}, i)}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
+                  `${numbered_goal_name(model, i + 1)}: ${met ? "met" : "not met"}, error ${meters(error_m)}`)));
 }
 
 /** What reading the problem warned of, folded to a line; null where there is nothing. */

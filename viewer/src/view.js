@@ -55,7 +55,7 @@ export class View {
               this.axis_x, this.axis_z, this.name_x, this.name_z);
         this.transform = zoomIdentity;
         this.redraw_soon = once_a_frame(() => this.redraw());
-        this.zoom = zoom().scaleExtent([0.5, most_zoom]).filter(() => this.#may_handle(event)).on("zoom", () => {
+        this.zoom = zoom().filter(() => this.#may_handle(event)).on("zoom", () => {
             this.transform = event.transform;
             this.svg.classList.toggle("zoomed", event.transform.k > 1.01);
             this.redraw_soon();
@@ -127,10 +127,12 @@ export class View {
             [this.center[0] + (x - this.base.middle_x) * this.base.scale,
              this.center[1] - (z - this.base.middle_z) * this.base.scale];
         const far = Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]) / 4;
+        const k_of_everything =
+            with_shape(this.everything, this.inner_width, this.inner_height).scale / this.base.scale;
         const box = {x: margin.left, y: margin.top, width: this.inner_width, height: this.inner_height};
-        this.zoom.extent([[margin.left, margin.top], [right, bottom]]).translateExtent([
-            at(x_m[0] - far, z_m[1] + far), at(x_m[1] + far, z_m[0] - far)
-        ]);
+        this.zoom.scaleExtent([Math.min(0.5, 0.9 * k_of_everything), most_zoom])
+            .extent([[margin.left, margin.top], [right, bottom]])
+            .translateExtent([at(x_m[0] - far, z_m[1] + far), at(x_m[1] + far, z_m[0] - far)]);
         this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
         set_attributes(this.clip, box);
         set_attributes(this.frame, box);
@@ -139,7 +141,7 @@ export class View {
         set_attributes(this.name_x, {x: this.center[0], y: this.height - 4});
         set_attributes(this.name_z, {transform: `translate(12 ${this.center[1]}) rotate(-90)`});
         if (shown) {
-            const k = shown.k * 1;
+            const {k} = shown;
             const [x, y] = at(...shown.at);
             select(this.svg).call(
                 this.zoom.transform, zoomIdentity.translate(this.center[0] - k * x, this.center[1] - k * y).scale(k));

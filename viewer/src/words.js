@@ -49,3 +49,13 @@ export const variants = {
 /** What a goal is called: "goal", "goal 2" or, where the planner chose the order, "target 3". */
 export const goal_name = ({goals}, index) =>
     goals[index]?.name ?? (goals.length > 1 ? `goal ${index + 1}` : "goal");
+
+/** The same by the number from 1 that the search gives it: it counts in the order in which it visits targets. */
+export function numbered_goal_name(model, number) {
+    const {order} = model.solution;
+    if (!order) {
+        return goal_name(model, number - 1);
+    }
+    const visit = order.visits[number - 1];
+    return visit ? `target ${visit.target}` : "the place to return to";
+}

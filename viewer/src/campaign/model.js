@@ -7,7 +7,8 @@ const lists = ["settings", "totals", "cells", "comparisons", "margins", "failure
 export function read_figures(text) { return read_embedded(text, "downwash/campaign-report/v1", "campaign", lists); }
 
 /** Planners that differ by their margin only. */
-const kind_of = ({variant, algorithm}) => `${variant} ${algorithm}`;
+export const kind_of = ({variant, algorithm, parameters}) =>
+    [`${variant} ${algorithm}`, ...Object.entries(parameters ?? {}).map((each) => each.join(" "))].join(", ");
 
 /** null stands for what is infinite: a seed that has no solution. */
 const values = (list) => list.map((value) => value ?? Infinity);

@@ -2,6 +2,7 @@
 
 import {foreign, h} from "../dom.js";
 import {meters, number} from "../format.js";
+import {kind_of} from "./model.js";
 import {plain} from "../panel.js";
 
 const share = ({hits, attempts, low, high}) =>
@@ -127,7 +128,7 @@ function pairs_table({figures}) {
 function margins_tables({figures}) {
     return figures.margins.map((finding) => [
         h("p", null,
-          `${finding.variant} ${finding.algorithm}: `,
+          `${kind_of(finding)}: `,
           finding.safe_margin_m === null ?
               "no margin that was tried is safe on all problems." :
               `safe on all problems from a margin of ${plain(finding.safe_margin_m)} m on.`),

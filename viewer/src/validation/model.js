@@ -23,7 +23,7 @@ function moved_scene(scene, [x_m, z_m]) {
 /** The flight of a judge in the shape that the player of a run has. */
 export function flight_model(report, {outcome, scene_offset_m, flight}) {
     const [x_m, z_m] = scene_offset_m;
-    const {map, plan, robot, start, goals, limits} = report;
+    const {map, plan, robot, start, goals, goal_order, limits} = report;
     return build_model({
         solution: {status: "solved", plan, execution: {outcome}},
         scene: moved_scene(report.scene, scene_offset_m),
@@ -31,6 +31,7 @@ export function flight_model(report, {outcome, scene_offset_m, flight}) {
         robot,
         start,
         goals,
+        goal_order,
         limits,
         flight,
     });

@@ -6,11 +6,11 @@ import {h} from "../dom.js";
 import {opening_of} from "../extents.js";
 import {number} from "../format.js";
 import {pose_at} from "../model.js";
-import {is_cut} from "../surroundings.js";
+import {are_many, goal_region, is_cut} from "../surroundings.js";
 import {make_camera} from "./camera.js";
 import {make_names, names_of} from "./names.js";
 import {draw_grid, draw_sheet, grid_around} from "./plane.js";
-import {draw_line, draw_solid, draw_tube, draw_vehicle} from "./solids.js";
+import {draw_line, draw_solid, draw_together, draw_tube, draw_vehicle} from "./solids.js";
 
 /** As in the scene: obstacles that the plane of motion cuts are darker than those beside it. */
 const palettes = {
@@ -40,12 +40,20 @@ const palettes = {
     },
 };
 
+const opacities = {
+    section: 0.6,
+    projection: 0.25
+};
+
 function draw_obstacles(world, obstacles, paint) {
+    const together = {section: [], projection: []};
     for (const obstacle of obstacles) {
         const {solid, section, projection} = obstacle;
-        if (solid) {
-            const name = is_cut(obstacle) ? "section" : "projection";
-            world.add(draw_solid(solid, name, paint, is_cut(obstacle) ? 0.6 : 0.25));
+        const name = is_cut(obstacle) ? "section" : "projection";
+        if (solid && are_many(obstacles)) {
+            together[name].push(solid);
+        } else if (solid) {
+            world.add(draw_solid(solid, name, paint, opacities[name]));
         } else {
             // Too large a mesh for a page: its outline in the plane of motion stands for it.
             for (const ring of section.length > 0 ? section : projection) {
@@ -53,17 +61,26 @@ function draw_obstacles(world, obstacles, paint) {
             }
         }
     }
+    for (const [name, solids] of Object.entries(together)) {
+        if (solids.length > 0) {
+            world.add(draw_together(solids, name, paint, opacities[name]));
+        }
+    }
 }
 
-function draw_goals(world, goals, paint) {
-    for (const goal of goals) {
-        const radius = Math.max(0.06, goal.tolerance_x_m ?? 0.1);
-        const material = new three.MeshBasicMaterial({transparent: true, opacity: 0.6});
-        paint(material, "goal");
-        const ball = new three.Mesh(new three.SphereBufferGeometry(radius, 24, 16), material);
-        ball.position.set(goal.x_m ?? 0, 0, goal.z_m ?? 0);
-        world.add(ball);
-    }
+/** As large as in the scene: a ball for a disc, flat in the plane of motion where x and z are judged one by one. */
+function draw_goal(goal, bounds, paint) {
+    const {x_m, z_m, half_x, half_z, shape} = goal_region(goal, bounds);
+    const has_size = half_x > 0 && half_z > 0, is_flat = has_size && shape === "rectangle";
+    const seen = (half) => Math.max(0.06, has_size ? half : 0.08);
+    const geometry = is_flat ? new three.BoxBufferGeometry(2 * seen(half_x), 0.02, 2 * seen(half_z)) :
+                               new three.SphereBufferGeometry(seen(half_x), 24, 16);
+    const material =
+        new three.MeshBasicMaterial({transparent: true, opacity: is_flat ? 0.4 : 0.6, depthWrite: !is_flat});
+    paint(material, "goal");
+    const body = new three.Mesh(geometry, material);
+    body.position.set(x_m, 0, z_m);
+    return body;
 }
 
 function draw_paths(world, {data}, size_m, paint) {
@@ -110,7 +127,8 @@ export function start(stage, model, clock) {
         world.add(sheet.sheet);
     }
     draw_obstacles(world, scene.obstacles, paint);
-    draw_goals(world, model.goals, paint);
+    const goals = model.goals.map((goal) => draw_goal(goal, scene.bounds, paint));
+    world.add(...goals);
     const vehicle = draw_vehicle(robot, paint);
     vehicle.move({pitch_rad: 0, ...(model.solution.planning?.obstruction ?? model.start)});
     world.add(vehicle.body);
@@ -184,6 +202,9 @@ export function start(stage, model, clock) {
             const link = vehicle.body.children[vehicle.body.children.length - 1];
             return link.localToWorld(point).toArray();
         },
+        /** Least and greatest corner of every goal as it is drawn, for tests. */
+        goals: () => goals.map((body) => new three.Box3().setFromObject(body))
+                         .map(({min, max}) => [min.toArray(), max.toArray()]),
         /** Where a point of the plane of motion is seen, from 0 to 1 from left to right and from top to bottom, for tests. */
         seen_at(x_m, z_m) {
             const {x, y} = new three.Vector3(x_m, 0, z_m).project(view.camera);

@@ -6,7 +6,8 @@ import {h, isolated} from "../dom.js";
 import {place} from "../format.js";
 import {Placement} from "../labels.js";
 import {extent_of} from "../numbers.js";
-import {goal_region, is_cut} from "../surroundings.js";
+import {are_many, goal_region, is_cut} from "../surroundings.js";
+import {goal_name} from "../words.js";
 
 /** The middle of what two ranges share; of ranges apart, the end of the first that is nearer to the second. */
 function shared_middle([low, high], [other_low, other_high]) {
@@ -27,11 +28,7 @@ export function names_of(model, grid, extent) {
     const {goals, scene, start} = model;
     const names = goals.map((goal, i) => {
         const {x_m, z_m} = goal_region(goal, scene.bounds);
-        return {
-            kind: "of-goal",
-            text: goals.length > 1 ? `goal ${i + 1}` : "goal",
-            at: new three.Vector3(x_m, 0, z_m)
-        };
+        return {kind: "of-goal", text: goal_name(model, i), at: new three.Vector3(x_m, 0, z_m)};
     });
     names.push({kind: "of-start", text: "start", at: new three.Vector3(start.x_m, 0, start.z_m)});
     const low = grid.z_m[0], left = grid.x_m[0];
@@ -42,7 +39,8 @@ export function names_of(model, grid, extent) {
             .map((x) => ({kind: "of-axis", text: `x ${tick(x)}`, at: new three.Vector3(x, 0, low)})),
         ...grid.z_m.filter((_, i) => i > 0 && i % every === 0)
             .map((z) => ({kind: "of-axis", text: `z ${tick(z)}`, at: new three.Vector3(left, 0, z)})));
-    const obstacles = scene.obstacles.filter(({name}) => name).map((obstacle) => ({
+    const named = are_many(scene.obstacles) ? [] : scene.obstacles.filter(({name}) => name);
+    const obstacles = named.map((obstacle) => ({
         kind: is_cut(obstacle) ? "of-section" : "of-projection",
         text: isolated(obstacle.name.replace(/\s+/g, " "), 26),
         at: anchor_of(obstacle, extent),

@@ -36,9 +36,8 @@ function place(object, solid) {
     return object;
 }
 
-/** A solid with its edges; `paint` remembers what has which colour in which theme. */
-export function draw_solid(solid, name, paint, opacity) {
-    const geometry = geometry_of(solid);
+/** `paint` remembers what has which colour in which theme. */
+function see_through(name, paint, opacity, flatShading = false) {
     const material = new three.MeshLambertMaterial({
         transparent: opacity < 1,
         opacity,
@@ -47,14 +46,64 @@ export function draw_solid(solid, name, paint, opacity) {
         polygonOffset: true,
         polygonOffsetFactor: 1,
         polygonOffsetUnits: 1,
-        flatShading: Boolean(solid.mesh)
+        flatShading
     });
-    const edges = new three.LineBasicMaterial({transparent: true, opacity: 0.6});
     paint(material, name);
+    return material;
+}
+
+/** A solid with its edges. */
+export function draw_solid(solid, name, paint, opacity) {
+    const geometry = geometry_of(solid);
+    const material = see_through(name, paint, opacity, Boolean(solid.mesh));
+    const edges = new three.LineBasicMaterial({transparent: true, opacity: 0.6});
     paint(edges, name === "body" ? "vehicle" : "edge");
     const group = new three.Group();
     group.add(new three.Mesh(geometry, material), new three.LineSegments(new three.EdgesGeometry(geometry, 30), edges));
     return place(group, solid);
+}
+
+/** Of size 1 and with few corners, to be drawn many times. */
+const coarse = {
+    box: new three.BoxBufferGeometry(1, 1, 1),
+    cylinder: new three.CylinderBufferGeometry(1, 1, 1, 8),
+    sphere: new three.SphereBufferGeometry(1, 8, 6)
+};
+
+function coarse_geometry_of(solid) {
+    const {box, cylinder, sphere} = solid;
+    if (box) {
+        return {geometry: coarse.box, scale: box.size_m};
+    }
+    if (cylinder) {
+        return {geometry: coarse.cylinder, scale: [cylinder.radius_m, cylinder.length_m, cylinder.radius_m]};
+    }
+    if (sphere) {
+        return {geometry: coarse.sphere, scale: Array(3).fill(sphere.radius_m)};
+    }
+    return {geometry: geometry_of(solid), scale: [1, 1, 1]};
+}
+
+/** Very many solids as one body without edges: one by one they are more than a browser can turn. */
+export function draw_together(solids, name, paint, opacity) {
+    const positions = [], indices = [], corner = new three.Vector3();
+    for (const solid of solids) {
+        const {geometry, scale} = coarse_geometry_of(solid);
+        const object = place(new three.Object3D(), solid);
+        object.scale.set(...scale);
+        object.updateMatrix();
+        const {array} = geometry.getAttribute("position"), first = positions.length / 3;
+        for (let i = 0; i < array.length; i += 3) {
+            corner.fromArray(array, i).applyMatrix4(object.matrix);
+            positions.push(corner.x, corner.y, corner.z);
+        }
+        geometry.index.array.forEach((index) => indices.push(first + index));
+    }
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.Float32BufferAttribute(positions, 3));
+    geometry.setIndex(indices);
+    geometry.computeVertexNormals();
+    return new three.Mesh(geometry, see_through(name, paint, opacity));
 }
 
 /** A line in the plane of motion, one pixel wide. */
