@@ -63,7 +63,7 @@ std::string missed_region(const Solution& solution) {
     return solution.planning.goal ? "the region of " + missed_goal(solution) : "the goal region";
 }
 
-std::string order_rows(const VisitOrder& order, const std::optional<double>& energy_budget_j) {
+std::string order_rows(const VisitOrder& order, bool has_plan, const std::optional<double>& energy_budget_j) {
     std::string visits;
     for (const Visit& visit : order.visits) {
         visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
@@ -71,7 +71,8 @@ std::string order_rows(const VisitOrder& order, const std::optional<double>& ene
     }
     std::string text = row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
     if (!visits.empty()) {
-        text += row("", order.is_best
+        text += row("", !has_plan ? "no plan in that order was found"
+                        : order.is_best
                             ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
                             : fmt::format("the cheapest that was found by {} flown legs", order.legs));
     }
@@ -229,7 +230,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                                          solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.order) {
-        text += order_rows(*solution.order, problem.energy_budget_j);
+        text += order_rows(*solution.order, solution.plan.has_value(), problem.energy_budget_j);
     }
     if (solution.execution) {
         text += flight_rows(goals_of(in_order(problem, solution.order)), solution, *solution.execution);

@@ -12,7 +12,7 @@ namespace downwash {
 /// The plan of a run that another autopilot can fly. @throws InputError without a plan, or where a touch follows it
 [[nodiscard]] const Plan& plan_to_be_flown(const RunRecord& run);
 
-/// When the hover at the last goal ends [s].
+/// When the hover at the last goal ends [s]. @pre run.plan
 [[nodiscard]] double end_of_hover_s(const RunRecord& run);
 
 /// The reference of a plan at a time [s]: between two knots, or held after the last.

@@ -37,7 +37,8 @@ double end_of_hover_s(const RunRecord& run) {
 }
 
 std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings) {
-    return setpoints(plan_to_be_flown(run), run.problem.plane, end_of_hover_s(run),
+    const Plan& plan = plan_to_be_flown(run);
+    return setpoints(plan, run.problem.plane, end_of_hover_s(run),
                      settings.rate_hz.value_or(run.problem.robot.controller.rate_hz));
 }
 

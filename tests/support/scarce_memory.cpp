@@ -10,10 +10,13 @@ std::atomic<bool> memory_is_scarce = false;
 
 }  // namespace downwash::test
 
-void* operator new(std::size_t bytes) {
+void* operator new(std::size_t bytes, const std::nothrow_t& /*tag*/) noexcept {
     constexpr std::size_t large = 100'000;
     const bool is_denied = downwash::test::memory_is_scarce && bytes >= large;
-    void* const memory = is_denied ? nullptr : std::malloc(std::max<std::size_t>(bytes, 1));
+    return is_denied ? nullptr : std::malloc(std::max<std::size_t>(bytes, 1));
+}
+void* operator new(std::size_t bytes) {
+    void* const memory = operator new(bytes, std::nothrow);
     if (memory == nullptr) {
         throw std::bad_alloc();
     }
