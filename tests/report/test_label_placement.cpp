@@ -130,7 +130,8 @@ TEST_CASE("of very many obstacles the largest have names, and goals have theirs"
     std::vector<VisibleOutline> outlines;
     constexpr std::size_t count = 20000, large = 7777;
     for (std::size_t i = 0; i < count; ++i) {
-        const double x_m = 0.4 * static_cast<double>(i % 200), z_m = 0.4 * static_cast<double>(i / 200);
+        const std::size_t row = i / 200, column = i % 200;
+        const double x_m = 0.4 * static_cast<double>(column), z_m = 0.4 * static_cast<double>(row);
         const Ring ring = i == large ? rectangle(90, 92, 20, 22) : rectangle(x_m, x_m + 0.1, z_m, z_m + 0.1);
         outlines.push_back({{}, {ring}, {ring}});
         outlines.back().outline.name = "n";
