@@ -178,7 +178,7 @@ std::vector<std::uint32_t> read_seeds(const Database& database) {
         single ? "SELECT seed, seed FROM campaign_seeds ORDER BY place"
                : "SELECT first, last FROM campaign_seeds ORDER BY place",
         [&](std::uint64_t first, std::uint64_t last) {
-            // The checksum tells whether a range is damaged, if it makes no more seeds than memory has room for.
+            // A damaged range may be endless: more seeds than any campaign has are enough for the checksum to differ.
             for (std::uint64_t seed = first; seed <= last && seeds.size() <= max_campaign_runs; ++seed) {
                 seeds.push_back(static_cast<std::uint32_t>(seed));
             }
