@@ -87,7 +87,7 @@ struct FlightFigures {
     double goal_error_m = 0;
 };
 
-/// How a plan flies with one parameter of the worlds alone at either end of its spread, all else as believed.
+/// How a plan flies with one parameter of the worlds alone at either end of its spread, all else nominal.
 struct ParameterFlights {
     std::string parameter;  ///< name of a WorldParameter
     bool fails_low = false, fails_high = false;

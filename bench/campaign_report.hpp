@@ -48,14 +48,14 @@ struct SeedFigures {
 };
 
 /// How many plans fail with one parameter of the worlds alone at its 2 % or 98 % quantile, of those whose flight held
-/// when all was as believed.
+/// in the nominal world.
 struct ParameterFigures {
     std::string parameter;
     std::size_t plans = 0;
     std::size_t failed_low = 0, failed_high = 0;
 };
 
-/// Plans where not everything is as believed.
+/// Flights of the plans in other worlds than the nominal one.
 struct WorldsFigures {
     std::size_t tested = 0;    ///< seeds whose plan was tested for a certificate
     Share certified;           ///< of the attempted seeds

@@ -95,8 +95,8 @@ def main():
     print(f"`bench/contact.py --seeds {options.seeds} --runs {options.runs} --time-limit {options.time_limit:g}` plans "
           "the problems of `problems/contact/` with their\nuncertainty, and the same scenes with a hover instead of the "
           f"touch. Power is the mean over the {HOLD_S} s of the hold, as\nbelieved. The error is the worst mean force "
-          "of a second of all plans, as believed. Flights in worlds are those of\n`downwash validate`, over all plans "
-          "that fly well as believed, certified or not.\n")
+          "of a second of all plans, in the nominal world. Flights in worlds are those of\n`downwash validate`, over all plans "
+          "that fly well in the nominal world, certified or not.\n")
     print("| | power W | force error N | certified | failed in worlds |")
     print("| --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:

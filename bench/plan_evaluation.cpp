@@ -8,7 +8,7 @@
 namespace downwash::bench {
 namespace {
 
-/// The world in which one parameter is at a quantile of its spread and all else is as believed, noise included.
+/// The world in which one parameter is at a quantile of its spread and all else is nominal, noise included.
 World world_of(const WorldParameter& parameter, const Uncertainty& uncertainty, const Robot& robot, double at) {
     const bool is_of_robot = parameter.believed != nullptr;
     const double value =

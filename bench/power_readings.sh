@@ -62,7 +62,7 @@ done
 {
     echo "# What a deck saves, under two readings of power"
     echo
-    echo "\`problems/along_the_deck.yaml\` as believed; medians of seeds 1 to $seeds, $iterations iterations each; commit $(git describe --always --dirty)."
+    echo "\`problems/along_the_deck.yaml\` in the nominal world; medians of seeds 1 to $seeds, $iterations iterations each; commit $(git describe --always --dirty)."
     echo "Made by \`bench/power_readings.sh\`. [model.md 3](../../docs/model.md#3-rotors-commands-and-power) explains the readings."
     echo
     echo "| planner | K in the last 30 s | power there, K_P K^-1.5 | power there, K_P | energy, K_P K^-1.5 | energy, K_P |"

@@ -107,7 +107,7 @@ def main() -> int:
         f"Commit `{commit}`, Release. `bench/python_calls.py` writes this page: the best of {options.rounds} rounds",
         "in which both sides take turns, one thread each; other programs can only add to a time. K is that of",
         "`bridge_inspection`, its times are those of the processor; the search is the fastest, by the clock, of",
-        f"{SEARCHES} a round in `open_air` as believed.",
+        f"{SEARCHES} a round in `open_air` in the nominal world.",
         "",
         "| call | C++ | Python | ratio |",
         "|---|---:|---:|---:|",

@@ -239,9 +239,9 @@ class Document {
         if (plan_.evaluation_worlds == 0) {
             return;
         }
-        add("One parameter alone at its 2 % or 98 % quantile, all else as believed, without noise and gusts: plans "
+        add("One parameter alone at its 2 % or 98 % quantile, all else nominal, without noise and gusts: plans "
             "that "
-            "fail, of those whose flight held when all was\nas believed. Parameters that let no plan fail are left "
+            "fail, of those whose flight held\nin the nominal world. Parameters that let no plan fail are left "
             "out.\n\n");
         heads({"problem", "planner", "parameter", "at 2 %", "at 98 %"});
         for (const CellFigures& cell : report_.cells) {

@@ -151,7 +151,7 @@ def main() -> int:
         f"Commit `{commit}`, Release, {os.cpu_count()} processors; load at the end {loads[0]:.1f}. `bench/scale.py` writes this page.",
         "Targets are about processor time, since other programs on the machine lengthen wall times.", "",
         "## Shards beside one process", "",
-        "80 searches of 1200 iterations, about a second each, in `bridge_inspection` and `pipe_rack`, as believed, by MP-ARM-ADA and",
+        "80 searches of 1200 iterations, about a second each, in `bridge_inspection` and `pipe_rack`, in the nominal world, by MP-ARM-ADA and",
         "MP-ARM; the median of three rounds in turns. Shards start a process each and read the maps from the cache.", "", *shard_rows, "",
         "## A million runs", "",
         f"{given.runs} invented runs of eight problems and five planners, with as many rows each as a search of a second has",

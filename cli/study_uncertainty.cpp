@@ -87,7 +87,7 @@ ExitCode run(const StudyUncertaintyArguments& given) {
 void add_study_uncertainty(CLI::App& study, Action& action) {
     auto [command, given] =
         add_command(study, action, "uncertainty",
-                    "Compare plans made as if all were as believed, with margins, in one pessimistic world and in "
+                    "Compare plans for the nominal world, with margins, in one pessimistic world and in "
                     "several worlds: how "
                     "often they are found and fail, what they cost. Continues with the results that are there",
                     run);

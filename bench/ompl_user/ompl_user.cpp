@@ -125,7 +125,7 @@ void note(Row& row, const std::optional<double>& time_s) {
     row.times_s.push_back(time_s.value_or(std::numeric_limits<double>::infinity()));
 }
 
-/// First solutions as if everything were as believed.
+/// First solutions in the nominal world.
 void run_as_believed(const Options& options, Problem problem, const FlightModel& model,
                      const std::shared_ptr<const AeroMap>& map) {
     problem.uncertainty.reset();

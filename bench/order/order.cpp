@@ -229,7 +229,7 @@ void print(const std::vector<Row>& rows, const Options& options) {
     fmt::print(
         "# Targets in any order\n\n"
         "Commit {}, g++ {}, {}, one thread a search, seed {}. `bench/order.sh` writes this page.\n\n"
-        "{} random scenes with six blocks and {} targets, everything as believed, objective energy. The planner gets "
+        "{} random scenes with six blocks and {} targets, in the nominal world, objective energy. The planner gets "
         "{:g} "
         "s for a scene;\n{} searches ran at a time. *Legs* is how many it flew to compare orders.\n\n"
         "*By legs*: each of the {} legs from the start to a target and between two targets is planned as a problem of "

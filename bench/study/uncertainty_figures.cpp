@@ -36,11 +36,11 @@ PartResults results_of(const StudyPart& part, const std::filesystem::path& folde
 std::string setup_name(const PlannerSetup& planner, const StudyPart& part) {
     PlannerSetup without_margin = planner;
     without_margin.margin_m.reset();
-    std::string name = std::string(downwash::name_of(planner.variant)) + ", " + part.believed;
+    std::string name = std::string(downwash::name_of(planner.variant)) + ", " + part.assumed;
     return planner.margin_m ? name + planner.name().substr(without_margin.name().size()) : name;
 }
 
-/// Costs of flights as believed, by problem and seed.
+/// Costs of flights in the nominal world, by problem and seed.
 using Costs = std::map<std::pair<std::string, std::uint32_t>, double>;
 
 /// A row and the problems of its runs.

@@ -13,7 +13,7 @@ namespace downwash::bench {
 /// One way to plan, on one problem or on all of them together.
 struct SetupFigures {
     std::string setting;        ///< as in StudyPart
-    std::string setup;          ///< "mp-arm-ada, as believed, margin 0.05 m"
+    std::string setup;          ///< "mp-arm-ada, nominal, margin 0.05 m"
     std::string problem;        ///< empty: all
     std::size_t attempted = 0;  ///< searches
     Share planned;              ///< found a plan that the planner's own model accepts
@@ -21,7 +21,7 @@ struct SetupFigures {
     WorldsFigures in_worlds;
     /// Reported a plan that fails in at most max_failure_share of the evaluation worlds.
     Share reliable;
-    Spread duration_s;        ///< of the reported plans' flights when all is as believed, of those that held
+    Spread duration_s;        ///< of the reported plans' flights in the nominal world, of those that held
     Spread cost_ratio;        ///< of these flights' costs to those of the reference setup on the same seed
     std::size_t pairs = 0;    ///< seeds on which both have such a flight
     Spread first_solution_s;  ///< over all searches
@@ -49,7 +49,7 @@ struct StudyFigures {
 };
 
 /// The setup whose costs those of the others are divided by, and whose plans are the nominal ones.
-inline constexpr const char* reference_setup = "mp-arm-ada, as believed, margin 0.05 m";
+inline constexpr const char* reference_setup = "mp-arm-ada, nominal, margin 0.05 m";
 
 /// @param folder that run_study() wrote to
 /// @throws CampaignError, DatabaseError

@@ -138,7 +138,7 @@ std::string markdown_of(const StudyFigures& figures) {
         "`failed in worlds`: flights of reported plans in fresh worlds, pooled, with the 95 % interval of Clopper and "
         "Pearson as\nif flights were independent. `reliable`: searches that report a plan which fails in at most 1 % "
         "of "
-        "these worlds. `cost ratio`: cost of the flight when all is as\nbelieved over that of \"" +
+        "these worlds. `cost ratio`: cost of the flight in the\nnominal world over that of \"" +
         std::string(reference_setup) +
         "\" on the same seed, median (pairs). Times are medians over all searches.\n\n| setting | setup | ";
     text += std::string(heads) + "| --- | --- | " + rule;
@@ -151,7 +151,7 @@ std::string markdown_of(const StudyFigures& figures) {
     }
     text +=
         "\n## One parameter at a time\n\nPlans that fail when one parameter alone is at its 2 % or 98 % quantile, "
-        "without noise and gusts, of those whose flight holds when all is as believed.\nOnly pairs that let a plan "
+        "without noise and gusts, of those whose flight holds in the nominal world.\nOnly pairs that let a plan "
         "fail "
         "are listed.\n\n";
     return text + sensitivity(figures.by_problem);

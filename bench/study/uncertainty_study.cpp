@@ -8,7 +8,7 @@ namespace {
 constexpr const char* own_setting = "the problem's own";
 constexpr const char* camp_setting = "CAMP's";
 
-/// Everything as believed.
+/// Searches in the nominal world.
 Uncertainty no_uncertainty() {
     Uncertainty none;
     for (const WorldParameter& parameter : world_parameters()) {
@@ -51,8 +51,7 @@ StudyPart nominal_part(const StudySettings& settings) {
     Campaign campaign = campaign_of(settings, "as_believed");
     campaign.variants = {Variant::mp_arm_ada, Variant::mp_arm_da, Variant::mp_arm};
     campaign.margins_m = {0.05, 0.1, 0.2, 0.3, 0.4};
-    return {
-        campaign.name, own_setting, "as believed", false, {campaign, with(settings.problems, {}), settings.problems}};
+    return {campaign.name, own_setting, "nominal", false, {campaign, with(settings.problems, {}), settings.problems}};
 }
 
 StudyPart pessimistic_part(const StudySettings& settings) {
@@ -82,7 +81,7 @@ std::vector<StudyPart> camp_parts(const StudySettings& settings) {
     const std::vector<Problem> uncertain = with(settings.problems, camp_uncertainty());
     const Campaign nominal = campaign_of(settings, "camp_as_believed");
     const Campaign robust = campaign_of(settings, "camp_worlds_20");
-    return {{nominal.name, camp_setting, "as believed", false, {nominal, with(settings.problems, {}), uncertain}},
+    return {{nominal.name, camp_setting, "nominal", false, {nominal, with(settings.problems, {}), uncertain}},
             {robust.name, camp_setting, "20 worlds", true, {robust, in_worlds(uncertain, particles)}}};
 }
 

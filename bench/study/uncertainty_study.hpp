@@ -20,9 +20,9 @@ struct StudySettings {
 
 /// A campaign of the study: what its planners believe, and in whose worlds their plans are flown.
 struct StudyPart {
-    std::string name;      ///< of its folder: "worlds_8"
-    std::string setting;   ///< what is uncertain where plans are flown: "problem's own", "CAMP's"
-    std::string believed;  ///< "as believed", "one pessimistic world", "8 worlds"
+    std::string name;     ///< of its folder: "worlds_8"
+    std::string setting;  ///< what is uncertain where plans are flown: "problem's own", "CAMP's"
+    std::string assumed;  ///< "nominal", "one pessimistic world", "8 worlds"
     /// Certificates are about the worlds in which the plans are flown.
     bool certifies = false;
     ReadCampaign read;
@@ -36,10 +36,10 @@ struct StudyPart {
 [[nodiscard]] Uncertainty pessimistic_world();
 
 /// The campaigns that compare
-/// - the three variants planning as if all were as believed, with margins from 0.05 to 0.4 m;
+/// - the three variants planning for the nominal world, with margins from 0.05 to 0.4 m;
 /// - mp-arm-ada in the nominal and one pessimistic world, with a margin of 0.1 m;
 /// - mp-arm-ada in 2, 4, 8 and 16 worlds;
-/// - as believed and in 20 worlds where only what CAMP varies is uncertain.
+/// - in the nominal world and in 20 worlds where only what CAMP varies is uncertain.
 [[nodiscard]] std::vector<StudyPart> parts_of(const StudySettings& settings);
 
 /// Runs what is missing of a study, each part in a folder of its own below options.out.

@@ -32,8 +32,8 @@ constexpr std::array thread_counts{1, 2, 4, 8, 16, 32};
 
 struct Given {
     std::vector<std::string> problems;
-    std::uint64_t iterations = 150;            ///< in worlds
-    std::uint64_t believed_iterations = 1000;  ///< as believed
+    std::uint64_t iterations = 150;           ///< in worlds
+    std::uint64_t nominal_iterations = 1000;  ///< in the nominal world
     std::uint32_t seeds = 2;
 };
 
@@ -120,7 +120,7 @@ struct Measured {
 Measured measured(const std::string& file, bool in_worlds, const Given& given) {
     Problem problem = read_problem(file);
     problem.planner.variant = Variant::mp_arm_ada;
-    problem.planner.max_iterations = in_worlds ? given.iterations : given.believed_iterations;
+    problem.planner.max_iterations = in_worlds ? given.iterations : given.nominal_iterations;
     if (!in_worlds) {
         problem.uncertainty.reset();
     }
@@ -403,8 +403,8 @@ void run(const Given& given) {
             all.insert(all.end(), problems.back().searches.begin(), problems.back().searches.end());
         }
         fmt::print("## {}: {} iterations\n\n",
-                   in_worlds ? "In worlds, with the problems' own uncertainty" : "With everything as believed",
-                   in_worlds ? given.iterations : given.believed_iterations);
+                   in_worlds ? "In worlds, with the problems' own uncertainty" : "In the nominal world",
+                   in_worlds ? given.iterations : given.nominal_iterations);
         print_measured(problems, wake_s);
         print_shares(problems);
         print_simulated(problems, all, wake_s);
@@ -420,7 +420,7 @@ int main(int argc, char** argv) {
     CLI::App program("What more threads bring to a search, as Markdown");
     program.add_option("PROBLEM", given.problems, "problem files")->required();
     program.add_option("--iterations", given.iterations, "of each search in worlds")->check(CLI::Range(50, 1000000));
-    program.add_option("--believed-iterations", given.believed_iterations, "the same with everything as believed")
+    program.add_option("--nominal-iterations", given.nominal_iterations, "the same in the nominal world")
         ->check(CLI::Range(50, 1000000));
     program.add_option("--seeds", given.seeds, "of each problem, from 1")->check(CLI::Range(1, 1000));
     return run_program(program, argc, argv, [&given] { run(given); });

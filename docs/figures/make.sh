@@ -8,7 +8,7 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")"
 problems=$(realpath ../../problems)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# The bridge as the ideal robot flies it, with everything as believed: what the variants know makes the difference there.
+# The bridge as the ideal robot flies it, in the nominal world: what the variants know makes the difference there.
 bridge=$work/bridge_inspection.yaml
 sed "s#robots/ars_lrm#$problems/robots/ars_lrm_ideal#; s/^uncertainty: {}/uncertainty: none/" \
     "$problems/bridge_inspection.yaml" >"$bridge"

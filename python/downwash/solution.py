@@ -110,7 +110,7 @@ class Solution:
 
     @property
     def certificate(self) -> dict[str, Any] | None:
-        """What flights in fresh worlds say about the plan; None where everything is as believed."""
+        """What flights in fresh worlds say about the plan; None without an uncertainty."""
         certificate: dict[str, Any] | None = self.record["certificate"]
         return certificate
 

@@ -34,7 +34,7 @@ class Attack:
         shutil.copytree(self.folder, folder, dirs_exist_ok=True)
 
     def problem(self, name: str, **replacements: str) -> pathlib.Path:
-        """A shipped problem with everything as believed, in this folder, with some of its lines replaced."""
+        """A shipped problem in the nominal world, in this folder, with some of its lines replaced."""
         text = (self.problems / f"{name}.yaml").read_text()
         for what in ("robots", "meshes", "maps"):
             text = re.sub(rf"(robot: |file: ){what}/", rf"\1{self.problems}/{what}/", text)

@@ -21,7 +21,7 @@ template <class... Parts>
 
 /// The shipped problem of that name.
 [[nodiscard]] std::string shipped_file(const std::string& name);
-/// The same for the ideal robot and with everything as believed, in a file of its own.
+/// The same for the ideal robot in the nominal world, in a file of its own.
 [[nodiscard]] std::string problem_file(const std::string& name);
 /// Its text for a file elsewhere: the robot is named by its absolute path.
 [[nodiscard]] std::string problem_text(const std::string& name);

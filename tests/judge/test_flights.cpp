@@ -362,7 +362,7 @@ TEST_CASE("A flight that takes more energy than the budget is over it, for the j
           judge::Outcome::goal_missed);
 }
 
-TEST_CASE("the judge and the planner agree about touches, as believed and in worlds") {
+TEST_CASE("the judge and the planner agree about touches, in the nominal world and in others") {
     for (const char* name : {"contact/deck_with_frame", "contact/pier_with_arm"}) {
         CAPTURE(name);
         const Problem problem = shipped(name);

@@ -17,7 +17,7 @@
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
 
-// What plans are worth where not everything is as believed.
+// What plans are worth in other worlds than the nominal one.
 
 using namespace downwash;
 using namespace downwash::test;
@@ -228,7 +228,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     planning::solve_in_turn(
         problem, *model, map.get(), options,
         [&](const Problem& part, const SolveOptions& of_part, const planning::Course& before, Solution& found) {
-            // The way to the first goal is good as believed, and it stays so.
+            // The way to the first goal is good in the nominal world, and it stays so.
             planning::ProblemWorlds* survived = before.goals.empty() ? nullptr : &worlds;
             const auto weak =
                 planning::search_flights(part, problem, *model, map.get(), before, {survived}, of_part, found);
@@ -263,7 +263,7 @@ TEST_CASE("Without uncertainty no plan has a certificate, and knobs of worlds ch
     CHECK(same_bytes(*solve(problem).plan, *plain.plan));
 }
 
-TEST_CASE("A plan that only works as believed is approximate, with the share of worlds in which it fails") {
+TEST_CASE("A plan that only works in the nominal world is approximate, with the share of worlds in which it fails") {
     Problem problem = uncertain_problem();
     problem.planner.worlds = 1;
     problem.planner.max_failure_probability = 0.001;

@@ -65,7 +65,7 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
           std::vector<std::uint32_t>{7, 1, 4294967295U});
 }
 
-TEST_CASE("a campaign as believed plans without uncertainty and judges with it") {
+TEST_CASE("a nominal campaign plans without uncertainty and judges with it") {
     const CampaignFolder folder;
     folder.folder.write("problem.yaml", std::string(good_problem) + "uncertainty: {}\n");
     const ReadCampaign usual = folder.read(good_campaign);

@@ -74,7 +74,7 @@ TEST_CASE("a problem takes over what its robot says of its own uncertainty, but 
     CHECK(folder.read(robot_last, robot).uncertainty.value().mass_scale == Spread::of_sd(0.11));
     CHECK(folder.read(robot_last, robot).uncertainty.value().thrust_scale == Spread());
 
-    // Without one of its own a problem stays as believed, and the same problem.
+    // Without one of its own a problem has the nominal world only, and the same problem.
     const std::string nothing = problem_sha256(folder.read());
     for (const std::string_view none : {"", "uncertainty: none\n"}) {
         const Problem problem = folder.read(std::string(good_problem) + std::string(none), robot);

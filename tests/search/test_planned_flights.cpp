@@ -216,7 +216,7 @@ const Configuration low_end{-3.5, 0.7, -quarter_turn};
 
 }  // namespace
 
-TEST_CASE("the margin is kept as believed, and in other worlds a flight only must not touch anything") {
+TEST_CASE("the margin is kept in the nominal world, and in other worlds a flight only must not touch anything") {
     const auto is_accepted_with = [](double raised_m) {
         const Fixture f(low_problem());
         const planning::SearchWorlds worlds = raised_worlds(f, {raised_m});
@@ -248,7 +248,7 @@ TEST_CASE("a flight that one world rejects is not flown in the rest, once that w
         return flights.statistics().edges - before;
     };
     CHECK(edges_flown() == 17);
-    CHECK(edges_flown() == 9);  // as believed, and as many as fill the lanes
+    CHECK(edges_flown() == 9);  // in the nominal world, and as many as fill the lanes
 }
 
 TEST_CASE("counterexamples constrain flights, do not count in their cost, and leave first if they reject nothing") {

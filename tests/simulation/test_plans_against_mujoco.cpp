@@ -194,7 +194,7 @@ Difference difference_from_mujoco(const FlightModel& model, const FlightState& s
     return worst;
 }
 
-/// A plan for a shipped problem with everything as believed, and its flight.
+/// A plan for a shipped problem in the nominal world, and its flight.
 struct FlownPlan {
     FlownPlan(const std::string& name, bool observes) {
         Problem problem = read_problem(std::string(DOWNWASH_PROBLEMS) + "/" + name + ".yaml");

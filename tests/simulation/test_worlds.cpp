@@ -348,7 +348,7 @@ TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
     CHECK(model->direct_factor(body, 0, 0.4) != 1);
 }
 
-TEST_CASE("Walls are where a world has them, and as strong as believed whatever it does to K") {
+TEST_CASE("Walls are where a world has them, and as strong as in the nominal world whatever it does to K") {
     Problem problem = ceiling_problem();
     problem.obstacles = {{"wall", Box{{1, 40, 10}}, {1.5, 0, 2}, {}}};
     problem.aero.wall = {0.02, 0.04, 1};

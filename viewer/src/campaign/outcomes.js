@@ -119,6 +119,6 @@ export function make_worlds(model) {
     return make_figure(
         "worlds", "Failures in worlds",
         "Share of the flights of the reported plans that failed in worlds which no search had seen: where surface effects, " +
-            "scene, vehicle, sensors and wind differ from what is believed. Lines are 95 % intervals of Clopper and Pearson.",
+            "scene, vehicle, sensors and wind differ from the nominal world. Lines are 95 % intervals of Clopper and Pearson.",
         panels);
 }

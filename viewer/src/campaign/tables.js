@@ -56,7 +56,7 @@ function flights_table(model) {
                  causes(cell.failures_by_cause)]));
 }
 
-/** What becomes of plans where not everything is as believed; null where nobody has tried. */
+/** What becomes of plans in other worlds than the nominal one; null where nobody has tried. */
 function worlds_table(model) {
     const rows = cells_of(model).filter(({cell}) => cell.in_worlds);
     return rows.length === 0 ? null : table(
