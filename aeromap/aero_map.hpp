@@ -106,7 +106,7 @@ class DOWNWASH_EXPORT AeroMap {
         return bilinear(corner, s, t);
     }
 
-    /// The same with the part of the surfaces above: exactly 1, or all of K, where one side is all that matters.
+    /// K with the part of the surfaces above: exactly 1, or all of K, where one side is all that matters.
     [[nodiscard]] SidedFactor<double> sided_factor(std::size_t layer, double x_m, double z_m) const noexcept;
 
     /// Whether two layers have the same values, such as those of the left and right rotors of a vehicle that flies
@@ -129,8 +129,8 @@ class DOWNWASH_EXPORT AeroMap {
     /// The values of one layer.
     struct Raster {
         std::vector<MapCell> cells;
-        std::vector<CellFlyability> flyability;  ///< of each cell
-        std::vector<CellSides> sides;            ///< of each cell
+        std::vector<CellFlyability> flyability;  ///< one for each cell
+        std::vector<CellSides> sides;            ///< one for each cell
         std::vector<float> nodes;  ///< a cell that has the values of the one before it shares them: most cells do
 
         void append(const CellRows& rows, const ColumnRange& columns, const Raster* before, std::size_t first,

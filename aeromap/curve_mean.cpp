@@ -10,7 +10,7 @@
 namespace downwash {
 namespace {
 
-constexpr double reach = 16;  ///< of the table, in radii; farther out k falls like one over the square
+constexpr double reach = 16;  ///< reach of the table, in radii; farther out k falls like one over the square
 constexpr std::uint32_t intervals = 1024;
 /// Over a shorter range the middle says as much as the integral, and more exactly.
 constexpr double short_range = 1e-3;

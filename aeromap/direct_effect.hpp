@@ -80,7 +80,7 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
     /// Whether this is how near walls are, see walls(), and no thrust ratio.
     [[nodiscard]] bool is_of_walls() const noexcept { return wall_view_.has_value(); }
-    /// Of walls(): from the centre between the rotors to the hub of the foremost one. @pre is_of_walls()
+    /// How far walls() looks: from the centre between the rotors to the hub of the foremost one. @pre is_of_walls()
     [[nodiscard]] double wall_reach_m() const noexcept { return wall_view_->reach_m; }
     /// Upper bounds of |K - 1| where no surface below, or above, is nearer than a distance in radii.
     [[nodiscard]] double largest_change_from_below(double beyond_radii) const;
@@ -103,7 +103,7 @@ class DOWNWASH_EXPORT DirectEffect {
     double min_clearance_m_;
     EffectCurve ground_, ceiling_;
     std::shared_ptr<const CurveMean> ground_mean_, ceiling_mean_;        ///< null for curves that have none
-    std::shared_ptr<const RotorImages> ground_images_, ceiling_images_;  ///< of the multirotor models
+    std::shared_ptr<const RotorImages> ground_images_, ceiling_images_;  ///< images of the multirotor models
     std::vector<Vector3> fountain_hubs_m_;                               ///< from the centre, level; empty for a rotor
     std::optional<WallView> wall_view_;
     std::shared_ptr<const Footprints> footprints_;

@@ -18,11 +18,11 @@ enum class Side : std::uint8_t { below, above };
 struct DiscQuery {
     const Scene& scene;
     Vector3 hub_m;
-    double radius_m;  ///< of the disc
+    double radius_m;  ///< radius of the disc
     Side side;
     const EffectCurve& curve;
     double unit_m;          ///< what the curve's distances are measured in: the rotor radius
-    const CurveMean* mean;  ///< of the curve; null when it has none
+    const CurveMean* mean;  ///< mean of the curve; null when it has none
 
     /// Distance from the rotor plane to a stretch of a vertical line: 0 when the plane cuts it, infinite when the
     /// stretch lies on the other side.

@@ -55,7 +55,7 @@ struct Kinks {
         add_across(frame.u_of(circle.x, circle.y), frame.v_of(circle.x, circle.y), circle.across_m);
     }
 
-    /// Of one that lies along the chords.
+    /// Adds the surface of a cylinder that lies along the chords.
     void add_of_cylinder() {
         const OutlineSegment& one = part.outline.segments[0];
         const OutlineSegment& other = part.outline.segments[1];

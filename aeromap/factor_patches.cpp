@@ -9,7 +9,7 @@
 namespace downwash {
 namespace {
 
-/// Of the parabolas at the points looked at.
+/// The greatest error of the parabolas at the points looked at.
 constexpr double allowed_error = 0.002;
 
 /// The finest division of a cell has 512 steps, and its probes look at their quarters.

@@ -52,7 +52,7 @@ class FactorPatches {
     [[nodiscard]] SidedFactor<double> factor(double x_m, double z_m);
 
  private:
-    /// Of nine samples, x running fastest.
+    /// K at nine samples, x running fastest.
     using Values = std::array<SidedFactor<double>, 9>;
     /// In the lattice of 2048 points to a cell's side, from the strip's lower left corner.
     struct Square {
@@ -67,8 +67,8 @@ class FactorPatches {
 
     const LayerGrid& grid_;
     std::size_t first_;
-    /// Of each block and, behind them, of its quarters in groups of four: what a node stands for is `direct`, the index
-    /// of its first quarter, or -1 - i for values_[i].
+    /// Nodes of the blocks and, behind them, of their quarters in groups of four: what a node stands for is `direct`,
+    /// the index of its first quarter, or -1 - i for values_[i].
     std::vector<std::int32_t> nodes_;
     std::size_t blocks_ = 0;
     std::vector<Values> values_;

@@ -14,7 +14,7 @@
 namespace downwash {
 namespace {
 
-/// Of the faces seen from above or from below; none of cylinders and spheres.
+/// The planes of the faces seen from above or from below; none of cylinders and spheres.
 std::vector<Footprint::Plane> planes_of(const Scene& scene, std::size_t part, bool is_from_above) {
     std::array<std::byte, 1024> room;
     std::pmr::monotonic_buffer_resource memory(room.data(), room.size());

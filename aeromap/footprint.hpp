@@ -55,8 +55,8 @@ struct Footprint {
     };
     [[nodiscard]] bool has_side_before(const Footprint& other) const noexcept;
 
-    std::vector<Edge> sides_;  ///< of a level box' or triangle's shadow
-    double disc_radius_ = 0;   ///< of an upright cylinder's shadow; 0 for others
+    std::vector<Edge> sides_;  ///< edges of the shadow of a level box or triangle
+    double disc_radius_ = 0;   ///< radius of the shadow of an upright cylinder; 0 for others
 };
 
 /// The footprints of a scene's parts: those of primitives are made at once, those of triangles and boxes of octrees
@@ -69,7 +69,7 @@ class Footprints {
     Footprints(const Footprints&) = delete;
     Footprints& operator=(const Footprints&) = delete;
 
-    /// Of the scene's first parts, Scene::primitive_count() of them.
+    /// The footprints of the scene's first parts, Scene::primitive_count() of them.
     [[nodiscard]] std::span<const Footprint> of_primitives() const noexcept { return primitives_; }
 
     /// Whether these are all parts, and so few that each is asked sooner than those near a place are found.
@@ -78,7 +78,7 @@ class Footprints {
         return primitives_.size() <= few && others_.empty();
     }
 
-    /// Of a part that is no primitive. Kept for later while there is room, else put into `spare`.
+    /// The footprint of a part that is no primitive. Kept for later while there is room, else put into `spare`.
     [[nodiscard]] const Footprint& of_other(std::size_t part, std::list<Footprint>& spare) const;
 
  private:

@@ -47,7 +47,7 @@ inline constexpr std::array<GaussNode, 6> legendre_12{{{0.9815606342467192, 0.04
                                                        {0.1252334085114689, 0.24914704581340277}}};
 inline constexpr auto smoothed_12 = smoothed<12>(legendre_12);
 
-/// The same rules without the substitution, for integrands that are smooth up to their ends.
+/// Gauss rules without the substitution, for integrands that are smooth up to their ends.
 template <std::size_t N>
 constexpr std::array<GaussNode, N> plain(const std::array<GaussNode, N / 2>& upper_half) {
     std::array<GaussNode, N> rule{};

@@ -24,7 +24,7 @@ struct GridSampling {
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampling,
                                                        const Provenance& provenance = {});
 
-/// The same in a volume around the plane, from `lateral_low_m` to `lateral_high_m` to its left.
+/// Samples the effect in a volume around the plane, from `lateral_low_m` to `lateral_high_m` to its left.
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_volume(const DirectEffect& effect, double lateral_low_m,
                                                        double lateral_high_m, const GridSampling& sampling,
                                                        const Provenance& provenance = {});

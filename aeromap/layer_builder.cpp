@@ -98,7 +98,7 @@ class RowsBuilder {
         return rows_.flyability[(k - first_) * grid_.columns + i];
     }
 
-    /// Of the cells from (i, k) to before (i + n, k + n).
+    /// Which cells are flyable from (i, k) to before (i + n, k + n).
     FactorPatches::Flyable flyable_cells(std::size_t i, std::size_t k, std::size_t n) {
         bool are_all = true;
         bool is_none = true;
@@ -225,7 +225,7 @@ class RowsBuilder {
     struct Middle {
         double x_m, z_m, clearance_m;
     };
-    Middle middle_{};  ///< of the present cell, when it is mixed
+    Middle middle_{};  ///< the middle of the present cell, when it is mixed
 };
 
 /// Largest |dK/d(z/R)| of one side from a distance on.

@@ -27,7 +27,8 @@ struct CellRows {
     std::vector<CellSteps> steps;
     std::vector<CellFlyability> flyability;
     std::vector<CellSides> sides;
-    std::vector<float> nodes;  ///< of one cell after the other: of all surfaces, then of those above where both matter
+    std::vector<float>
+        nodes;  ///< K at the nodes of one cell after the other: of all surfaces, then of those above where both matter
 };
 
 /// Some columns of a layer, [first, last); none if the last is not beyond the first.
@@ -38,13 +39,13 @@ struct ColumnRange {
 /// What a layer was before a part of its scene changed.
 struct LayerBefore {
     ColumnRange changed;               ///< where K may be another
-    const CellFlyability* flyability;  ///< of all its cells, row by row
+    const CellFlyability* flyability;  ///< of the cells of the layer, row by row
 };
 
 /// Rows [first, last) of a layer. @throws WorkStopped when it is over before they are built
 [[nodiscard]] CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last);
 
-/// The same for a layer of which a part has changed: the values are those of the columns that are not as before.
+/// Builds a layer of which a part has changed: the values are those of the columns that are not as before.
 /// @param[out] columns which these are
 [[nodiscard]] CellRows rebuild_rows(const LayerGrid& grid, std::size_t first, std::size_t last,
                                     const LayerBefore& before, ColumnRange& columns);

@@ -30,8 +30,8 @@ struct MapView {
     double x_low_m, z_low_m, cells_per_m;
     std::uint32_t columns, rows;
     const MapCell* cells;              ///< x running fastest
-    const CellFlyability* flyability;  ///< of each cell
-    const CellSides* sides;            ///< of each cell
+    const CellFlyability* flyability;  ///< one for each cell
+    const CellSides* sides;            ///< one for each cell
     /// K, x running fastest within a cell. Behind it, where both sides matter, as many values of the surfaces above.
     const float* nodes;
 
@@ -47,8 +47,8 @@ struct MapPatch {
     double u, w;                ///< its lower corner, in cells from that of the layer
     double steps_x, steps_z;    ///< patches per cell
     double corner[4];           ///< K at the lower left, lower right, upper left and upper right
-    double above[4];            ///< of the surfaces above alone
-    CellFlyability flyability;  ///< of the cell
+    double above[4];            ///< K of the surfaces above alone
+    CellFlyability flyability;  ///< the flyability of the cell
 };
 
 /// A patch without any place in it.

@@ -44,7 +44,7 @@ class RotorImages {
     double radius_m_;
     double max_factor_;
     EffectCurve single_;                         ///< one rotor alone
-    std::shared_ptr<const CurveMean> integral_;  ///< of that
+    std::shared_ptr<const CurveMean> integral_;  ///< the integral of single_
     std::vector<EffectCurve> images_;            ///< one for each distance that occurs
     std::vector<Neighbour> neighbours_;          ///< the nearest first
 };

@@ -20,8 +20,9 @@ namespace {
 constexpr double longest_radii = 0.45;        // of a cell's edge: no obstacle is missed
 constexpr std::uint32_t cells_per_brick = 8;  // along each axis
 
-/// Of the interpolation at the points looked at. Between eighths of an edge a parabola misses up to 1.6 times as much
-/// of a kink along it; the rest up to the promised 0.01 is for kinks whose trace at those points a bend hides in part.
+/// The greatest error of the interpolation at the points looked at. Between eighths of an edge a parabola misses up
+/// to 1.6 times as much of a kink along it; the rest up to the promised 0.01 is for kinks whose trace at those points a
+/// bend hides in part.
 constexpr double allowed_error = 0.003;
 constexpr std::uint32_t max_halvings = 7;
 constexpr std::uint32_t shortest_edge = 8;  // has eighths on the lattice
@@ -87,7 +88,7 @@ class VolumeMap::Builder {
     [[nodiscard]] const std::vector<Coefficients>& polynomials() const noexcept { return polynomials_; }
 
  private:
-    using Point = std::array<std::uint32_t, 3>;  ///< of the lattice, from the brick's low corner
+    using Point = std::array<std::uint32_t, 3>;  ///< a point of the lattice, from the brick's low corner
     struct Box {
         Point low, edges;
         [[nodiscard]] Point at(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t parts) const {

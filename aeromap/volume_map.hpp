@@ -54,10 +54,11 @@ class DOWNWASH_EXPORT VolumeMap {
     /// A halving, or a box.
     struct Node {
         std::uint32_t axis;   ///< that is halved: 0 x, 1 lateral, 2 z; no_axis: a box
-        std::uint32_t index;  ///< of the lower half's node, the upper half's stands behind it; or of a box's polynomial
+        std::uint32_t index;  ///< index of the lower half's node, behind which the upper half's stands; or that of a
+                              ///< box's polynomial
     };
     static constexpr std::uint32_t no_axis = 3;
-    /// Of K's polynomial in the box.
+    /// The coefficients of K's polynomial in the box.
     using Coefficients = std::array<float, 28>;
     using KnownPolynomials = std::map<Coefficients, std::uint32_t>;  ///< and their indices
 
@@ -69,7 +70,7 @@ class DOWNWASH_EXPORT VolumeMap {
 
     std::shared_ptr<const DirectEffect> effect_;
     PlaneOfMotion frame_;
-    Vector3 low_m_, high_m_;  ///< of the block, in the frame: x, lateral, z
+    Vector3 low_m_, high_m_;  ///< corners of the block, in the frame: x, lateral, z
     Vector3 cell_m_{};        ///< a cell's edges
     Vector3 cells_per_m_{};
     Cell cells_{};

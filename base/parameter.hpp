@@ -59,8 +59,8 @@ struct ParameterInfo {
     bool can_be_group = false;     ///< a choice that may be a group of keys instead
     bool can_be_integers = false;  ///< a group that may be a list of whole numbers instead
     Range range;
-    std::vector<std::string_view> names;     ///< of a choice, or of choices
-    std::vector<std::string_view> elements;  ///< of numbers, for example {"x", "z"}; the forms of a spread
+    std::vector<std::string_view> names;     ///< the names of a choice, or of choices
+    std::vector<std::string_view> elements;  ///< the names of numbers, for example {"x", "z"}; the forms of a spread
     std::string condition;                   ///< says in words when the parameter applies; empty: always
     std::string_view default_of;             ///< group of keys that may say what the default is; empty: nothing may
     std::string_view former_name;            ///< last name of the path in earlier versions, still read
@@ -117,7 +117,7 @@ struct Parameter : ParameterInfo {
     std::function<std::size_t(const Model&, std::size_t)> count;   ///< elements of a list; 1 or 0 for a group
     std::function<void(Model&, std::size_t, std::size_t)> resize;  ///< the third is the new count
     std::function<bool(const Model&, std::size_t)> applies;        ///< empty function: always
-    std::function<std::string(const Model&, std::size_t)> digest;  ///< of a file: SHA-256 of what was read from it
+    std::function<std::string(const Model&, std::size_t)> digest;  ///< SHA-256 of what was read from a file
 
     /// Allows values greater than `low`.
     Parameter above(double low) && { return range.low = low, range.excludes_low = true, std::move(*this); }

@@ -7,7 +7,7 @@
 namespace downwash {
 namespace {
 
-/// Of the highest power first.
+/// Evaluates a polynomial whose coefficients begin with the highest power.
 template <std::size_t Count>
 double polynomial(const double (&coefficients)[Count], double x) {
     double sum = 0;

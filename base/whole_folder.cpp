@@ -95,7 +95,7 @@ bool exchange(const fs::path& one, const fs::path& other) {
 #endif
 }
 
-/// The same in two steps; at the end, the folder from `place` is called `aside`.
+/// Replaces a folder in two steps, where one does not work; at the end, the folder from `place` is called `aside`.
 bool replace(const fs::path& place, const fs::path& by, const fs::path& aside) {
     if (std::rename(place.c_str(), aside.c_str()) != 0) {
         return false;

@@ -78,7 +78,7 @@ class DOWNWASH_EXPORT EffectTable {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file);
 
-/// The same from text; errors use `name` as the name of the file.
+/// Reads a table from text; errors use `name` as the name of the file.
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text,
                                                                                     std::string_view name);
 

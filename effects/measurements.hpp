@@ -15,9 +15,9 @@ namespace downwash {
 struct Measurement {
     double z_over_r = 0;             ///< distance from the rotor plane to the surface in rotor radii
     double thrust_ratio = 0;         ///< K
-    double tilt_deg = 0;             ///< of the rotor's axis from the normal of the surface
+    double tilt_deg = 0;             ///< angle of the rotor's axis from the normal of the surface
     std::optional<double> sigma;     ///< standard deviation of thrust_ratio, where it is known
-    std::size_t line = 0;            ///< of the file
+    std::size_t line = 0;            ///< line of the file
     std::vector<std::string> cells;  ///< the whole row, as written
 };
 
@@ -40,7 +40,7 @@ struct DOWNWASH_EXPORT Measurements {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
 
-/// The same from text; errors use `name` as the name of the file.
+/// Reads measurements from text; errors use `name` as the name of the file.
 [[nodiscard]] DOWNWASH_EXPORT Measurements parse_measurements(std::string_view text, std::string_view name);
 
 }  // namespace downwash

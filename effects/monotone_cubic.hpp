@@ -21,8 +21,8 @@ inline double slope(double h_left, double secant_left, double h_right, double se
 
 /// The weights of the ends of an interval in a value within it.
 struct Weights {
-    double left, right;              ///< of the values there
-    double slope_left, slope_right;  ///< of the slopes there
+    double left, right;              ///< weights of the values at both ends
+    double slope_left, slope_right;  ///< weights of the slopes at both ends
 };
 
 /// @param h width of the interval, > 0

@@ -29,7 +29,7 @@ struct RotorNeighbours {
 [[nodiscard]] DOWNWASH_EXPORT RotorNeighbours neighbours_of(const std::vector<Vector3>& hubs_m, std::size_t which,
                                                             double radius_m, double heading_rad = 0);
 
-/// Of any rotor of a square quadrotor with adjacent axes `spacing_radii` apart.
+/// The neighbours of any rotor of a square quadrotor with adjacent axes `spacing_radii` apart.
 [[nodiscard]] DOWNWASH_EXPORT RotorNeighbours square_quadrotor(double spacing_radii);
 
 }  // namespace downwash

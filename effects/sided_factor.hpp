@@ -10,8 +10,8 @@ namespace downwash {
 /// all - above.
 template <class T>
 struct SidedFactor {
-    T all;    ///< of all surfaces
-    T above;  ///< of the surfaces above the rotor alone
+    T all;    ///< K of all surfaces
+    T above;  ///< K of the surfaces above the rotor alone
 };
 
 /// How fast the effect of each side fades with the tilt of a rotor (docs/model.md 4.7). At a tilt theta a level rotor's

@@ -23,7 +23,7 @@ struct WallMeasurement {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> read_wall_measurements(const std::filesystem::path& file);
 
-/// The same from text; errors use `name` as the name of the file.
+/// Reads measurements beside walls from text; errors use `name` as the name of the file.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> parse_wall_measurements(std::string_view text,
                                                                                    std::string_view name);
 

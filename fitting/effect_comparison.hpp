@@ -29,7 +29,7 @@ struct ModelScore {
     bool is_refitted = false;  ///< false: with the parameters of its source
     bool is_at_bound = false;  ///< refitted, and a parameter is at the end of its allowed range
     double rmse = 0;
-    double level_rmse = 0;  ///< the same if the rotors counted as level
+    double level_rmse = 0;  ///< the error if the rotors counted as level
     /// Refitted: the RMSE over all level measurements of other sources at the same surface, if there are any.
     std::optional<double> others_rmse;
     std::vector<ErrorBand> bands;

@@ -21,9 +21,10 @@ struct TiltScore {
 /// The tilt loss fitted to measurements of tilted rotors.
 struct TiltFit {
     TiltScore fitted;
-    std::optional<double> standard_error;  ///< of the loss; empty with a single measurement or at a bound
-    TiltScore as_level;                    ///< with the loss 0
-    /// Of each source with tilted rotors, how well the loss fitted to all others predicts it; empty with one source.
+    std::optional<double>
+        standard_error;  ///< standard error of the loss; empty with a single measurement or at a bound
+    TiltScore as_level;  ///< with the loss 0
+    /// How well, for each source with tilted rotors, the loss fitted to all others predicts it; empty with one source.
     std::vector<std::pair<std::string, TiltScore>> left_out;
 };
 

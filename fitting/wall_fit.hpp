@@ -15,9 +15,10 @@ namespace downwash {
 /// A share of WallEffect beside measurements of it.
 struct WallShare {
     double value = 0;  ///< where a rotor touches the wall; 0 if all measurements are too far away to tell
-    /// Of the value, at the decay as fitted. Empty with a single measurement, or if all are too far away.
+    /// Standard error of the value, at the decay as fitted. Empty with a single measurement, or if all are too far
+    /// away.
     std::optional<double> standard_error;
-    double rmse = 0;     ///< of the measurements, over T or T R
+    double rmse = 0;     ///< root mean square error over the measurements, over T or T R
     double largest = 0;  ///< the largest measured size
 };
 
@@ -31,7 +32,7 @@ struct WallShares {
 /// Fitted walls.
 struct WallFit : WallShares {
     bool is_decay_at_bound = false;  ///< at the end of the range of a problem file, 0.05 or 20
-    /// The same of each facility alone, with the decay of all; empty with one facility.
+    /// Shares of each facility alone, with the decay of all; empty with one facility.
     std::vector<std::pair<std::string, WallShares>> by_facility;
 };
 

@@ -98,7 +98,7 @@ struct CoreAnswer {
 
 /// The changes of a call.
 struct CoreChange {
-    std::string text;  ///< of a problem file, whose obstacles are put and whose goal is taken; empty: neither
+    std::string text;  ///< text of a problem file, whose obstacles are put and whose goal is taken; empty: neither
     bool has_goal = false;
     std::vector<std::string> removed;
 };
@@ -258,10 +258,10 @@ class CorePlanner {
     }
 
     CoreProblem began_with_;
-    std::function<void(const Progress&)> tell_;  ///< of the call that is running
+    std::function<void(const Progress&)> tell_;  ///< what the running call tells
     Planner planner_;
     std::atomic<bool> is_busy_ = false;
-    mutable std::mutex mutex_;  ///< of latest_
+    mutable std::mutex mutex_;  ///< guards latest_
     std::optional<CoreAnswer> latest_;
 };
 

@@ -28,7 +28,7 @@ class Attendance {
     /// From the working thread: has the calling thread run a callback with the interpreter lock. Where it is busy, a
     /// newer callback takes the place of one that waits.
     void tell(std::function<void()> callback);
-    /// The same for a callback of which none may be missed: it runs after those that wait.
+    /// Tells Python of something by a callback of which none may be missed: it runs after those that wait.
     void tell_each(std::function<void()> callback);
     /// From the working thread: there is nothing more to wait for.
     void close();
@@ -46,10 +46,10 @@ class Attendance {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::function<void()>> callbacks_;  ///< that wait
-    bool is_last_told_ = false;                     ///< of those: by tell()
+    bool is_last_told_ = false;                     ///< whether the last one was told by tell()
     bool is_closed_ = false;
     std::optional<py::error_already_set> raised_;
-    std::exception_ptr failure_;  ///< of ours, while Python was asked
+    std::exception_ptr failure_;  ///< our failure while Python was asked
 };
 
 /// Runs work(attendance) as Attendance says. Work must not touch Python but through Attendance::tell().

@@ -13,8 +13,8 @@ namespace downwash {
 /// on the colour bar.
 struct ColorScale {
     std::string label;           ///< the quantity, with its unit
-    std::vector<double> limits;  ///< of the classes, increasing; one more than there are colours
-    std::vector<Color> colors;   ///< of the classes; at least two
+    std::vector<double> limits;  ///< limits of the classes, increasing; one more than there are colours
+    std::vector<Color> colors;   ///< colours of the classes; at least two
     /// Names of the classes, shown at the colour bar instead of the limits. May be empty.
     std::vector<std::string> names;
     /// The value where nothing happens, such as a thrust ratio of 1. Labels cover its class only.

@@ -19,7 +19,8 @@ struct DiagramPoint {
 struct Curve {
     std::string name;
     std::vector<DiagramPoint> points;
-    std::optional<AxisRange> known_range = {};  ///< of x, both ends may be infinite; the line is dotted outside
+    std::optional<AxisRange> known_range =
+        {};  ///< known range of x, both ends may be infinite; the line is dotted outside
 };
 
 /// Points with or without error bars.
@@ -50,7 +51,7 @@ struct CurveFigure {
 /// error bars differ, or the width is out of range  @throws PictureError when gnuplot cannot draw
 [[nodiscard]] DOWNWASH_EXPORT std::string draw(std::span<const CurveFigure> figures, const PictureSettings& settings);
 
-/// The same for one figure.
+/// Draws one figure.
 [[nodiscard]] inline std::string draw(const CurveFigure& figure, const PictureSettings& settings) {
     return draw(std::span(&figure, 1), settings);
 }

@@ -13,8 +13,8 @@ namespace downwash {
 
 /// The layout of a picture of a field, in pixels from its lower left corner.
 struct FieldLayout {
-    double left, right, bottom, top;  ///< of the axes
-    double height;                    ///< of the picture
+    double left, right, bottom, top;  ///< edges of the axes
+    double height;                    ///< height of the picture
     double legend_top;
     double room;  ///< available width for the axes
     double bar_bottom;
@@ -31,7 +31,7 @@ void require_drawable(const Bounds& extent);
 /// Values at regular points, row by row from the lower left, as positions on the colour bar.
 struct FieldSamples {
     std::size_t columns = 0, rows = 0;
-    double x_m = 0, z_m = 0;    ///< of the first point
+    double x_m = 0, z_m = 0;    ///< place of the first point
     double dx_m = 0, dz_m = 0;  ///< between points
     std::vector<float> places;  ///< NaN where the field is not defined
 

@@ -27,7 +27,7 @@ class GnuplotScript {
         text_ += line;
         text_ += '\n';
     }
-    /// The same, with values in place of {}.
+    /// Adds a command with values in place of {}.
     template <class... Values>
     void add(fmt::format_string<Values...> line, Values&&... values) {
         add(std::string_view(fmt::format(line, std::forward<Values>(values)...)));

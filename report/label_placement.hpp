@@ -24,7 +24,7 @@ struct NamedShape {
 struct LabelGround {
     Bounds area;
     double px_per_m = 1;
-    double height_m = 0;      ///< of a name
+    double height_m = 0;      ///< height of a name
     std::vector<Ring> taken;  ///< lines that no name may cover; a line back to its first point takes its inside, too
     /// What is behind a point: names stand on one background. Negative: none may stand here.
     std::function<int(const PlanePoint& at)> background;

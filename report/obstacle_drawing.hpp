@@ -16,7 +16,7 @@ namespace downwash {
 /// Outlines that look the same, such as those of girders left and right of the plane, become one with both names.
 [[nodiscard]] std::vector<ObstacleOutline> merged_outlines(const std::vector<ObstacleOutline>& outlines);
 
-/// The same with only the corners that can be seen: of outlines with more than 20000 corners together, corners half a
+/// An outline with only the corners that can be seen: of outlines with more than 20000 corners together, corners half a
 /// pixel apart and the rings that are larger than that. @param px_per_m maximum scale of the picture
 [[nodiscard]] std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outlines, double px_per_m);
 

@@ -63,7 +63,7 @@ Json triangles_json(const Obstacle& obstacle, const PlaneOfMotion& plane) {
     return {{"triangles", {{"vertices", vertices.text()}, {"indices", indices.text()}}}};
 }
 
-/// Of meshes and octrees with more triangles a page shows only the outlines, so that it stays small.
+/// A page shows only the outlines of meshes and octrees with more triangles, so that it stays small.
 constexpr std::size_t max_shown_triangles = 20000;
 
 /// The kind of a shape and its solid.

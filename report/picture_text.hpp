@@ -14,7 +14,7 @@ namespace downwash {
 /// Characters that cannot be shown become a space or a question mark, and ' becomes ’.
 [[nodiscard]] DOWNWASH_EXPORT std::string picture_text(std::string_view text, std::size_t max_characters = 100);
 
-/// The same as a string for gnuplot, in single quotes, in which gnuplot replaces and runs nothing.
+/// A text as a string for gnuplot, in single quotes, in which gnuplot replaces and runs nothing.
 [[nodiscard]] DOWNWASH_EXPORT std::string in_quotes(std::string_view text);
 
 /// The approximate width of picture_text(text) in a sans-serif font of this size [px].

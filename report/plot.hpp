@@ -16,7 +16,7 @@ namespace downwash {
 /// One line of text per point. @param is_closed whether the first point is repeated at the end
 [[nodiscard]] std::string points_text(const Ring& ring, bool is_closed);
 
-/// The same for several rings, each followed by an empty line.
+/// The points of several rings, each ring followed by an empty line.
 [[nodiscard]] std::string lines_text(const std::vector<Ring>& rings, bool is_closed);
 
 /// Defines the data block `name`, such as "$edge3".

@@ -56,7 +56,8 @@ std::string command_of(const Problem& problem, const Json& solution) {
     return command;
 }
 
-/// Of the places from which a surface could be touched, the one that the plan chose; other goals as they are.
+/// The problem with the one place, of all from which a surface could be touched, that the plan chose; other goals as
+/// they are.
 Problem with_chosen_place(const RunRecord& run, const FlightModel& model) {
     Problem problem = run.problem;
     if (problem.goal.contact && run.plan) {

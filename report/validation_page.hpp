@@ -34,7 +34,7 @@ struct ValidationRecord {
     bool is_valid = false;
     bool has_flight_claims = false;  ///< the file says something about a flight
     std::string solution_text;       ///< the file that was judged, JSON
-    std::uint64_t seed = 0;          ///< of the worlds
+    std::uint64_t seed = 0;          ///< seed of the worlds
     std::string command;             ///< that made the page
     std::optional<ClearanceOverTime> clearance;
     std::vector<PlayableFlight> flights;  ///< the judge's own first, then the worst ones

@@ -131,8 +131,8 @@ struct CollisionChecker::Impl {
     PlaneOfMotion plane;
     std::vector<Piece> pieces;
     Vector3 joint_m;          ///< in the body frame
-    double reach_m = 0;       ///< of all pieces
-    double body_reach_m = 0;  ///< of those of the multirotor
+    double reach_m = 0;       ///< the reach of all pieces
+    double body_reach_m = 0;  ///< the reach of the pieces of the multirotor
 };
 
 CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const PlaneOfMotion& the_plane,

@@ -23,7 +23,7 @@ namespace downwash {
 /// @throws InputError "'file' line 7: what is wrong, what was expected", "byte 84" in binary files
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& file);
 
-/// The same for bytes in memory; the ending of their name gives the format. @throws InputError
+/// Reads a mesh from bytes in memory; the ending of the name gives the format. @throws InputError
 [[nodiscard]] DOWNWASH_EXPORT TriangleMesh parse_mesh(std::string_view bytes, const std::string& name);
 
 }  // namespace downwash

@@ -22,7 +22,7 @@ namespace downwash {
 /// @throws InputError "'file' line 3: what is wrong, what was expected", "byte 84" among the nodes
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const OccupancyTree> read_octomap(const std::filesystem::path& file);
 
-/// The same for bytes in memory; the name is for messages. @throws InputError
+/// Reads an OctoMap file from bytes in memory; the name is for messages. @throws InputError
 [[nodiscard]] DOWNWASH_EXPORT OccupancyTree parse_octomap(std::string_view bytes, const std::string& name);
 
 }  // namespace downwash

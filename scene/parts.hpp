@@ -45,7 +45,8 @@ struct Parts {
     bool any(const Gap& gap, const double& limit, const Visit& visit) const {
         return primitive_tree_.any(gap, limit, visit) || any_other(gap, limit, visit);
     }
-    /// The same over all but primitives. Their tree is one of its own: a ground or a deck would spoil its upper boxes.
+    /// Visits the near parts that are no primitives. Their tree is one of its own: a ground or a deck would spoil its
+    /// upper boxes.
     template <class Gap, class Visit>
     bool any_other(const Gap& gap, const double& limit, const Visit& visit) const {
         return other_tree_.any(gap, limit, [&](std::size_t other) { return visit(primitives.size() + other); });

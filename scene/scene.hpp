@@ -47,7 +47,7 @@ class DOWNWASH_EXPORT Scene {
             }
         }
     };
-    /// Of the obstacle of that number in obstacles().
+    /// The bounding box of the obstacle of that number in obstacles().
     [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;
 
     /// Obstacles consist of convex parts: a mesh of its triangles, an octree of boxes that fill what its cubes fill,

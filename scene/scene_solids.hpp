@@ -20,7 +20,7 @@ struct Scene::Solids {
     };
 
     std::vector<Obstacle> obstacles;
-    std::vector<Bounds> bounds;  ///< of the obstacles, tight
+    std::vector<Bounds> bounds;  ///< tight boxes of the obstacles
     Parts parts;
     std::vector<ClosedSurface> closed_surfaces;
 

@@ -34,7 +34,7 @@ struct ShadowOutline {
     std::vector<OutlineEllipse> ellipses;
 };
 
-/// Of one part of a scene, in the world's x and y [m]. @pre part < scene.part_count()
+/// The shadow of one part of a scene, in the world's x and y [m]. @pre part < scene.part_count()
 [[nodiscard]] DOWNWASH_EXPORT ShadowOutline shadow_outline(const Scene& scene, std::size_t part);
 
 }  // namespace downwash

@@ -9,7 +9,7 @@ namespace downwash {
 /// 48 sides, spheres of 24 rings.
 [[nodiscard]] DOWNWASH_EXPORT TriangleMesh surface_of(const Obstacle& obstacle);
 
-/// Of an arm: a cylinder of 24 sides, from the origin along x.
+/// The surface of an arm: a cylinder of 24 sides, from the origin along x.
 [[nodiscard]] DOWNWASH_EXPORT TriangleMesh rod_surface(double length_m, double radius_m);
 
 }  // namespace downwash
